@@ -28,7 +28,7 @@ from tests.simulation.planned_flights import climbs, compared, holds
 from tests.simulation.planned_flights import square as square_route
 
 MOST_CALM, MOST_WINDY = 0.10, 0.15
-FASTEST_MPS = 12.9  # through the air, with the tilt limit of the simulated flights
+MAX_SPEED_MPS = 12.9  # through the air, with the tilt limit of the simulated flights
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def modelled(flight: Flight) -> Timing:
     return timing(
         square(),
         cruise_speed_mps=flight.cruise_mps,
-        performance=Performance(battery_wh=56.6, max_airspeed_mps=FASTEST_MPS, climb_speed_mps=2.0, descent_speed_mps=2.0),
+        performance=Performance(battery_wh=56.6, max_airspeed_mps=MAX_SPEED_MPS, climb_speed_mps=2.0, descent_speed_mps=2.0),
         conditions=Conditions((WindLayer(10.0, flight.wind_mps, 0.0),)),
         lands=True,
         rules=FlightRules(),

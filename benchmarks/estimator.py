@@ -27,7 +27,7 @@ from tests.telemetry.estimation.scoring import BEGUN_S, INTERVALS_S, Score, rms,
 from tests.telemetry.estimation.truth import fly
 
 LOWEST, HIGHEST = 0.93, 0.97
-MOST_CORES = 0.3
+MAX_CORES = 0.3
 MEASURED_S = 60
 HEAD = [
     "a report each", "seconds", "RMS error [m]", "last position held", "straight on", "inside the ellipse", "height", "speed", "arrivals",
@@ -94,14 +94,14 @@ def main() -> None:
     where = f"half of them along {len(lines)} real power lines" if lines else "along drawn lines"
     words = (
         f"{asked.flights} generated flights, {where}, with pauses, returns and landings, 3 % of reports lost and 2 % late by up to 20 s "
-        f"(`python -m benchmarks.estimator`). {machine('numpy')}\n\n{found}\n\n{cost}; the bar is {MOST_CORES}. The filter alone, "
+        f"(`python -m benchmarks.estimator`). {machine('numpy')}\n\n{found}\n\n{cost}; the bar is {MAX_CORES}. The filter alone, "
         "without the database. Bars: below both other ways, and the truth within the ellipse of 95 % in "
         f"{100 * LOWEST:.0f} to {100 * HIGHEST:.0f} %."
     )
     print(words)
     if asked.write:
         write_section("Estimates between reports", words)
-    if not all(keeps_bars(score) for score in scores.values()) or max(cores.values()) > MOST_CORES:
+    if not all(keeps_bars(score) for score in scores.values()) or max(cores.values()) > MAX_CORES:
         sys.exit(1)
 
 

@@ -27,7 +27,7 @@ from workspace.models import Organisation, User
 
 UAVS_A_MISSION = 10
 FIRST_SYSTEM = 2
-MOST_UAVS = 250
+MAX_UAVS = 250
 WEST_DEG, SOUTH_DEG = 10.0, 55.0
 LINE_EVERY_DEG, MISSION_EVERY_DEG = 0.06, 0.02  # lines of a mission lie in a row, rows one above the other
 TOWER_EVERY_DEG, TOWERS = 0.004, 12

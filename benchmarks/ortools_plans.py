@@ -13,9 +13,9 @@ from planning.solver.problem_arrays import Arcs
 UNITS_PER_M = 10
 UNITS_PER_S = 100
 NO_WAY = 10**11  # in units; what cannot be flown
-MOST_UNITS = NO_WAY - 1  # of a route without a limit
+MAX_UNITS = NO_WAY - 1  # of a route without a limit
 LEFT_OUT = 10**12  # what the lightest target costs, if it is left out
-MOST_LEFT_OUT = 10**15
+MAX_LEFT_OUT = 10**15
 SPAN_WEIGHT = 1_000  # what the longest route weighs beside the metres
 LOOK_AFTER = 1_000  # calls of the limit, of which there are some hundred thousand in a second
 
@@ -48,7 +48,7 @@ def routes_by_ortools(problem: Problem, usable: BoolArray, cpu_s: float) -> Rout
     lengths = routing.RegisterTransitMatrix(_units(metres, UNITS_PER_M))
     routing.SetArcCostEvaluatorOfAllVehicles(lengths)
     if (arcs.limit_m < NO_WAY_M / 2).any() or (metres >= NO_WAY_M).any():
-        limits = [min(MOST_UNITS, math.floor(limit_m * UNITS_PER_M)) for limit_m in arcs.limit_m.tolist()]
+        limits = [min(MAX_UNITS, math.floor(limit_m * UNITS_PER_M)) for limit_m in arcs.limit_m.tolist()]
         routing.AddDimensionWithVehicleTransitAndCapacity([lengths] * uavs, 0, limits, True, "length")
     if (arcs.most < problem.target_count).any():
         done = [0] * uavs + arcs.done.tolist() + [0] * uavs
@@ -58,7 +58,7 @@ def routes_by_ortools(problem: Problem, usable: BoolArray, cpu_s: float) -> Rout
         kinds = list(zip(arcs.speed_mps.tolist(), arcs.ready_s.tolist(), strict=True))
         durations = {kind: routing.RegisterTransitMatrix(_units(_seconds(metres, arcs, *kind), UNITS_PER_S)) for kind in set(kinds)}
         by_uav = [durations[kind] for kind in kinds]
-        routing.AddDimensionWithVehicleTransits(by_uav, 0, MOST_UNITS, True, "time")
+        routing.AddDimensionWithVehicleTransits(by_uav, 0, MAX_UNITS, True, "time")
         routing.GetDimensionOrDie("time").SetGlobalSpanCostCoefficient(SPAN_WEIGHT)
     lightest = float(arcs.weight.min())
     for target, of_target in enumerate(problem.visits_of_target()):
@@ -66,7 +66,7 @@ def routes_by_ortools(problem: Problem, usable: BoolArray, cpu_s: float) -> Rout
         for visit in set(of_target) - set(able):
             routing.VehicleVar(manager.NodeToIndex(uavs + visit)).SetValue(-1)
         places = [manager.NodeToIndex(uavs + visit) for visit in of_target]
-        routing.AddDisjunction(places, min(MOST_LEFT_OUT, int(LEFT_OUT * float(arcs.weight[target]) / lightest)))
+        routing.AddDisjunction(places, min(MAX_LEFT_OUT, int(LEFT_OUT * float(arcs.weight[target]) / lightest)))
         for visit in able:
             if not usable[:, visit].all():
                 allowed = [-1, *np.flatnonzero(usable[:, visit]).tolist()]

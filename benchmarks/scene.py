@@ -50,7 +50,7 @@ TARGETS = 8
 SAMPLE_S = 30.0
 WARM_UP_S = 20.0
 SLOWER = 3
-PATIENCE_MS = 180_000
+TIMEOUT_MS = 180_000
 VIEWPORT: Any = {"width": 960, "height": 600}  # what a frame costs the script does not go with its pixels
 VIEWS = {"all of it": ("f",), "from above": ("t", "f"), "from behind": ("c",), "round a target": ("o",)}
 
@@ -106,7 +106,7 @@ def installation(osm_file: Path) -> Iterator[tuple[str, str]]:
 def signed_in(browser: Browser, address: str, password: str) -> Page:
     context = browser.new_context(base_url=address, viewport=VIEWPORT, reduced_motion="no-preference")
     page = context.new_page()
-    page.set_default_timeout(PATIENCE_MS)
+    page.set_default_timeout(TIMEOUT_MS)
     page.goto("/sign-in")
     page.get_by_label("User name").fill("demo")
     page.get_by_label("Password").fill(password)
@@ -116,7 +116,7 @@ def signed_in(browser: Browser, address: str, password: str) -> Page:
 
 
 def asks(page: Page, path: str) -> Any:
-    answer = page.request.get(path if path.startswith("/api") else f"/api/v1{path}", timeout=PATIENCE_MS)
+    answer = page.request.get(path if path.startswith("/api") else f"/api/v1{path}", timeout=TIMEOUT_MS)
     if not answer.ok:
         raise SystemExit(f"{path}: {answer.status} {answer.text()[:300]}")
     return answer.json()
@@ -124,7 +124,7 @@ def asks(page: Page, path: str) -> Any:
 
 def posts(page: Page, path: str, body: dict[str, Any]) -> Any:
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
-    answer = page.request.post(f"/api/v1{path}", data=body, headers={"X-CSRFToken": token}, timeout=PATIENCE_MS)
+    answer = page.request.post(f"/api/v1{path}", data=body, headers={"X-CSRFToken": token}, timeout=TIMEOUT_MS)
     if not answer.ok:
         raise SystemExit(f"{path}: {answer.status} {answer.text()[:300]}")
     return answer.json()
@@ -170,7 +170,7 @@ def planned_mission(page: Page) -> tuple[str, int]:
     }
     departs_at = f"{date.today() + timedelta(days=20)}T15:00:00Z"
     mission = posts(page, "/missions", {**body, "return_to_start": False, "plan": True, "departs_at": departs_at})
-    until = time.monotonic() + PATIENCE_MS / 1_000
+    until = time.monotonic() + TIMEOUT_MS / 1_000
     while asks(page, f"/missions/{mission['id']}")["plan"] is None and time.monotonic() < until:
         time.sleep(1)
     return str(mission["id"]), of_box

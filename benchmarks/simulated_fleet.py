@@ -49,7 +49,7 @@ from simulation.simulator.flight import Flight  # noqa: E402
 from simulation.simulator.options import Options  # noqa: E402
 from simulation.simulator.process import Simulator  # noqa: E402
 from simulation.vehicle_endpoint.fleet import Fleet, FleetReport  # noqa: E402
-from simulation.vehicle_endpoint.launch import HIGHEST_SYSTEM, Launch, fleet_of, in_a_row  # noqa: E402
+from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row  # noqa: E402
 from telemetry.models import TelemetryRecord  # noqa: E402
 
 BAR = 60
@@ -264,14 +264,14 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=30.0, help="that each number is measured for")
     parser.add_argument("--start", type=int, default=20, help="UAVs of the first step")
     parser.add_argument("--more", type=int, default=20, help="UAVs that are added from step to step")
-    parser.add_argument("--most", type=int, default=HIGHEST_SYSTEM, help=f"UAVs; there are {HIGHEST_SYSTEM} system ids")
+    parser.add_argument("--most", type=int, default=MAX_SYSTEM_ID, help=f"UAVs; there are {MAX_SYSTEM_ID} system ids")
     parser.add_argument("--finest", type=int, default=5, help="UAVs by which the limit is known in the end")
     parser.add_argument("--processes", type=int, default=1, help="that share the UAVs")
     parser.add_argument("--speed", type=float, default=1.0, help="times real time; each UAV counts so many times")
     parser.add_argument("--simulator", action="store_true", help="flown by one run_simulator")
     parser.add_argument("--write", action="store_true", help="into docs/performance.md")
     options = parser.parse_args()
-    most = min(options.most, HIGHEST_SYSTEM)
+    most = min(options.most, MAX_SYSTEM_ID)
     at = Point(*FIRST, srid=4326)
     uavs = [
         Uav.objects.create(name=f"benchmark {system}", location=at, mavlink_system_id=system, allows_unsigned=True, is_simulated=True)

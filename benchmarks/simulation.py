@@ -30,7 +30,7 @@ from simulation.flight.weather import Weather
 HOME = LonLat(9.0, 47.0)
 SIDE_M, HEIGHT_M = 500.0, 30.0
 LEAST_TIMES_REAL = 200.0
-MOST_TOUCH_DOWN_M = 1.0
+MAX_TOUCH_DOWN_M = 1.0
 UAVS = 100
 PAGE_BYTES = 4096
 
@@ -111,7 +111,7 @@ def misses(case: Case, runs: list[Run]) -> list[str]:
         off = one.flight.cross_track_m
         if not (math.sqrt(np.mean(off**2)) < case.most_rms_m and off.max() < case.most_m):
             found.append(f"{case.name}: beside the route")
-        if not one.touch_down_m < MOST_TOUCH_DOWN_M:
+        if not one.touch_down_m < MAX_TOUCH_DOWN_M:
             found.append(f"{case.name}: touch-down")
         if one.flight.reasons:
             found.append(f"{case.name}: {one.flight.reasons[0]}")

@@ -23,7 +23,7 @@ from scripts.places import PROJECT_DIR
 
 LOOPS = 20_000_000
 NAMES = ("serving after", "ready after", "of a processor until it served", "until it was ready", "the loop: of a processor", "wall")
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
@@ -77,7 +77,7 @@ def start() -> tuple[float, float, float, float]:
         try:
             while True:
                 taken_s = time.perf_counter() - began
-                if process.poll() is not None or taken_s > PATIENCE_S:
+                if process.poll() is not None or taken_s > TIMEOUT_S:
                     raise SystemExit("the program did not come up")
                 if serving_s is None and answers(port, "/sign-in") is not None:
                     serving_s, serving_work_s = time.perf_counter() - began, worked_s(process.pid)

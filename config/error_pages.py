@@ -9,7 +9,7 @@ from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.template import TemplateDoesNotExist
 from django.template.loader import render_to_string
 
-from workspace.errors import DATABASE_AWAY, RETRY_AFTER_S, error_body, error_content_type
+from workspace.errors import DATABASE_UNAVAILABLE, RETRY_AFTER_S, error_body, error_content_type
 
 API_MESSAGES = {
     400: ("bad_request", "The request cannot be read."),
@@ -38,7 +38,7 @@ def server_error(request: HttpRequest) -> HttpResponse:
     error = sys.exc_info()[1]
     if isinstance(error, DataError):
         return _answer(request, 400)  # such as a NUL character in the address of a filtered list
-    return _answer(request, 503 if isinstance(error, DATABASE_AWAY) else 500)
+    return _answer(request, 503 if isinstance(error, DATABASE_UNAVAILABLE) else 500)
 
 
 def _answer(request: HttpRequest, status: int) -> HttpResponse:

@@ -219,11 +219,11 @@ STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".s
 # What users may send in one request. Files come in as uploads, part by part, into a folder that web and worker-data share.
 UPLOAD_DIR = Path(os.environ.get("SPANWISE_UPLOAD_DIR") or STATE_DIR / "uploads")
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
-LARGEST_FILE_BYTES = {
-    "osm": _mebibytes("SPANWISE_LARGEST_OSM_MIB", 512),
-    "terrain": _mebibytes("SPANWISE_LARGEST_TERRAIN_MIB", 512),
-    "assets": _mebibytes("SPANWISE_LARGEST_ASSETS_MIB", 128),
-    "zones": _mebibytes("SPANWISE_LARGEST_ZONES_MIB", 16),
+MAX_UPLOAD_BYTES = {
+    "osm": _mebibytes("SPANWISE_MAX_OSM_MIB", 512),
+    "terrain": _mebibytes("SPANWISE_MAX_TERRAIN_MIB", 512),
+    "assets": _mebibytes("SPANWISE_MAX_ASSETS_MIB", 128),
+    "zones": _mebibytes("SPANWISE_MAX_ZONES_MIB", 16),
 }
 
 UPLOADS_BYTES = _mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
@@ -343,7 +343,7 @@ FLIGHT_RULES = FlightRules(
     transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
     max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
     cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
-    longest_flight_s=_float("SPANWISE_LONGEST_FLIGHT_S", FlightRules.longest_flight_s),
+    longest_flight_s=_float("SPANWISE_MAX_FLIGHT_S", FlightRules.longest_flight_s),
     turnaround_s=_float("SPANWISE_TURNAROUND_S", FlightRules.turnaround_s),
 )
 ZONE_RULES = ZoneRules(
@@ -373,15 +373,15 @@ COMMAND_RULES = CommandRules(
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
-GATEWAY_MOST_COMMANDS = int(_float("SPANWISE_GATEWAY_MOST_COMMANDS", 200))  # carried at once, above which speeds wait
+GATEWAY_MAX_COMMANDS = int(_float("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # carried at once, above which speeds wait
 LINK_BUDGET_BYTES_S = _float("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
 GATEWAY_ALONE_S = _float("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
-GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
+GATEWAY_MAX_RECORDS = int(_float("SPANWISE_GATEWAY_MAX_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
-LARGEST_FLIGHT_LOG_MIB = _float("SPANWISE_LARGEST_FLIGHT_LOG_MIB", 256)
+MAX_FLIGHT_LOG_MIB = _float("SPANWISE_MAX_FLIGHT_LOG_MIB", 256)
 # The watch, which estimates where UAVs are between their reports.
 ESTIMATOR_NAME = os.environ.get("SPANWISE_ESTIMATOR_NAME", "")
-ESTIMATOR_MOST_UAVS = int(_float("SPANWISE_ESTIMATOR_MOST_UAVS", 1_000))  # that one watch holds at once
+ESTIMATOR_MAX_UAVS = int(_float("SPANWISE_ESTIMATOR_MAX_UAVS", 1_000))  # that one watch holds at once
 TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
 # by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
 TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
@@ -400,22 +400,22 @@ TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept
 MAX_SYSTEM_IDS = int(_float("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
 DATA_WORKERS = int(_float("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
 READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # that reading a file may use, by its size
-MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
-MOST_OPEN_REHEARSALS = int(_float("SPANWISE_MOST_OPEN_REHEARSALS", 4))  # of one user, waiting and running
+MAX_OPEN_PLANS = int(_float("SPANWISE_MAX_OPEN_PLANS", 4))  # large plans of one user, waiting and running
+MAX_OPEN_REHEARSALS = int(_float("SPANWISE_MAX_OPEN_REHEARSALS", 4))  # of one user, waiting and running
 # Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.
 SIMULATOR_NAME = os.environ.get("SPANWISE_SIMULATOR_NAME", "")
-SIMULATOR_MOST_UAVS = int(_float("SPANWISE_SIMULATOR_MOST_UAVS", 60))  # of one simulator; each counts as often as its speed
+SIMULATOR_MAX_UAVS = int(_float("SPANWISE_SIMULATOR_MAX_UAVS", 60))  # of one simulator; each counts as often as its speed
 SIMULATOR_GATEWAY = os.environ.get("SPANWISE_SIMULATOR_GATEWAY", "")  # HOST:PORT; empty: the first of SPANWISE_GATEWAY_UDP
 SIMULATOR_HOST = os.environ.get("SPANWISE_SIMULATOR_HOST", "127.0.0.1")
 SIMULATOR_PORTS = os.environ.get("SPANWISE_SIMULATOR_PORTS", "14600-14799")
-MOST_SIMULATED_UAVS = int(_float("SPANWISE_MOST_SIMULATED_UAVS", 20))  # of one organisation at once
-LONGEST_SIMULATION_H = _float("SPANWISE_LONGEST_SIMULATION_H", 8.0)
-LONGEST_WAIT_S = _float("SPANWISE_LONGEST_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
+MAX_SIMULATED_UAVS = int(_float("SPANWISE_MAX_SIMULATED_UAVS", 20))  # of one organisation at once
+MAX_SIMULATION_H = _float("SPANWISE_MAX_SIMULATION_H", 8.0)
+MAX_WAIT_S = _float("SPANWISE_MAX_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")
-OVERPASS_MOST_KM2 = _float("SPANWISE_OVERPASS_MOST_KM2", 5_000.0)
+OVERPASS_MAX_KM2 = _float("SPANWISE_OVERPASS_MAX_KM2", 5_000.0)
 
 # Raster tiles under the map: addresses only; the page works without them on a quiet background.
 BASE_MAP_TILES = os.environ.get("SPANWISE_BASE_MAP_TILES", "https://tile.openstreetmap.org/{z}/{x}/{y}.png")

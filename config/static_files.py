@@ -5,7 +5,7 @@ from typing import Any
 
 from django.contrib.staticfiles.storage import ManifestStaticFilesStorage
 
-LONGEST_CHAIN = 12  # modules that import modules: one pass over all files for each step
+MAX_CHAIN_LENGTH = 12  # modules that import modules: one pass over all files for each step
 # Whose imports are rewritten: our own modules and style sheets, and libraries that consist of several modules. Other libraries are
 # served as they came; looking for imports in them takes most of the time. A library's files are named with and without lib/.
 REWRITTEN_FOLDERS = ("js", "css", "lib/maplibre-gl", "maplibre-gl", "lib/three", "three")
@@ -21,7 +21,7 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
     """Django's storage, with the imports of our own modules rewritten. Before collectstatic has run, names are plain."""
 
     support_js_module_import_aggregation = True
-    max_post_process_passes = LONGEST_CHAIN
+    max_post_process_passes = MAX_CHAIN_LENGTH
     _patterns: dict[str, list[tuple[re.Pattern[str], str]]]  # Django's own: by folder and extension, what is replaced by what
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:

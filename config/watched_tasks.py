@@ -27,7 +27,7 @@ HEADER = "spanwise_about"
 JOB_ARGUMENT = "job_id"  # the first one, of tasks that do a job
 CARRIED = ("request", "mission", "uav")
 OUTCOMES = {"SUCCESS": "done", "FAILURE": "failed", "RETRY": "retried", "REJECTED": "rejected", "IGNORED": "ignored", "REVOKED": "revoked"}
-BEAT_EVERY_S, BEAT_WITHIN_S = 10.0, 120.0
+HEARTBEAT_INTERVAL_S, BEAT_WITHIN_S = 10.0, 120.0
 
 _under_way: dict[str, tuple[float, AbstractContextManager[None]]] = {}
 
@@ -50,7 +50,7 @@ class LoopPulse(StartStopStep):
 
     def start(self, worker: Any) -> None:
         _worker_goes_round()
-        self._timer = worker.timer.call_repeatedly(BEAT_EVERY_S, _worker_goes_round)
+        self._timer = worker.timer.call_repeatedly(HEARTBEAT_INTERVAL_S, _worker_goes_round)
 
     def stop(self, worker: Any) -> None:
         self._timer.cancel()

@@ -22,7 +22,7 @@ from django.conf import settings
 
 logger = logging.getLogger(__name__)
 
-LOOK_EVERY_S = 0.2
+POLL_INTERVAL_S = 0.2
 GIVE_BACK_S = 1.0  # for work that is told to end: its job is another worker's from then on
 GO_S = 0.5  # for processes without work, until they are killed
 ENDS_WITHIN_S = 9.5
@@ -52,7 +52,7 @@ class SoftEnd(StartStopStep):
 
     def start(self, worker: Any) -> None:
         self._hear()
-        self._timer = worker.timer.call_repeatedly(LOOK_EVERY_S, self._look)
+        self._timer = worker.timer.call_repeatedly(POLL_INTERVAL_S, self._look)
 
     def stop(self, worker: Any) -> None:
         self._timer.cancel()

@@ -42,7 +42,7 @@ from deploy.proof.pods import (  # noqa: E402
 from deploy.proof.servers import Servers, running_servers  # noqa: E402
 
 READY_S, END_S = 60.0, 10.0
-PATIENCE_S = 900.0  # after which there is nothing to be proven
+TIMEOUT_S = 900.0  # after which there is nothing to be proven
 USER = 10001  # of the image
 SERVICES = "spanwise.svc.cluster.local"
 BACKUP = "/var/lib/spanwise-files/backups/proof"
@@ -169,7 +169,7 @@ class Proof:
             self.names.tell(f"{name}.{SERVICES}", [next(pod for pod in started if pod.program == name).address])
         self.proxy_pod = self._start(self.site.pod("proxy", 1))
         self.running = [*started, self.proxy_pod]
-        wait_until_ready(self.running, PATIENCE_S)
+        wait_until_ready(self.running, TIMEOUT_S)
         whole_s = time.monotonic() - began_s
         self._tell("every program ready", f"{whole_s:.1f} s after the first was started")
         if whole_s > READY_S:
@@ -212,7 +212,7 @@ class Proof:
 
     def _again(self, pod: Pod) -> None:
         self.site.start_again(pod, self.folder)
-        wait_until_ready([pod], PATIENCE_S)
+        wait_until_ready([pod], TIMEOUT_S)
 
     def _load(self, meanwhile: object) -> Counted:
         return under_load(self.proxy, self.bodies, self.options.people, self.options.lasts_s, lambda: (meanwhile(), None)[1])  # type: ignore[operator]
@@ -227,7 +227,7 @@ class Proof:
         template["containers"][0]["volumeMounts"].append({"name": "certificate", "mountPath": "/run/certificate"})
         template["volumes"].append({"name": "certificate", "hostPath": {"path": str(certificates), "type": "Directory"}})
         self._start(pod)
-        wait_until_ready([pod], PATIENCE_S)
+        wait_until_ready([pod], TIMEOUT_S)
         trust = ssl.create_default_context()
         trust.check_hostname, trust.verify_mode = False, ssl.CERT_NONE  # two self-signed ones follow each other
         proxy = Proxy(pod.address, 8443, self.proxy.token, trust)
@@ -242,7 +242,7 @@ class Proof:
                 )
                 for file in certificates.iterdir():
                     shutil.chown(file, USER, USER)
-                end_s = time.monotonic() + PATIENCE_S
+                end_s = time.monotonic() + TIMEOUT_S
                 while (serial := _serial(pod.address)) in seen and time.monotonic() < end_s:
                     time.sleep(0.2)
                 seen.add(serial)
@@ -263,7 +263,7 @@ class Proof:
     def _back_up(self) -> None:
         """While everything runs."""
         began_s = time.monotonic()
-        self.podman("exec", self.web[0].container, "spanwise", "backup", BACKUP, timeout_s=PATIENCE_S)
+        self.podman("exec", self.web[0].container, "spanwise", "backup", BACKUP, timeout_s=TIMEOUT_S)
         self._tell("backup while everything runs", f"{time.monotonic() - began_s:.1f} s")
 
     def _restore(self) -> None:
@@ -275,7 +275,7 @@ class Proof:
         template["containers"][0]["volumeMounts"].append({"name": "files", "mountPath": "/var/lib/spanwise-files"})
         template["volumes"].append({"name": "files", "hostPath": {"path": str(self.site.files), "type": "Directory"}})
         self._start(pod)
-        code = self.podman("wait", pod.container, timeout_s=PATIENCE_S)
+        code = self.podman("wait", pod.container, timeout_s=TIMEOUT_S)
         self._tell("restore into the same database", f"{time.monotonic() - began_s:.1f} s")
         if code != "0":
             self.missed.append(f"the restore ended with {code}: {self.podman.logs(pod.container)[-500:]}")

@@ -39,7 +39,7 @@ class ImportsPage(GroundPage):
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         proposal = kwargs.get("proposal_id")
-        overpass = {"most_km2": settings.OVERPASS_MOST_KM2} if settings.OVERPASS_ADDRESS else None
+        overpass = {"most_km2": settings.OVERPASS_MAX_KM2} if settings.OVERPASS_ADDRESS else None
         return super().page(**kwargs) | {"proposal": str(proposal) if proposal else None, "overpass": overpass}
 
 

@@ -12,7 +12,7 @@ from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.fair_queue import next_waiting, start_fair_job
 from workspace.job_watch import JobWatch
 from workspace.models import Job
@@ -120,7 +120,7 @@ def _do(job: Job, do: Callable[..., None]) -> None:
         _fail(job, "took_too_long", "Reading the file takes more processor time than a file of its size may need.")
     except MemoryError:
         _fail(job, "too_large", "The file needs more memory than there is. Cut it into parts.")
-    except DATABASE_AWAY:
+    except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
         _fail(job, "internal", "Reading the file failed inside Spanwise; the error is in the log.")

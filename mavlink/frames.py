@@ -20,8 +20,8 @@ HEADER_V1, HEADER_V2 = 6, 10  # bytes, with the marker
 CHECKSUM = 2
 SIGNATURE = 13  # link id, 6 bytes of time, 6 bytes of hash
 IS_SIGNED = 0x01  # of the incompatibility flags; a frame with any other of them must be dropped
-MOST_FAULTS = 512  # in one datagram or piece of a stream; the rest of it is given up, so that nobody can keep us searching
-LONGEST_FRAME = HEADER_V2 + 255 + CHECKSUM + SIGNATURE
+MAX_FAULTS = 512  # in one datagram or piece of a stream; the rest of it is given up, so that nobody can keep us searching
+MAX_FRAME_LENGTH = HEADER_V2 + 255 + CHECKSUM + SIGNATURE
 _MARKERS = (bytes([MARKER_V1]), bytes([MARKER_V2]))
 
 
@@ -92,7 +92,7 @@ def _scan(data: bytes, damages: Counter[Damage], *, is_whole: bool) -> tuple[lis
     for start in _markers(data):
         if start < place:
             continue
-        if faults == MOST_FAULTS:
+        if faults == MAX_FAULTS:
             return frames, b""
         if start > place and not is_lost:
             damages[Damage.NOT_MAVLINK] += 1

@@ -12,7 +12,7 @@ from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 FLOWN = frozenset({mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LAND})
 SPHERE_M = 6_371_000.0  # the radius of the earth that PX4 measures on
-SHORTEST_LEG_M = 1.0  # below which points, kept to a centimetre, would lie on each other
+MIN_LEG_M = 1.0  # below which points, kept to a centimetre, would lie on each other
 
 
 def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
@@ -22,10 +22,10 @@ def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
     where it was to fly without them. Before a landing, whose altitude is the ground's, it stays as high as it was.
 
     This makes another load with another hash, and a vehicle is ready only by its hash. So it is made when a mission is approved, and
-    frozen, never on the way to the vehicle. Raises ValueError for legs below `SHORTEST_LEG_M`.
+    frozen, never on the way to the vehicle. Raises ValueError for legs below `MIN_LEG_M`.
     """
-    if not most_m >= SHORTEST_LEG_M:
-        raise ValueError(f"most_m must be at least {SHORTEST_LEG_M}")
+    if not most_m >= MIN_LEG_M:
+        raise ValueError(f"most_m must be at least {MIN_LEG_M}")
     mission: list[MissionItem] = []
     last: MissionItem | None = None
     for item in load.mission:

@@ -24,7 +24,7 @@ PARAMETERS = {
 NAMES = {autopilot: frozenset(name for group in groups for name in group) for autopilot, groups in PARAMETERS.items()}
 BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_TYPE")}  # unless 0: over terrain, round fences, …
 IN_CENTIMETRES = frozenset({"RTL_ALT", "RTL_CLIMB_MIN"})
-LEAST_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
+MIN_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
 FENCES_HEIGHT, FENCES_POLYGONS = 1, 4  # bits of FENCE_TYPE
 HOLDS_AT_FENCE = 2  # PX4's GF_ACTION: from here on it does something; 0 is nothing, 1 a warning alone (geofence_params.yaml)
 # where it is not told
@@ -129,7 +129,7 @@ def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | N
         shuns_home=values.get("RALLY_INCL_HOME") == 0.0,
         rally_points=int(values["RALLY_TOTAL"]) if "RALLY_TOTAL" in values else None,
         climb_m=max(values.get("RTL_CLIMB_MIN_M", values.get("RTL_CLIMB_MIN", 0.0)), 0.0),
-        cone_slope=slope if slope >= LEAST_CONE_SLOPE else None,
+        cone_slope=slope if slope >= MIN_CONE_SLOPE else None,
         ceiling_m=_ceiling_m(values),
     )
 

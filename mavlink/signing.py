@@ -15,11 +15,11 @@ from mavlink.frames import Frame, Message
 
 UNITS_PER_S = 100_000  # 10 us each
 EPOCH_UNIX_S = 1_420_070_400  # 2015-01-01
-LONGEST_AGO_S = 60.0
+MAX_AGO_S = 60.0
 FURTHEST_AHEAD_S = 60.0
-MOST_STREAMS = 64  # components and links of one vehicle
+MAX_STREAMS = 64  # components and links of one vehicle
 TAG = 6
-_LARGEST_TIMESTAMP = 2**48 - 1
+_MAX_TIMESTAMP = 2**48 - 1
 
 
 class Refusal(StrEnum):
@@ -37,7 +37,7 @@ class Refusal(StrEnum):
 
 def timestamp_at(unix_s: float) -> int:
     """In 10 us since 2015, as frames bear it."""
-    return min(max(round((unix_s - EPOCH_UNIX_S) * UNITS_PER_S), 0), _LARGEST_TIMESTAMP)
+    return min(max(round((unix_s - EPOCH_UNIX_S) * UNITS_PER_S), 0), _MAX_TIMESTAMP)
 
 
 def unix_s_of(timestamp: int) -> float:
@@ -75,13 +75,13 @@ class SignatureCheck:
         before = self.last.get(stream)
         if before is not None and frame.timestamp <= before:
             return Refusal.REPLAYED
-        if frame.timestamp < timestamp_at(now_unix_s - LONGEST_AGO_S):
+        if frame.timestamp < timestamp_at(now_unix_s - MAX_AGO_S):
             return Refusal.TOO_OLD
         if frame.timestamp < self.since:
             return Refusal.BEFORE_START
         if frame.timestamp > timestamp_at(now_unix_s + FURTHEST_AHEAD_S):
             return Refusal.FROM_THE_FUTURE
-        if before is None and len(self.last) >= MOST_STREAMS:
+        if before is None and len(self.last) >= MAX_STREAMS:
             return Refusal.TOO_MANY_STREAMS
         self.last[stream] = frame.timestamp
         return None
@@ -106,7 +106,7 @@ class FrameWriter:
         packer.seq = self._sequence
         self._sequence = (self._sequence + 1) % 256
         if self.key is not None:
-            self.last_timestamp = min(max(timestamp_at(now_unix_s), self.last_timestamp + 1), _LARGEST_TIMESTAMP)
+            self.last_timestamp = min(max(timestamp_at(now_unix_s), self.last_timestamp + 1), _MAX_TIMESTAMP)
             packer.signing.secret_key = self.key
             packer.signing.link_id = self.link_id
             packer.signing.timestamp = self.last_timestamp

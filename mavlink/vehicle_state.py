@@ -13,7 +13,7 @@ from mavlink.timeouts import CommandRules
 from mavlink.vehicle_class import VehicleClass, class_of
 
 TEXTS_KEPT = 10
-MOST_PARAMETERS = 4_000  # more than any autopilot has
+MAX_PARAMETERS = 4_000  # more than any autopilot has
 WHOLE_TYPES = frozenset({
     mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_UINT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_UINT16,
     mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_UINT32,
@@ -183,7 +183,7 @@ def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
     value = float(message.param_value)
     if state.flavour is Flavour.PX4 and message.param_type in WHOLE_TYPES:
         value = float(struct.unpack("<i", struct.pack("<f", value))[0])
-    if math.isfinite(value) and (message.param_id in state.parameters or len(state.parameters) < MOST_PARAMETERS):
+    if math.isfinite(value) and (message.param_id in state.parameters or len(state.parameters) < MAX_PARAMETERS):
         state.parameters[message.param_id] = value
         state.parameters_at_s[message.param_id] = now_s
 

@@ -35,16 +35,16 @@ from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
 from missions.stale_selectors import landing_routes_without_base
 from missions.uav_change_selectors import missions_with_other_uavs
-from workspace.cache_absence import CACHE_AWAY
+from workspace.cache_absence import CACHE_UNAVAILABLE
 from workspace.models import Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
 SKETCH_STEPS = 400  # across the drawing: what is finer than one is not seen
 SKETCH_SHAPE = 2.0  # width by height of the drawing, on the ground
 SKETCH_ROOM = 1.35  # the margins of the drawing show the surroundings
-LEAST_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
-MOST_LINES = 60
-MOST_PLACES = 60
+MIN_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
+MAX_LINES = 60
+MAX_PLACES = 60
 KEPT_S = 7 * 24 * 3600
 NOT_PLANNED = -1.0  # what was not planned stands below what was
 
@@ -211,7 +211,7 @@ def surroundings(missions: Sequence[Mission]) -> dict[UUID, dict[str, Any]]:
     ground = ground_revision()
     keys = {mission.pk: f"mission-sketch:{mission.pk}:{mission.revision}:{ground}" for mission in missions}
     kept: dict[str, Any] = {}
-    with contextlib.suppress(*CACHE_AWAY):
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
         kept = cache.get_many(keys.values())
     found = {pk: kept[key] for pk, key in keys.items() if key in kept}
     missing = [mission for mission in missions if mission.pk not in found]
@@ -219,8 +219,8 @@ def surroundings(missions: Sequence[Mission]) -> dict[UUID, dict[str, Any]]:
     for mission in missing:
         at = places.get(mission.pk, [])
         routes = [place for line in sketch(mission) for place in line]
-        found[mission.pk] = {"places": at[:MOST_PLACES], "lines": _lines_in(_box_of([*at, *routes]))}
-    with contextlib.suppress(*CACHE_AWAY):
+        found[mission.pk] = {"places": at[:MAX_PLACES], "lines": _lines_in(_box_of([*at, *routes]))}
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
         cache.set_many({keys[mission.pk]: found[mission.pk] for mission in missing}, KEPT_S)
     return found
 
@@ -243,7 +243,7 @@ def _box_of(places: list[list[float]]) -> Polygon | None:
     south, north = min(lat for _, lat in places), max(lat for _, lat in places)
     lon, lat = (west + east) / 2, (south + north) / 2
     shrink = max(0.05, math.cos(math.radians(lat)))
-    half_height = max((north - south) / 2, (east - west) / 2 * shrink / SKETCH_SHAPE, LEAST_HALF_DEG) * SKETCH_ROOM
+    half_height = max((north - south) / 2, (east - west) / 2 * shrink / SKETCH_SHAPE, MIN_HALF_DEG) * SKETCH_ROOM
     half_width = half_height * SKETCH_SHAPE / shrink
     box = Polygon.from_bbox((lon - half_width, lat - half_height, lon + half_width, lat + half_height))
     box.srid = 4326
@@ -265,7 +265,7 @@ def _lines_in(box: Polygon | None) -> list[list[list[float]]]:
         Asset.objects.filter(kind__in=(AssetKind.LINE, AssetKind.RAILWAY), vanished_at=None, geometry__bboverlaps=box)
         .order_by(F("length_m").desc(nulls_last=True))
         .annotate(clipped=clipped)
-        .values_list("clipped", flat=True)[:MOST_LINES]
+        .values_list("clipped", flat=True)[:MAX_LINES]
     )
     parts = [
         part for line in rows if line is not None and not line.empty for part in (line if line.geom_type == "MultiLineString" else [line])

@@ -10,11 +10,11 @@ from uuid import UUID
 
 from django.core.cache import cache
 
-from workspace.cache_absence import CACHE_AWAY
+from workspace.cache_absence import CACHE_UNAVAILABLE
 from workspace.models import User
 
 FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
-MOST_PAGES = 20  # of one user, the last that reported
+MAX_PAGES = 20  # of one user, the last that reported
 
 
 class Present(NamedTuple):
@@ -37,7 +37,7 @@ def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool,
     now_s = time.time()
     try:
         known = cache.get(_key(mission_id), {})
-    except CACHE_AWAY:
+    except CACHE_UNAVAILABLE:
         return []
     present = {page: row for page, row in known.items() if now_s - row["at_s"] < FORGOTTEN_AFTER_S}
     mine = f"{user.pk}/{editor}"
@@ -46,9 +46,9 @@ def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool,
     others = {row["user"]: Present(row["user"], row["name"], row["user"] in planners) for row in present.values()}
     if is_here:
         own = sorted((row["at_s"], page) for page, row in present.items() if row["user"] == user.pk)
-        for _, page in own[: -(MOST_PAGES - 1)]:
+        for _, page in own[: -(MAX_PAGES - 1)]:
             del present[page]
         present[mine] = {"user": user.pk, "name": user.display_name, "at_s": now_s, "is_planning": is_planning}
-    with contextlib.suppress(*CACHE_AWAY):
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
         cache.set(_key(mission_id), present, FORGOTTEN_AFTER_S)
     return sorted(others.values(), key=lambda other: (other.user == user.pk, other.name.casefold()))

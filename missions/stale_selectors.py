@@ -19,7 +19,7 @@ from missions.zone_selectors import MetZone, departure_s, flown_route, zones_met
 from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
-MOST_CAUSES = 20
+MAX_CAUSES = 20
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def stale_causes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause
 def causes_on_the_routes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
     """What speaks against the stored routes on the ground as it is now, the worst first, whatever they were planned on."""
     causes = [*_zones(mission), *_uavs(mission, uavs), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
-    return (causes or _terrain(mission))[:MOST_CAUSES]
+    return (causes or _terrain(mission))[:MAX_CAUSES]
 
 
 def stale_reason(causes: list[StaleCause]) -> str:

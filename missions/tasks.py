@@ -12,7 +12,7 @@ from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands, replanning
 from missions.services.best_so_far import OnPlanProgress, PlanProgress
 from missions.services.planned_starts import carry_on_planned_starts
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.job_watch import JobWatch
 from workspace.models import Job, JobState
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
@@ -50,7 +50,7 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
         fail_job(job=job, code="nothing_to_plan", message="A mission needs at least one UAV and one target.")
     except SoftTimeLimitExceeded:
         fail_job(job=job, code="took_too_long", message=f"No plan within {SOFT_LIMIT_S // 60} min. Split the mission.")
-    except DATABASE_AWAY:
+    except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
         fail_job(job=job, code="internal", message="The planner failed; the error is in the log.")

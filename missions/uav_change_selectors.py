@@ -17,7 +17,7 @@ TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATC
 OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it leaves the UAV on the ground
 # of the fewest decimals in which two figures are told apart, the first that is tried
 DECIMALS = {"mass_kg": 3, "rotor_disk_m2": 3}
-MOST_DECIMALS = 6
+MAX_DECIMALS = 6
 
 _COLUMNS = (
     "mission", "sequence", "name", "uav", "max_range_m", "cruise_speed_mps", "performance", "sensors", "own_figures", "fleet_figures",
@@ -212,7 +212,7 @@ def _scaled(value: Any, scale: float) -> float | None:
 
 def _told_apart(kept: float | None, now: float | None, decimals: int) -> tuple[str, str]:
     texts = tuple("" if value is None else _number(value, decimals) for value in (kept, now))
-    if texts[0] == texts[1] and decimals < MOST_DECIMALS and kept is not None and now is not None:
+    if texts[0] == texts[1] and decimals < MAX_DECIMALS and kept is not None and now is not None:
         return _told_apart(kept, now, decimals + 1)
     return texts[0], texts[1]
 

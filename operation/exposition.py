@@ -26,14 +26,14 @@ from operation.version import VERSION
 logger = logging.getLogger(__name__)
 
 AGAIN_AFTER_S = 2.0  # an address that somebody else holds: the process before this one, on its way out
-LONGEST_REQUEST_S = 10.0
+MAX_REQUEST_S = 10.0
 
 
 class _Handler(BaseHTTPRequestHandler):
     """Three addresses, nothing else, and no word about it in the log."""
 
     server: "_Server"
-    timeout = LONGEST_REQUEST_S
+    timeout = MAX_REQUEST_S
 
     def do_GET(self) -> None:
         path = self.path.partition("?")[0]

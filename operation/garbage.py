@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 
-EVERY_S = 60.0
+INTERVAL_S = 60.0
 _RETURN_TO_SYSTEM = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None  # of the GNU C library alone
 
 
@@ -48,5 +48,5 @@ def give_back_now_and_then() -> None:
 
 def _keep_giving_back() -> None:
     while True:
-        time.sleep(EVERY_S)
+        time.sleep(INTERVAL_S)
         give_back()

@@ -18,7 +18,7 @@ from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.network.nearness import chord
-from inspection.network.paths.access import MOST_ROUND, band_of_legs, clear_legs
+from inspection.network.paths.access import MAX_ROUND, band_of_legs, clear_legs
 from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.paths import Travel, travel_between_places
 from inspection.network.route_index import asset_places, node_tree
@@ -136,7 +136,7 @@ def tallest_support_m(network: Network, asset: int, course: Sequence[LonLat]) ->
 def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: ZoneIndex, rules: AccessRules) -> list[DirectLeg]:
     """Legs from place to place, no longer than the rule allows: straight where that is clear of zones, else round these.
 
-    Ways round are looked for to the MOST_ROUND nearest sinks that zones stand before.
+    Ways round are looked for to the MAX_ROUND nearest sinks that zones stand before.
     """
     start = np.array([place.position for place in sources], dtype=np.float64).reshape(-1, 2)
     end = np.array([place.position for place in sinks], dtype=np.float64).reshape(-1, 2)
@@ -155,7 +155,7 @@ def direct_legs(sources: Sequence[Terminal], sinks: Sequence[Terminal], zones: Z
     behind = np.flatnonzero(~clear)
     behind = behind[np.lexsort((length_m[behind], source[behind]))]
     first_of_source = np.searchsorted(source[behind], source[behind])
-    behind = behind[np.arange(len(behind)) - first_of_source < MOST_ROUND]
+    behind = behind[np.arange(len(behind)) - first_of_source < MAX_ROUND]
     groups = np.split(behind, np.flatnonzero(np.diff(source[behind])) + 1)
     errands = [
         Errand(

@@ -357,7 +357,7 @@ class Reason(StrEnum):
     BEYOND_RANGE = "beyond_range"
     BEYOND_ENERGY = "beyond_energy"
     NOT_ALLOWED = "not_allowed"
-    MOST_TARGETS = "most_targets"
+    MAX_TARGETS = "most_targets"
 
 
 @dataclass(frozen=True)

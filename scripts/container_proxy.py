@@ -16,7 +16,7 @@ from scripts.proxy_site import Site
 from scripts.served_certificate import ServedCertificate
 from scripts.system_packages import find_program
 
-LOOKS_EVERY_S = 5.0
+POLL_INTERVAL_S = 5.0
 ENDS_WITHIN_S = 8.0
 NAME_SERVERS = Path("/etc/resolv.conf")
 
@@ -96,7 +96,7 @@ def main() -> int:
         signal.signal(number, end)
     while True:
         try:
-            return nginx.wait(LOOKS_EVERY_S)
+            return nginx.wait(POLL_INTERVAL_S)
         except subprocess.TimeoutExpired:
             seen = fingerprint(named)
             if served is not None and seen and seen != known and served.take():

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 CERTIFICATE, KEY = "SPANWISE_INNER_CERTIFICATE", "SPANWISE_INNER_KEY"
-LOOKS_EVERY_S = 30.0
+POLL_INTERVAL_S = 30.0
 
 
 class InnerCertificate:
@@ -57,7 +57,7 @@ def look_after(found: InnerCertificate, *, pause: Callable[[float], None] = time
     if os.fork():
         return
     while os.getppid() == program:
-        pause(LOOKS_EVERY_S)
+        pause(POLL_INTERVAL_S)
         if found.is_renewed():
             found.copy()
             print("the certificate inside has changed: the worker starts again with it", file=sys.stderr, flush=True)

@@ -11,11 +11,11 @@ from scripts import page_headers, proxy_limits
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
-MOST_FILES = 65_536
+MAX_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
 CONNECT_S = 1  # to a program in the same house; its backlog is long
 BASE_MAP_TILES = "https://tile.openstreetmap.org/{z}/{x}/{y}.png"  # as config/settings.py has it
-LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
+MAX_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
 MEDIA_TYPES = {
@@ -158,7 +158,7 @@ def _line() -> str:
 
 def _file_limit() -> int:
     """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
-    return min(MOST_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
+    return min(MAX_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
 
 
 def is_https_asked_for() -> bool:
@@ -261,7 +261,7 @@ http {{
     server_tokens off;
     sendfile on;
     tcp_nopush on;
-    client_max_body_size {LARGEST_BODY};
+    client_max_body_size {MAX_BODY};
     client_body_buffer_size 256k;
     client_header_timeout 15s;
     client_body_timeout 15s;

@@ -16,7 +16,7 @@ from typing import Any
 from scripts.places import PROJECT_DIR
 
 Component = dict[str, Any]
-LONGEST_LICENCE = 100  # some packages put the whole text there
+MAX_LICENCE_LENGTH = 100  # some packages put the whole text there
 
 
 def python_components() -> list[Component]:
@@ -26,7 +26,7 @@ def python_components() -> list[Component]:
         told = distribution.metadata
         name = told["Name"]
         licence = next(filter(None, (told[field] for field in ("License-Expression", "License") if field in told)), "")
-        if not licence or len(licence) > LONGEST_LICENCE:
+        if not licence or len(licence) > MAX_LICENCE_LENGTH:
             classes = [entry.rpartition(":: ")[2] for entry in told.get_all("Classifier") or [] if entry.startswith("License ::")]
             licence = ", ".join(classes)
         found.append(_component(name, distribution.version, f"pkg:pypi/{name.lower().replace('_', '-')}@{distribution.version}", licence))

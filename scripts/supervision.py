@@ -22,7 +22,7 @@ from scripts.programs import SERVERS, SERVERS_STAGE, Program
 START_TIMEOUT_S = 15.0
 STOP_TIMEOUT_S = 90.0
 CALL_TIMEOUT_S = 10.0
-PATIENCE_WITH_SUPERVISOR_S = 10.0
+TIMEOUT_WITH_SUPERVISOR_S = 10.0
 
 
 class _UnixConnection(http.client.HTTPConnection):
@@ -186,7 +186,7 @@ class Supervisor:
 
     def end_leftovers(self) -> None:
         """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""
-        end_processes([self.places.process("supervisor")], patience_s=PATIENCE_WITH_SUPERVISOR_S)
+        end_processes([self.places.process("supervisor")], patience_s=TIMEOUT_WITH_SUPERVISOR_S)
         end_processes([self.places.data], first_signal=signal.SIGINT, patience_s=15.0)  # PostgreSQL's fast shutdown
         others = [entry for entry in (self.places.state / "processes").glob("*") if entry.is_dir()]
         end_processes([*others, self.places.redis], patience_s=15.0)

@@ -9,7 +9,7 @@ from missions.services.refused import Refused
 from simulation.models import Rehearsal
 from simulation.services.demo_missions import NotThere, make_demo_missions, missions_made
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.job_watch import JobWatch
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, pause_job, start_job
 
@@ -43,7 +43,7 @@ def fly_demo_missions(job_id: str) -> None:
         fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
     except (TimeoutError, SoftTimeLimitExceeded):
         fail_job(job=job, code="took_too_long", message="The demo missions were not flown in time.")
-    except DATABASE_AWAY:
+    except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
         fail_job(job=job, code="internal", message="The demo missions could not be made; the error is in the log.")
@@ -74,7 +74,7 @@ def rehearse_mission(job_id: str) -> None:
     except SoftTimeLimitExceeded:
         message = f"Not flown within {SOFT_LIMIT_S // 60} min. Rehearse fewer conditions at once, or split the mission."
         fail_job(job=job, code="took_too_long", message=message)
-    except DATABASE_AWAY:
+    except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
         fail_job(job=job, code="internal", message="The rehearsal failed inside Spanwise; the error is in the log.")

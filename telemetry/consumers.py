@@ -15,7 +15,7 @@ from workspace.models import User
 from workspace.sockets import NOTHING_TO_SAY, SignedInSocket
 from workspace.spoken import language_of_socket
 
-LONGEST_WORD = 4_096  # characters that a page may say at once
+MAX_WORD_LENGTH = 4_096  # characters that a page may say at once
 HEARTBEAT_INTERVAL_S = 2.0  # a page that hears nothing for 5 s says that it has no data (static/js/live/feed.js)
 STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
 GONE, STALLED = 4404, 1013
@@ -80,7 +80,7 @@ class LiveConsumer(SignedInSocket):
 
 def _heed(reader: Reader, said: str | None) -> None:
     """Raises ValueError where it is nothing that a page says."""
-    if said is None or len(said) > LONGEST_WORD:
+    if said is None or len(said) > MAX_WORD_LENGTH:
         raise ValueError
     match orjson.loads(said):
         case {"type": "have", "sequence": int(sequence), **rest} if not rest:

@@ -114,7 +114,7 @@ class AccountTokens(APIView):
         try:
             row, token = accounts.make_token(user=request.user, **body.validated_data)
         except accounts.TooManyTokens as error:
-            message = _("You have {count} tokens that work. Revoke one that is not needed any more.").format(count=accounts.MOST_TOKENS)
+            message = _("You have {count} tokens that work. Revoke one that is not needed any more.").format(count=accounts.MAX_TOKENS)
             raise ApiProblem(409, "too_many_tokens", message) from error
         return Response(with_secret(NewTokenSerializer, row, token=token), status=201)
 

@@ -13,7 +13,7 @@ from django.utils import timezone
 from workspace.models import ApiToken, User
 from workspace.services import create_api_token, person_facts, record_change, save_person
 
-MOST_TOKENS = 50  # of one person, valid at the same time
+MAX_TOKENS = 50  # of one person, valid at the same time
 CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")
 
 
@@ -67,7 +67,7 @@ def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None
     expires_at = timezone.now() + timedelta(days=days)
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)
-        if user.api_tokens.filter(revoked_at=None, expires_at__gt=timezone.now()).count() >= MOST_TOKENS:
+        if user.api_tokens.filter(revoked_at=None, expires_at__gt=timezone.now()).count() >= MAX_TOKENS:
             raise TooManyTokens
         token = create_api_token(user=user, name=name, expires_at=expires_at, scopes=scopes)
         row = user.api_tokens.latest("pk")

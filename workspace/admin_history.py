@@ -17,7 +17,7 @@ from workspace.models import AuditEntry
 from workspace.signed_in import user_of
 
 PAGE = 50
-LONGEST_TEXT = 200
+MAX_TEXT_LENGTH = 200
 NOTHING = "–"
 
 
@@ -97,4 +97,4 @@ def _geometry(value: dict[str, Any]) -> str:
 
 
 def _cut(text: str) -> str:
-    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}…"
+    return text if len(text) <= MAX_TEXT_LENGTH else f"{text[:MAX_TEXT_LENGTH]}…"

@@ -18,7 +18,7 @@ from workspace.models import ApiToken, Organisation, Role, TokenScope, User
 from workspace.prepared import prepared_rows
 from workspace.services import hash_token, note_use
 
-LONGEST_TOKEN = 200
+MAX_TOKEN_LENGTH = 200
 
 
 class BearerTokenAuthentication(BaseAuthentication):
@@ -84,7 +84,7 @@ def _valid_token(token: bytes) -> ApiToken | None:
 
 
 def _rows_of(statement: str, token: bytes) -> list[tuple[Any, ...]]:
-    if not token.isascii() or len(token) > LONGEST_TOKEN:
+    if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
         return []
     return prepared_rows(statement, [hash_token(token.decode("ascii"))])
 

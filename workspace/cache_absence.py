@@ -2,4 +2,4 @@
 
 from redis.exceptions import RedisError
 
-CACHE_AWAY = (RedisError, OSError)
+CACHE_UNAVAILABLE = (RedisError, OSError)

@@ -16,11 +16,11 @@ from workspace import selectors
 from workspace.live import job_group
 from workspace.models import Job, User
 from workspace.serializers import JobSerializer
-from workspace.sockets import CHECK_PERSON_EVERY_S, ENDED, NOTHING_TO_SAY, SIGNED_OUT, STILL_THERE_EVERY_S, SignedInSocket
+from workspace.sockets import CHECK_PERSON_INTERVAL_S, ENDED, KEEPALIVE_INTERVAL_S, NOTHING_TO_SAY, SIGNED_OUT, SignedInSocket
 from workspace.spoken import language_of_socket
 from workspace.timed_waits import wait_for_event
 
-LOOK_EVERY_S = 1.0  # at the row, whether a word has come or not
+POLL_INTERVAL_S = 1.0  # at the row, whether a word has come or not
 WORD_PAUSE_S = 0.1  # words that come close together are one look
 REDIS_PAUSE_S = 1.0
 
@@ -59,7 +59,7 @@ class JobConsumer(SignedInSocket):
         spoken_s = checked_s = loop.time()
         while True:
             with suppress(DatabaseError):  # away for a moment: the next look tells
-                if loop.time() - checked_s >= CHECK_PERSON_EVERY_S:
+                if loop.time() - checked_s >= CHECK_PERSON_INTERVAL_S:
                     checked_s = loop.time()
                     now = await self._same_user(user)
                     if now is None:
@@ -77,10 +77,10 @@ class JobConsumer(SignedInSocket):
                     seen, spoken_s = version, loop.time()
                     if not is_open:
                         return self.hang_up(ENDED)
-            if loop.time() - spoken_s >= STILL_THERE_EVERY_S:
+            if loop.time() - spoken_s >= KEEPALIVE_INTERVAL_S:
                 await self.send('{"type":"still-there"}')
                 spoken_s = loop.time()
-            if await wait_for_event(self._word, LOOK_EVERY_S):
+            if await wait_for_event(self._word, POLL_INTERVAL_S):
                 await asyncio.sleep(WORD_PAUSE_S)
             self._word.clear()
 

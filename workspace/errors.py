@@ -21,7 +21,7 @@ from workspace.throttling import rate_limit_headers
 
 logger = logging.getLogger(__name__)
 
-DATABASE_AWAY = (OperationalError, InterfaceError)  # also a statement that was cancelled or lost a deadlock: worth another try
+DATABASE_UNAVAILABLE = (OperationalError, InterfaceError)  # also a statement that was cancelled or lost a deadlock: worth another try
 RETRY_AFTER_S = 2
 PROBLEM_TYPE = "urn:problem-type:spanwise:"  # and the error's code
 PROBLEM_JSON = "application/problem+json"
@@ -88,7 +88,7 @@ def _facts_of(error: exceptions.APIException) -> tuple[str, str, Any]:
 
 
 def _as_api_exception(error: Exception) -> Exception:
-    if isinstance(error, DATABASE_AWAY):
+    if isinstance(error, DATABASE_UNAVAILABLE):
         logger.warning("database away: %s", error)
         return database_away_problem()
     if isinstance(error, Http404):

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 RESTARTS = 1012  # "service restart": the page comes back at once, and finds another program
 SPREAD_S = 4.0
-LONGEST_S = 6.0  # also where a page does not answer
+MAX_DURATION_S = 6.0  # also where a page does not answer
 
 
 class Socket(Protocol):
@@ -39,7 +39,7 @@ class Farewell:
         self.has_begun = True
         for socket in self._sockets:
             self._say_later(socket)
-        self._loop.call_later(LONGEST_S if self._sockets else 0.0, self._leave)
+        self._loop.call_later(MAX_DURATION_S if self._sockets else 0.0, self._leave)
 
     def expect(self, socket: Socket) -> None:
         """It is told once it is time, until it is forgotten."""

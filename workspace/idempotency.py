@@ -19,7 +19,7 @@ from workspace.errors import ApiProblem
 from workspace.models import IdempotencyKey
 from workspace.signed_in import SignedInRequest
 
-LONGEST_KEY = 200
+MAX_KEY_LENGTH = 200
 TAKES_KEY = "takes_idempotency_key"
 KEPT_HEADERS = ("Location", "ETag")
 
@@ -34,9 +34,11 @@ def idempotent(handler: Handler) -> Handler:
         key = request.headers.get("Idempotency-Key")
         if key is None:
             return handler(view, request, *args, **kwargs)
-        if not (0 < len(key) <= LONGEST_KEY and key.isascii() and key.isprintable()):
+        if not (0 < len(key) <= MAX_KEY_LENGTH and key.isascii() and key.isprintable()):
             raise ApiProblem(
-                400, "invalid", _("An Idempotency-Key has 1 to %(longest_key)s printable ASCII characters.") % {"longest_key": LONGEST_KEY}
+                400,
+                "invalid",
+                _("An Idempotency-Key has 1 to %(longest_key)s printable ASCII characters.") % {"longest_key": MAX_KEY_LENGTH},
             )
         digest = _digest(request)
         with transaction.atomic():

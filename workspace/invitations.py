@@ -15,8 +15,8 @@ from django.utils.translation import gettext as _
 from workspace.models import Invitation, Organisation, Role, User
 from workspace.services import hash_token, record_change, save_person
 
-LONGEST_DAYS = 30
-LONGEST_TOKEN = 200
+MAX_DAYS = 30
+MAX_TOKEN_LENGTH = 200
 ON_THE_CONSOLE = "django.core.mail.backends.console.EmailBackend"
 
 
@@ -97,7 +97,7 @@ def revoke_invitation(*, invitation: Invitation, actor: User) -> Invitation:
 
 def open_invitation(token: str) -> Invitation:
     """Raises InvitationGone."""
-    if not token.isascii() or len(token) > LONGEST_TOKEN:
+    if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
         raise InvitationGone
     found = Invitation.objects.filter(in_state(InvitationState.OPEN), token_sha256=hash_token(token)).first()
     if found is None:

@@ -14,7 +14,7 @@ from django.http import HttpRequest, HttpResponse
 COOKIE = f"{settings.COOKIE_PREFIX}spanwise_known"
 SALT = "workspace.known_browsers"
 KEPT_S = 180 * 24 * 3_600
-MOST_PEOPLE = 5  # of one browser
+MAX_PEOPLE = 5  # of one browser
 
 
 def mark_of(request: HttpRequest, name: str) -> str | None:
@@ -26,7 +26,7 @@ def remember(request: HttpRequest, response: HttpResponse, name: str) -> None:
     """Somebody has shown to be who they say, with this browser."""
     mine = _digest(name)
     others = [entry for entry in _entries(request) if entry[0] != mine]
-    entries = [(mine, secrets.token_urlsafe(12)), *others][:MOST_PEOPLE]
+    entries = [(mine, secrets.token_urlsafe(12)), *others][:MAX_PEOPLE]
     response.set_cookie(
         COOKIE,
         signing.dumps(entries, salt=SALT),

@@ -17,7 +17,7 @@ from redis.retry import Retry
 
 logger = logging.getLogger(__name__)
 
-LOG_EVERY_S = 60.0
+LOG_INTERVAL_S = 60.0
 DEADLINE_S = 1.0  # whoever has the word to say renews the job's lease, or answers a person
 LIVE_DEADLINE_S = 0.2  # that of telemetry, which is said many times a second
 LIVE_PAUSE_S = 2.0  # nothing is said for so long once Redis was away
@@ -54,7 +54,7 @@ def _unless_redis_is_away(say: Callable[[], object]) -> bool:
         say()
     except (RedisError, OSError) as error:  # TimeoutError is an OSError
         if time.monotonic() >= _quiet_until_s:
-            _quiet_until_s = time.monotonic() + LOG_EVERY_S
+            _quiet_until_s = time.monotonic() + LOG_INTERVAL_S
             logger.warning("Redis is away, pages are not told of changes: %r", error)
         return False
     return True

@@ -17,8 +17,8 @@ from urllib.parse import quote, urljoin, urlsplit
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-MOST_REDIRECTS = 3
-LONGEST_ADDRESS = 2_000
+MAX_REDIRECTS = 3
+MAX_ADDRESS_LENGTH = 2_000
 USER_AGENT = "Spanwise"
 _BLOCK_BYTES = 64 * 1024
 _REDIRECTS = {301, 302, 303, 307, 308}
@@ -94,7 +94,7 @@ def fetch(
     sent = {"User-Agent": USER_AGENT, "Accept-Encoding": "identity", "Connection": "close", **(headers or {})}
     target = _target(address)
     with _Deadline(total_s) as deadline:
-        for _turn in range(MOST_REDIRECTS + 1):
+        for _turn in range(MAX_REDIRECTS + 1):
             connection = _Connection(target, timeout_s, deadline)
             try:
                 answer = _ask(connection, target, method, data, sent, deadline)
@@ -108,7 +108,7 @@ def fetch(
                 connection.close()
     raise OutgoingFailed(
         _("%(hostname)s redirects more than %(most_redirects)s times.")
-        % {"hostname": urlsplit(address).hostname, "most_redirects": MOST_REDIRECTS}
+        % {"hostname": urlsplit(address).hostname, "most_redirects": MAX_REDIRECTS}
     )
 
 
@@ -207,7 +207,7 @@ class _Connection(http.client.HTTPConnection):
 
 
 def _target(address: str) -> _Target:
-    if len(address) > LONGEST_ADDRESS or any(character <= " " or character == "\x7f" or character == "\\" for character in address):
+    if len(address) > MAX_ADDRESS_LENGTH or any(character <= " " or character == "\x7f" or character == "\\" for character in address):
         raise OutgoingRefused(_("The address has blanks or signs that no address has, or is too long."))
     try:
         parts = urlsplit(address)

@@ -13,7 +13,7 @@ from rest_framework.parsers import BaseParser
 
 from workspace.errors import ApiProblem
 
-DEEPEST_NESTING = 32
+MAX_NESTING_DEPTH = 32
 _UNSTORABLE = re.compile("[\0\ud800-\udfff]")
 # People put in lines and tabs. Other control characters, and those that turn the direction of writing, make one name look like another.
 _REFUSED = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -54,7 +54,9 @@ def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters
     except UnicodeDecodeError as error:
         raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
     except RecursionError as error:
-        raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING}) from error
+        raise ParseError(
+            _("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": MAX_NESTING_DEPTH}
+        ) from error
     except ValueError as error:
         raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
     _check(value, _UNSTORABLE if takes_control_characters else _REFUSED)
@@ -88,7 +90,7 @@ def _finite_float(text: str) -> float:
 def _check(root: Any, refused: re.Pattern[str]) -> None:
     """Walk level by level, so that depth costs no stack."""
     level = [root]
-    for _depth in range(DEEPEST_NESTING + 1):
+    for _depth in range(MAX_NESTING_DEPTH + 1):
         holders = []
         for value in level:
             if isinstance(value, dict | list):
@@ -98,4 +100,4 @@ def _check(root: Any, refused: re.Pattern[str]) -> None:
         if not holders:
             return
         level = [inner for holder in holders for inner in ((*holder.keys(), *holder.values()) if isinstance(holder, dict) else holder)]
-    raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING})
+    raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": MAX_NESTING_DEPTH})

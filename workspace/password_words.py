@@ -13,8 +13,8 @@ PRODUCT_AND_TRADE = (
     "stromleitung", "leitung", "freileitung", "strommast", "mast", "turm", "brücke", "bruecke", "bahn", "eisenbahn", "drohne", "flug",
     "bediener", "kurator", "betrachter", "verwalter", "geheim", "willkommen", "sommer", "winter", "herbst", "frühling",
 )  # fmt: skip
-SHORTEST_WORD = 3  # of an organisation's name: what is shorter is in every password
-SHORTEST_REST = 8  # characters that have to be something else
+MIN_WORD_LENGTH = 3  # of an organisation's name: what is shorter is in every password
+MIN_REST_LENGTH = 8  # characters that have to be something else
 LIKE_LETTERS = str.maketrans({"0": "o", "1": "i", "!": "i", "3": "e", "4": "a", "@": "a", "5": "s", "$": "s", "7": "t"})
 
 
@@ -22,7 +22,7 @@ def context_words(organisation: str) -> set[str]:
     """As they are compared: small letters and digits, written out."""
     site = [host for host in settings.ALLOWED_HOSTS if not re.fullmatch(r"[\d.:\[\]*]+|localhost", host)]
     named = re.findall(r"[^\W_]+", " ".join([organisation, *site, *settings.PASSWORD_WORDS]).casefold())
-    return {_plain(word) for word in (*PRODUCT_AND_TRADE, *named) if len(word) >= SHORTEST_WORD}
+    return {_plain(word) for word in (*PRODUCT_AND_TRADE, *named) if len(word) >= MIN_WORD_LENGTH}
 
 
 def rest_beside(password: str, words: set[str]) -> str:
@@ -40,7 +40,7 @@ class ContextWordsValidator:
         organisation = "" if user is None else user.organisation.name
         words = context_words(organisation)
         rest = rest_beside(password, words)
-        if rest != _plain(password) and len(rest) < SHORTEST_REST:
+        if rest != _plain(password) and len(rest) < MIN_REST_LENGTH:
             message = _("This is made of words that everybody here would try first. Add something of your own, 8 characters or more.")
             raise ValidationError(message, code="password_of_context_words")
 

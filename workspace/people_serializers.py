@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 from workspace import strict_serializers as serializers
 from workspace.accounts import revision_of_person
 from workspace.browser_sessions import session_ends_at
-from workspace.invitations import LONGEST_DAYS, state_of
+from workspace.invitations import MAX_DAYS, state_of
 from workspace.invitations import InvitationState as State
 from workspace.models import (
     SCOPES_OF_ROLE,
@@ -269,7 +269,7 @@ class NewInvitationSerializer(InvitationSerializer):
 class InvitationInputSerializer(serializers.Serializer):
     role = serializers.ChoiceField(choices=Role.choices)
     email = serializers.EmailField(allow_blank=True, default="", help_text="where the link is sent, if mail leaves here")
-    days = serializers.IntegerField(min_value=1, max_value=LONGEST_DAYS, default=7)
+    days = serializers.IntegerField(min_value=1, max_value=MAX_DAYS, default=7)
 
 
 class InvitationPageSerializer(serializers.Serializer):

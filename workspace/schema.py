@@ -10,7 +10,7 @@ from rest_framework.permissions import SAFE_METHODS
 
 from workspace.api_headers import HEADERS_OF_ERRORS
 from workspace.errors import PROBLEM_JSON
-from workspace.idempotency import LONGEST_KEY, TAKES_KEY
+from workspace.idempotency import MAX_KEY_LENGTH, TAKES_KEY
 from workspace.paging import LIMIT
 from workspace.serializers import ErrorSerializer
 
@@ -52,7 +52,7 @@ KEY_CONFLICT = "The Idempotency-Key was used for another request."
 IDEMPOTENCY_KEY: dict[str, Any] = {
     "in": "header",
     "name": "Idempotency-Key",
-    "schema": {"type": "string", "minLength": 1, "maxLength": LONGEST_KEY, "pattern": PRINTABLE_ASCII},
+    "schema": {"type": "string", "minLength": 1, "maxLength": MAX_KEY_LENGTH, "pattern": PRINTABLE_ASCII},
     "description": "a repeated request is answered as the first one was and changes nothing again; printable ASCII, a new one for each act",
 }
 

@@ -24,11 +24,11 @@ from workspace.signed_in import SignedInPageRequest
 from workspace.way_in import sign_in, who_is_half_in
 
 SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
-LONGEST_CODE = 60
+MAX_CODE_LENGTH = 60
 
 
 class CodeForm(forms.Form):
-    code = forms.CharField(max_length=LONGEST_CODE, error_messages={"required": gettext_lazy("Type the code.")})
+    code = forms.CharField(max_length=MAX_CODE_LENGTH, error_messages={"required": gettext_lazy("Type the code.")})
 
 
 class CodeAndPasswordForm(CodeForm):

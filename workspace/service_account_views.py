@@ -135,7 +135,7 @@ class ServiceAccountTokens(APIView):
         try:
             row, token = accounts.make_token(user=account, actor=request.user, **body.validated_data)
         except accounts.TooManyTokens as error:
-            message = _("It has {count} tokens that work. Revoke one that is not needed any more.").format(count=accounts.MOST_TOKENS)
+            message = _("It has {count} tokens that work. Revoke one that is not needed any more.").format(count=accounts.MAX_TOKENS)
             raise ApiProblem(409, "too_many_tokens", message) from error
         return Response(with_secret(NewTokenSerializer, row, token=token), status=201, headers={"Cache-Control": "no-store"})
 

@@ -33,7 +33,7 @@ from workspace.models import (
 from workspace.prepared import prepared_rows
 
 LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
-QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
+QUEUE_TIMEOUT_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 5
 _ATTEMPTS_BEFORE = "attempts_before_pause"  # in a job's parameters
 IDEMPOTENCY_KEPT = timedelta(hours=48)
@@ -273,7 +273,7 @@ def requeue_lost_jobs() -> list[Job]:
     The lease of a queued job is the time until which a message for it is believed to be on its way.
     """
     now = timezone.now()
-    patience = timedelta(seconds=QUEUE_PATIENCE_S)
+    patience = timedelta(seconds=QUEUE_TIMEOUT_S)
     lost = []
     with transaction.atomic():
         for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):

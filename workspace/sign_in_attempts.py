@@ -15,7 +15,7 @@ from django.core.cache.backends.base import BaseCache
 from django.core.cache.backends.locmem import LocMemCache
 from django.http import HttpRequest
 
-from workspace.cache_absence import CACHE_AWAY
+from workspace.cache_absence import CACHE_UNAVAILABLE
 from workspace.visitors import visitor_address
 
 WINDOW_S = 15 * 60
@@ -52,7 +52,7 @@ class Try:
         try:
             self.counts.delete(self.keys[0])
             _take_back(self.counts, *self.keys[1:])
-        except (*CACHE_AWAY, ValueError):  # ValueError: the window ended in between
+        except (*CACHE_UNAVAILABLE, ValueError):  # ValueError: the window ended in between
             logger.warning("wrong sign-ins are not forgotten: the cache is away")
 
 
@@ -78,7 +78,7 @@ def try_to_sign_in(*, name: str, address: str, known_browser: str | None) -> Try
     network = network_of(address)
     try:
         return _try(cache, name, network, known_browser)
-    except (*CACHE_AWAY, ValueError):
+    except (*CACHE_UNAVAILABLE, ValueError):
         logger.warning("wrong sign-ins are counted by this process alone: the cache is away")
         return _try(_of_process, name, network, known_browser)
 
@@ -102,7 +102,7 @@ def take_turn(purpose: str, *of_whom: str, most: int = TRIES) -> None:
     key = _key(purpose, *of_whom)
     try:
         _count(cache, key, most)
-    except (*CACHE_AWAY, ValueError):
+    except (*CACHE_UNAVAILABLE, ValueError):
         logger.warning("turns are counted by this process alone: the cache is away")
         _count(_of_process, key, most)
 
@@ -111,7 +111,7 @@ def is_first_in(seconds: int, *of_what: str) -> bool:
     """Whether this has not happened for so long. True without the cache."""
     try:
         return bool(cache.add(_key("first", *of_what), 1, seconds))
-    except CACHE_AWAY:
+    except CACHE_UNAVAILABLE:
         return True
 
 

@@ -9,13 +9,13 @@ from django.utils import timezone
 from workspace.models import SignInEntry, SignInOutcome, User
 from workspace.sign_in_attempts import address_of, is_first_in, network_of
 
-HELD_BACK_EVERY_S = 60  # of one name from one network: a flood of tries is no flood of rows
+HELD_BACK_INTERVAL_S = 60  # of one name from one network: a flood of tries is no flood of rows
 
 
 def record_sign_in(request: HttpRequest, outcome: SignInOutcome, *, user: User | None = None, name: str = "") -> None:
     """Of a name that nobody has only the try is kept: people type passwords there."""
     address = address_of(request)
-    if outcome == SignInOutcome.HELD_BACK and not is_first_in(HELD_BACK_EVERY_S, name, network_of(address)):
+    if outcome == SignInOutcome.HELD_BACK and not is_first_in(HELD_BACK_INTERVAL_S, name, network_of(address)):
         return
     if user is None and name:
         user = User.objects.filter(username=name).first()

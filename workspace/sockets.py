@@ -26,8 +26,8 @@ from workspace.visitors import visitor_address
 
 logger = logging.getLogger(__name__)
 
-CHECK_PERSON_EVERY_S = 4.0
-STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
+CHECK_PERSON_INTERVAL_S = 4.0
+KEEPALIVE_INTERVAL_S = 20.0  # a proxy between here and the page closes what is silent
 
 RETRY_AFTER = b"2"  # seconds
 ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY, TOO_MANY = 1000, 1011, 4401, 4400, 4429
@@ -139,7 +139,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
     async def _watch_person(self, user: User) -> None:
         """Until they may not be there any more: then the socket is closed. Somebody whose role has changed comes in again."""
         while True:
-            await asyncio.sleep(CHECK_PERSON_EVERY_S)
+            await asyncio.sleep(CHECK_PERSON_INTERVAL_S)
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:

@@ -14,7 +14,7 @@ from rest_framework.throttling import ScopedRateThrottle
 
 logger = logging.getLogger(__name__)
 
-LOG_EVERY_S = 60.0
+LOG_INTERVAL_S = 60.0
 GENEROUS = 20  # of so many requests the first one that a process sees in a window is not worth a question to Redis
 
 
@@ -102,5 +102,5 @@ class ScopedRate(ScopedRateThrottle):
     def _note_absence(cls, error: Exception) -> None:
         now_s = time.monotonic()
         if now_s >= cls.quiet_until_s:
-            cls.quiet_until_s = now_s + LOG_EVERY_S
+            cls.quiet_until_s = now_s + LOG_INTERVAL_S
             logger.warning("Redis is away, requests are not counted: %s", error)

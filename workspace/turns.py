@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from threading import Lock, local
 from typing import TypeVar
 
-PATIENCE_S = 0.25  # a turn is a courtesy: who waits longer, as behind a plan of many targets, goes on without
+TIMEOUT_S = 0.25  # a turn is a courtesy: who waits longer, as behind a plan of many targets, goes on without
 _Found = TypeVar("_Found")
 _turn = Lock()
 _mine = local()  # of each thread: `has_turn`
@@ -51,4 +51,4 @@ def _has_turn() -> bool:
 
 
 def _take() -> None:
-    _mine.has_turn = _turn.acquire(timeout=PATIENCE_S)
+    _mine.has_turn = _turn.acquire(timeout=TIMEOUT_S)

@@ -10,7 +10,7 @@ from rest_framework.request import Request
 
 from workspace.models import Job, JobState
 
-LOOK_EVERY_S = 0.1
+POLL_INTERVAL_S = 0.1
 WAITING_AT_ONCE = 2  # of one process: the other threads go on answering
 
 _places = threading.BoundedSemaphore(WAITING_AT_ONCE)
@@ -20,7 +20,7 @@ _WAIT = re.compile(r"""(?:^|[,;])\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=$|[,;])""", re
 def preferred_wait_s(request: Request) -> int | None:
     """The whole seconds that the request would wait, no more than the settings allow; None without the preference."""
     found = _WAIT.search(request.headers.get("Prefer", ""))
-    return min(int(found[1]), int(settings.LONGEST_WAIT_S)) if found else None
+    return min(int(found[1]), int(settings.MAX_WAIT_S)) if found else None
 
 
 class NoRoomToWait(Exception):
@@ -38,6 +38,6 @@ def wait_for_job(job_id: UUID, wait_s: float) -> Job | None:
                 return Job.objects.filter(pk=job_id).first()
             if time.monotonic() >= until_s:
                 return None
-            time.sleep(LOOK_EVERY_S)
+            time.sleep(POLL_INTERVAL_S)
     finally:
         _places.release()

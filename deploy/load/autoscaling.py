@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 TOLERANCE = 0.1  # of the controller, where nothing else is said: so near to the target nothing is changed
-LOOKS_EVERY_S = 15.0  # of the controller, where nothing else is said
+POLL_INTERVAL_S = 15.0  # of the controller, where nothing else is said
 PROGRAMS = Path(__file__).resolve().parents[1] / "kubernetes" / "base" / "programs"
 SHARES = {"m": 1e-3, "": 1.0}
 
@@ -38,7 +38,7 @@ class Rules:
     up_window_s: float
     down: tuple[Policy, ...]
     down_window_s: float
-    looks_every_s: float = LOOKS_EVERY_S
+    looks_every_s: float = POLL_INTERVAL_S
 
     def faster(self, seconds: float) -> "Rules":
         """The same with all times as a share."""

@@ -39,7 +39,7 @@ from scripts.processes import is_alive
 from scripts.programs import PROGRAM_STAGE, SERVERS, Program, database_server, queue_server
 from scripts.supervision import ProgramState, Supervisor
 
-PATIENCE_S = 600.0  # the first start of a checkout that has not been set up compiles the core
+TIMEOUT_S = 600.0  # the first start of a checkout that has not been set up compiles the core
 ANSWERS_WITHIN_S = 10.0
 SITE = "load.test"  # RFC 6761: no name of the outside
 HOSTS = {"web": "127.77.0", "live": "127.78.0", "uav-link": "127.79.0"}  # every address of 127/8 is this machine
@@ -120,7 +120,7 @@ class Installation:
         if self.name_server:
             self.name_server.close()
 
-    def wait_until_ready(self, patience_s: float = PATIENCE_S) -> float:
+    def wait_until_ready(self, patience_s: float = TIMEOUT_S) -> float:
         """Seconds until the pages answer that they are ready, through the proxy. Raises NotReady."""
         began_s = time.monotonic()
         while (reason := self._reason_not_ready()) and time.monotonic() - began_s < patience_s:
@@ -189,7 +189,7 @@ class Installation:
             os.killpg(pid, number)  # the supervisor gives each program a group of its own
         return pid
 
-    def wait_for_another(self, name: str, pid: int, patience_s: float = PATIENCE_S) -> float:
+    def wait_for_another(self, name: str, pid: int, patience_s: float = TIMEOUT_S) -> float:
         """Seconds until the replica runs as another process than `pid`, which is gone."""
         began_s = time.monotonic()
         while is_alive(pid) or self.pid(name) in {0, pid}:

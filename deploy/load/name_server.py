@@ -10,7 +10,7 @@ ANSWERS = 0x8580  # a response, authoritative, recursion as desired and availabl
 UNKNOWN = 0x8583  # the same, but there is no such name
 TTL_S = 0  # nobody keeps what may change at any moment; the proxy has its own time
 HEADER_BYTES = 12
-LARGEST_QUESTION = 512
+MAX_QUESTION = 512
 
 
 def answer(question: bytes, addresses_of: dict[str, tuple[str, ...]]) -> bytes:
@@ -59,7 +59,7 @@ class NameServer:
     def _serve(self) -> None:
         while True:
             try:
-                question, sender = self._socket.recvfrom(LARGEST_QUESTION)
+                question, sender = self._socket.recvfrom(MAX_QUESTION)
             except OSError:  # closed
                 return
             try:

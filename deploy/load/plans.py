@@ -36,8 +36,8 @@ TOKENS = (FOLDER / "tokens.txt").read_text().split()
 PASSWORD = (FOLDER / "password.txt").read_text()
 READ_WHOLE_EVERY = 10
 IS_LARGE = TARGETS.startswith("large")  # more targets than are planned while one waits
-LOOKS_EVERY_S = 1.0
-LONGEST_JOB_S = 300.0
+POLL_INTERVAL_S = 1.0
+MAX_JOB_S = 300.0
 _users, _bodies = count(), count()
 recorder = Recorder(SCENARIO)
 keep_all_connections()
@@ -100,13 +100,13 @@ class Operator(FastHttpUser):
             job = f"/api/v1/jobs/{orjson.loads(answer.content)['job']}"
         state = "queued"
         while not fault and state in {"queued", "running"}:
-            gevent.sleep(LOOKS_EVERY_S)
+            gevent.sleep(POLL_INTERVAL_S)
             answer = self.client.get(job, headers=self.headers, name="look")
             if answer.status_code == 200:  # what is not is noted as a failure already, and asked again
                 found = orjson.loads(answer.content)
                 state = found["state"]
-            if time.monotonic() - began_s > LONGEST_JOB_S:
-                fault = f"not done after {LONGEST_JOB_S:.0f} s"
+            if time.monotonic() - began_s > MAX_JOB_S:
+                fault = f"not done after {MAX_JOB_S:.0f} s"
         if not fault:
             fault = fault_of_plan(found["result"], body) if state == "done" else f"{state}: {found['error']}"
         self.environment.events.request.fire(

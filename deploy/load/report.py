@@ -11,9 +11,9 @@ from scripts.places import PROJECT_DIR
 
 DOCUMENT = PROJECT_DIR / "docs" / "load-tests.md"
 PICTURES = PROJECT_DIR / "docs" / "load-tests"
-LEAST_SERVED_PERCENT = 97.0  # in the hold of scenario 4's last stage
-MOST_MEDIAN_MS = 100.0  # of scenarios 1 to 3: what a person takes for at once
-MOST_MISSING = 0.01  # of a stage's users at its end
+MIN_SERVED_PERCENT = 97.0  # in the hold of scenario 4's last stage
+MAX_MEDIAN_MS = 100.0  # of scenarios 1 to 3: what a person takes for at once
+MAX_MISSING = 0.01  # of a stage's users at its end
 HEAD = ["users", "answers/s in the hold", "of the demand", "median", "95 %", "median in the ramp", "failures"]
 
 
@@ -82,16 +82,16 @@ def missed_bars(report: RunReport) -> list[str]:
     missed += [
         f"{name}: {stage.users_there} users were there, not {stage.users}"
         for stage in report.stages
-        if abs(stage.users_there - stage.users) > 1 + MOST_MISSING * stage.users
+        if abs(stage.users_there - stage.users) > 1 + MAX_MISSING * stage.users
     ]
     if report.scenario == 4:
         served = report.stages[-1].served_percent
-        missed += [f"{name}: {served:.1f} % of the demand was served"] if served < LEAST_SERVED_PERCENT else []
+        missed += [f"{name}: {served:.1f} % of the demand was served"] if served < MIN_SERVED_PERCENT else []
     else:
         slowest = max(
             (value for stage in report.stages for value in (stage.median_ms, stage.ramp_median_ms) if value == value), default=0.0
         )
-        missed += [f"{name}: a median of {slowest:.0f} ms"] if slowest > MOST_MEDIAN_MS else []
+        missed += [f"{name}: a median of {slowest:.0f} ms"] if slowest > MAX_MEDIAN_MS else []
     return missed
 
 

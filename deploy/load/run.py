@@ -32,7 +32,7 @@ from deploy.load.usage import machine_busy_s, usage
 from scripts.places import PROJECT_DIR
 
 SEVERAL = {1: (1, 2), 2: (1, 2), 3: (1, 2), 4: (2,)}  # web replicas, unless told
-LOOKS_EVERY_S = 5.0
+POLL_INTERVAL_S = 5.0
 WARM_UPS = 40  # every thread of every replica has its connection, its graph and its compiled core
 LOCUST_STOPS_S = 120.0
 
@@ -90,7 +90,7 @@ def run_scenario(
                 locust.kill()
                 raise TimeoutError(f"Locust did not end; see {log}")
             if at_s >= next_look_s:
-                next_look_s += LOOKS_EVERY_S
+                next_look_s += POLL_INTERVAL_S
                 looks.append((time.time(), _cpu_s(installation, locust.pid)))
             meanwhile(at_s)
             time.sleep(1.0)

@@ -33,7 +33,7 @@ from deploy.load.report import DOCUMENT, PICTURES, RunReport
 from deploy.load.run import run_scenario, warm_up
 from deploy.load.scenarios import RAMPS_TO_SCALE_BY
 
-MOST_HERE = {"web": 8, "worker-planning": 12}  # what the machine's memory has room for
+MAX_HERE = {"web": 8, "worker-planning": 12}  # what the machine's memory has room for
 KINDS = {5: "web", 6: "worker-planning"}
 READY_S = 300.0
 FORGETS_S = 3.0  # the proxy asks for names every two seconds
@@ -133,10 +133,10 @@ def pre_stop_s(program: str) -> float:
 def run_ramp(number: int, *, users: float, seconds: float, sessions: float) -> tuple[RunReport, LocalScaler, list[str]]:
     """One ramp on an installation that begins with as few replicas as its autoscalers allow."""
     kind = KINDS[number]
-    rules = {name: shipped_rules(name).faster(seconds) for name in MOST_HERE}
+    rules = {name: shipped_rules(name).faster(seconds) for name in MAX_HERE}
     least = {name: rule.least for name, rule in rules.items()}
-    spare = {kind: MOST_HERE[kind] - rules[kind].least}
-    limited = {name: replace(rule, most=min(rule.most, MOST_HERE[name])) for name, rule in rules.items()}
+    spare = {kind: MAX_HERE[kind] - rules[kind].least}
+    limited = {name: replace(rule, most=min(rule.most, MAX_HERE[name])) for name, rule in rules.items()}
     with Installation(state_directory() / "load", least, spare=spare, by_name=True) as installation:
         ground = bring_ground(installation)
         warm_up(installation, ground)

@@ -14,7 +14,7 @@ from scripts.places import DATABASE_USER, PROJECT_DIR
 from scripts.postgresql_installations import installed_servers
 from scripts.system_packages import find_program
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def running_servers(folder: Path, subnet: str) -> Iterator[Servers]:
         for process in (database, redis):
             process.terminate()
         for process in (database, redis):
-            process.wait(PATIENCE_S)
+            process.wait(TIMEOUT_S)
         log.close()
 
 
@@ -97,7 +97,7 @@ def _make_database(psql: str, sockets: Path, port: int, password: str) -> None:
     """With the very script of the deployment's own PostgreSQL, apart from where it finds the password."""
     script = (PROJECT_DIR / "deploy" / "kubernetes" / "components" / "database" / "make-database.sh").read_text()
     statements = script.partition("<<'SQL'\n")[2].partition("\nSQL")[0]
-    end_s = time.monotonic() + PATIENCE_S
+    end_s = time.monotonic() + TIMEOUT_S
     ready = [psql, "-h", str(sockets), "-p", str(port), "-U", "postgres", "-d", "postgres", "-qc", "SELECT 1"]
     while subprocess.run(ready, capture_output=True, check=False).returncode != 0:
         if time.monotonic() > end_s:

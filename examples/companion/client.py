@@ -16,7 +16,7 @@ from examples.companion.journal import DONE, OPEN, UNDER_WAY, Journal
 from examples.companion.link import Answer, Link, LinkDown
 
 RECORDS_AT_ONCE, RESULTS_AT_ONCE, ACKNOWLEDGEMENTS_AT_ONCE = 500, 20, 50
-PATIENCE_S = 60.0  # after which a command that is not seen to be done has failed
+TIMEOUT_S = 60.0  # after which a command that is not seen to be done has failed
 SETS_IN_MOTION = {"arm", "take-off", "start", "resume"}
 LATER = {408, 425, 429}  # try again; 5xx likewise
 
@@ -83,8 +83,8 @@ class Companion:
                         continue
                 if self._autopilot.has_done(command["kind"], now_s):
                     self._end(key, {"state": "applied"})
-                elif now_s - self._begun_at_s[key] > PATIENCE_S:
-                    self._end(key, {"state": "failed", "reason": f"Not seen to be done in {PATIENCE_S:.0f} s."})
+                elif now_s - self._begun_at_s[key] > TIMEOUT_S:
+                    self._end(key, {"state": "failed", "reason": f"Not seen to be done in {TIMEOUT_S:.0f} s."})
             except Refused as error:
                 self._end(key, {"state": "failed", "reason": str(error)[:500]})
 

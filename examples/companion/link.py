@@ -8,7 +8,7 @@ from http.client import HTTPException
 from typing import Any, Protocol
 from urllib.parse import urlsplit
 
-LARGEST_ANSWER_BYTES = 16 * 1024 * 1024
+MAX_ANSWER_BYTES = 16 * 1024 * 1024
 THIS_MACHINE = {"127.0.0.1", "::1", "localhost"}
 
 
@@ -52,7 +52,7 @@ class HttpLink:
             request.add_header("Content-Type", "application/json")
         try:
             with self._opener.open(request, timeout=self._timeout_s) as response:
-                return _answer(response.status, response.headers, response.read(LARGEST_ANSWER_BYTES))
+                return _answer(response.status, response.headers, response.read(MAX_ANSWER_BYTES))
         except urllib.error.HTTPError as error:
             with error:
                 return _answer(error.code, error.headers, b"")

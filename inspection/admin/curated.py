@@ -17,7 +17,7 @@ from workspace.author_names import author_name
 from workspace.models import AuditEntry, User
 from workspace.signed_in import user_of
 
-MOST_AT_ONCE = 500  # rows that one bulk action changes in a request
+MAX_CONCURRENT = 500  # rows that one bulk action changes in a request
 PEOPLE = {"created_by", "decided_by", "imported_by"}
 
 
@@ -79,9 +79,9 @@ class CuratedAdmin(HistoryAdmin):
     def change_each(self, request: HttpRequest, queryset: QuerySet[Any], change: Callable[[Any], None]) -> int:
         """Do it to each of the chosen rows, all or none; more than can be done in a request are refused."""
         number = queryset.count()
-        if number > MOST_AT_ONCE:
+        if number > MAX_CONCURRENT:
             self.message_user(
-                request, f"{number} rows are chosen; at most {MOST_AT_ONCE} are changed at once. Nothing was changed.", messages.ERROR
+                request, f"{number} rows are chosen; at most {MAX_CONCURRENT} are changed at once. Nothing was changed.", messages.ERROR
             )
             return 0
         with many_edits():

@@ -12,7 +12,7 @@ WGS84 = Geod(ellps="WGS84")
 MAJOR_M, FLATTENING = 6_378_137.0, 1 / 298.257223563  # NIMA TR8350.2
 MINOR_M = MAJOR_M * (1 - FLATTENING)
 SHORT_DEG = 1.0  # up to here Vincenty's series is right to a millionth of a metre
-MOST_ROUNDS = 12
+MAX_ROUNDS = 12
 
 FloatArray = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def short_distance_m(lon_1: float, lat_1: float, lon_2: float, lat_2: float) -> 
     # sin(U2 - U1) in a form that does not cancel where both are near
     sin_gap = cos_1 * cos_2 * (tan_2 - tan_1)
     on_sphere = lon * (1 + FLATTENING * cos_1 * cos_2)  # which is nearly it for a short way
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         sin_half = math.sin(on_sphere / 2)
         bow = 2 * sin_half * sin_half
         across, along = cos_2 * math.sin(on_sphere), sin_gap + sin_1 * cos_2 * bow

@@ -12,9 +12,9 @@ from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import EdgeKind
 
 BESIDE_M = 25.0  # across the ground: arms of a tower, wires in the wind, and what a UAV strays
-MOST_CELLS = 512  # of the grid, along each side
+MAX_CELLS = 512  # of the grid, along each side
 NO_ASSET = -1
-LEAST_CELL_DEG = 0.005  # some 500 m: a span lies in few cells
+MIN_CELL_DEG = 0.005  # some 500 m: a span lies in few cells
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -86,7 +86,7 @@ def spans_between(
     west_south, east_north = np.minimum(start, end), np.maximum(start, end)
     low = west_south.min(axis=0, initial=180.0)
     extent = np.maximum(east_north.max(axis=0, initial=-180.0) - low, 0.0)
-    step = np.maximum(extent / MOST_CELLS, LEAST_CELL_DEG)
+    step = np.maximum(extent / MAX_CELLS, MIN_CELL_DEG)
     shape = (extent // step).astype(np.int64) + 1
     first, member = _on_grid(west_south, east_north, low, step, shape)
     highest_m = np.maximum(start_height_m, end_height_m)

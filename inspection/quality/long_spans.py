@@ -15,7 +15,7 @@ from inspection.quality.network import FloatArray, Network
 CLASSES = ((100_000, 320.0, 1_000.0), (50_000, 250.0, 800.0), (1, 100.0, 450.0), (0, 250.0, 800.0))
 LONGER_THAN_OTHERS = 3.0
 OWN_SPANS = 8  # a line with fewer is judged by all lines of its class: a median of three spans says little
-LONGEST_IN_THE_WORLD_M = 5_376.0  # Ameralik, Greenland
+MAX_IN_THE_WORLD_M = 5_376.0  # Ameralik, Greenland
 
 
 def voltage_class(voltage_v: FloatArray) -> NDArray[np.int64]:
@@ -76,7 +76,7 @@ def long_spans(network: Network) -> list[Gap]:
                     "usual_span_m": round(float(usual[leg]), 1),
                     "missing_towers": missing,
                     "beyond_m": round(beyond_m, 1),
-                    "is_impossible": span_m > LONGEST_IN_THE_WORLD_M,
+                    "is_impossible": span_m > MAX_IN_THE_WORLD_M,
                     "start": ends[0].tolist(),
                     "end": ends[1].tolist(),
                 },

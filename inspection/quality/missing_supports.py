@@ -8,7 +8,7 @@ from inspection.quality.issue import Gap
 from inspection.quality.line_ends import is_at_terminal
 from inspection.quality.network import BoolArray, FloatArray, IntArray, Network, metres_by
 
-SHORTEST_LINE_M = 150.0  # what is shorter may hang between two portals
+MIN_LINE_M = 150.0  # what is shorter may hang between two portals
 
 
 def missing_supports(network: Network) -> list[Gap]:
@@ -29,7 +29,7 @@ def missing_supports(network: Network) -> list[Gap]:
     return [
         _gap_of_line(network, line, chosen[first[line] : first[line + 1]], bool(supports[line]), float(without_m[line]))
         for line in np.flatnonzero(count).tolist()
-        if supports[line] or network.way_m[line] >= SHORTEST_LINE_M
+        if supports[line] or network.way_m[line] >= MIN_LINE_M
     ]
 
 

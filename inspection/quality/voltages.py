@@ -9,8 +9,8 @@ from inspection.network.infrastructure import Ways
 from inspection.quality.infrastructure import GapGround, WayFacts, asset_key
 from inspection.quality.issue import Gap
 
-HIGHEST_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
-MOST_VALUES = 6
+MAX_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
+MAX_VALUES = 6
 LOW_VOLTAGE_V = 1_000
 
 # Nominal voltages in use [V]: IEC 60038 and ANSI C84.1, railways (EN 50163), and what national networks use besides; above
@@ -66,11 +66,11 @@ def voltage_fault(volts: Sequence[int], text: str, *, subtype: str, is_railway: 
     """None, or what is wrong: {"fault": too_low, too_high, too_many, unread or unusual, "is_advisory", "offered_v"}."""
     if not volts:
         return _fault("unread", []) if text.strip() and not _says_unknown(text) and not is_railway else None
-    if any(value > HIGHEST_V for value in volts):
-        return _fault("too_high", _corrected(volts, lambda value: value > HIGHEST_V, (1_000, 10, 100)))
+    if any(value > MAX_V for value in volts):
+        return _fault("too_high", _corrected(volts, lambda value: value > MAX_V, (1_000, 10, 100)))
     if not is_railway and subtype == "line" and (low := [value for value in volts if _is_too_low(value)]):
         return _fault("too_low", sorted({value * 1_000 if value in low else value for value in volts}, reverse=True))
-    if len(volts) > MOST_VALUES:
+    if len(volts) > MAX_VALUES:
         return _fault("too_many", [])
     if any(value not in STANDARD_V for value in volts):
         return _fault("unusual", [], is_advisory=True)

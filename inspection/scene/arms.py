@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from inspection.scene.forms import TALL_POLE_V, Form, Layout
 
 USUAL_V = 110_000  # where no voltage is stated
-LOWEST_ARM_SHARE = 0.42  # of the height: arms never come lower
+MIN_ARM_SHARE = 0.42  # of the height: arms never come lower
 OVERHANG = 1.06  # of an arm over its outermost phase
 PIN_M = 0.25  # a small insulator on top of an arm
 
@@ -53,7 +53,7 @@ def arms_of(form: Form, layout: Layout, height_m: float, voltage_v: int | None, 
     levels = _with_room(_LEVELS[layout], phases)
     has_earth = has_earth_wire(form, voltage_v)
     below_top_m = max(0.8 * level_m, 2.0) if has_earth else 0.0 if form == Form.PORTAL else PIN_M
-    squeeze = min(1.0, (1.0 - LOWEST_ARM_SHARE) * height_m / (below_top_m + level_m * (len(levels) - 1) + insulator_m))
+    squeeze = min(1.0, (1.0 - MIN_ARM_SHARE) * height_m / (below_top_m + level_m * (len(levels) - 1) + insulator_m))
     level_m, below_top_m, insulator_m = level_m * squeeze, below_top_m * squeeze, insulator_m * squeeze
     is_pin = form == Form.WOODEN
     arms, slots = [], []

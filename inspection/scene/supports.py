@@ -14,7 +14,7 @@ USUAL_POLE_V, USUAL_PORTAL_V = 20_000, 110_000  # where no voltage is stated
 # Straight lines through what is common, in metres by kilovolts: wood at 11 to 33 kV, wood and steel up to 220 kV; gantries of substations.
 _POLE_M, _POLE_M_BY_KV, _TALLEST_POLE_M = 8.0, 0.12, 34.0
 _PORTAL_M, _PORTAL_M_BY_KV = 6.0, 0.045
-MOST_PHASES = 12
+MAX_PHASES = 12
 PHASES_OF_CIRCUIT = 3
 _ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railways' lines and direct current: two wires to a circuit
 
@@ -84,9 +84,9 @@ def phases_of(line: LineFacts) -> int:
     """Wires to draw of a line, without earth wires: as its cables or circuits say, else one circuit."""
     cables = line.tags.get("cables", "")
     if cables.isascii() and cables.isdigit() and cables.strip("0"):
-        return MOST_PHASES if len(cables) > 3 else min(int(cables), MOST_PHASES)
+        return MAX_PHASES if len(cables) > 3 else min(int(cables), MAX_PHASES)
     of_circuit = 2 if line.tags.get("frequency", "") in _ONE_PHASE_HZ else PHASES_OF_CIRCUIT
-    return min((line.circuits or 1) * of_circuit, MOST_PHASES)
+    return min((line.circuits or 1) * of_circuit, MAX_PHASES)
 
 
 def drawn(
@@ -95,7 +95,7 @@ def drawn(
     """In the order of `found`. supports and lines by primary key."""
     carried = [[lines.get(line, NO_LINE) for line in own] for own in found.span_lines]
     voltage_v = [max((line.voltage_v for line in own if line.voltage_v), default=None) for own in carried]
-    phases = [min(sum(map(phases_of, own)), MOST_PHASES) for own in carried]
+    phases = [min(sum(map(phases_of, own)), MAX_PHASES) for own in carried]
     bearing, ways, bend = bearings_deg(found, np.array([(own or 1) * 1.0 for own in voltage_v]))
     most_phases, most_v = _at_ends(found, phases), _at_ends(found, [own or 0 for own in voltage_v])
     has_major = _at_ends(found, [int(not all(line.is_minor for line in own)) for own in carried])

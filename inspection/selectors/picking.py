@@ -21,13 +21,13 @@ from inspection.selectors.made_names import assets_with_made_names, made_name
 
 Box = tuple[float, float, float, float]
 
-MOST_IN_AN_AREA = 2_000
+MAX_IN_AN_AREA = 2_000
 OSM_KEY = re.compile(r"(?:.*openstreetmap\.org/)?(N(?:ODE)?|W(?:AY)?|R(?:ELATION)?)[ /]?(\d{1,18})(?:[/?#].*)?", re.IGNORECASE)
 LIST_OF_REFS = r"\s*;\s*"  # OpenStreetMap writes several references of one thing as "12;13"
 # How far beyond two supports a way between them is looked for, in degrees: first near, then wide.
 REACHES_DEG = (0.05, 0.5)
 SECTION_GAP_DEG = 0.002  # some 200 m: sections of one railway may be cut by a bridge or a switch that has another name
-MOST_CROSSINGS = 500  # of a drawn line with itself: sorting out what it encloses takes as long as their square
+MAX_CROSSINGS = 500  # of a drawn line with itself: sorting out what it encloses takes as long as their square
 SIDES_AT_ONCE = 256
 BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
 CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways say nothing of what it carries
@@ -127,7 +127,7 @@ def _refuse_a_tangle(ring: Sequence[Sequence[float]]) -> None:
         side, other = tree.query(sides[first : first + SIDES_AT_ONCE], predicate="intersects")
         apart = other - side - first
         crossings += int(((apart > 1) & (apart < len(sides) - 1)).sum())  # neighbours meet at their corner
-        if crossings > MOST_CROSSINGS:
+        if crossings > MAX_CROSSINGS:
             raise TooTangled
 
 
@@ -224,7 +224,7 @@ def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
 
 
 __all__ = [
-    "MOST_IN_AN_AREA",
+    "MAX_IN_AN_AREA",
     "NoWayAlongLines",
     "NotOnTheLine",
     "RailwayBridges",

@@ -27,24 +27,24 @@ from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
 
 LAYER_M = 6.5  # a road's or railway's free height below a bridge, with the deck
-MOST_LAYERS = 5
+MAX_LAYERS = 5
 _LAYER = re.compile(r"-?[0-9]{1,3}")
 RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
-SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
-NEAREST_POLE_DEG = 85.0
-MOST_POSTS = 225  # of the ground, along each side
+MIN_SIDE_M, MAX_SIDE_M = 50.0, 40_000.0
+MAX_SHRINKING_LAT_DEG = 85.0
+MAX_POSTS = 225  # of the ground, along each side
 AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
 REACH_DEG = 0.15  # a span is not longer than that in degrees
-MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
+MAX_SUPPORTS, MAX_SPANS, MAX_RAILWAYS, MAX_BRIDGES, MAX_ZONES = 4_000, 6_000, 1_500, 1_500, 200
 SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
-MOST_CORNERS = 4_000  # of a zone
+MAX_CORNERS = 4_000  # of a zone
 Row = TypeVar("Row", Asset, NoFlyZone)
 
 
 def layer_of(tags: Mapping[str, str]) -> int:
     """How many things lie below it: 1 if it is not stated."""
     stated = _LAYER.fullmatch(tags.get("layer", "").strip())
-    return min(max(int(stated[0]), 1), MOST_LAYERS) if stated else 1
+    return min(max(int(stated[0]), 1), MAX_LAYERS) if stated else 1
 
 
 def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
@@ -115,12 +115,12 @@ def check_box(box: Box) -> None:
     west, south, east, north = box
     if west > east:
         raise UnfitBox(gettext_noop("A scene does not cross the 180th meridian."))
-    if max(abs(south), abs(north)) > NEAREST_POLE_DEG:
+    if max(abs(south), abs(north)) > MAX_SHRINKING_LAT_DEG:
         raise UnfitBox(gettext_noop("A scene does not lie within 5 degrees of a pole."))
     sides_m = _sides_m(box)
-    if min(sides_m) < SHORTEST_SIDE_M:
+    if min(sides_m) < MIN_SIDE_M:
         raise UnfitBox(gettext_noop("A side of the box is shorter than 50 m."))
-    if max(sides_m) > LONGEST_SIDE_M:
+    if max(sides_m) > MAX_SIDE_M:
         raise UnfitBox(gettext_noop("A side of the box is longer than 40 km."))
 
 
@@ -141,11 +141,11 @@ def scene_in(box: Box) -> Scene:
     )
     railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
     zones = NoFlyZone.objects.filter(geometry__intersects=area_of(clip)).annotate(wkb=AsWKB("geometry")).defer("geometry")
-    kept_railways, left_out["railways"] = _nearest(railways, middle, MOST_RAILWAYS)
+    kept_railways, left_out["railways"] = _nearest(railways, middle, MAX_RAILWAYS)
     kept_bridges, left_out["bridges"] = _nearest(
-        [(row, _shape(row, clip)) for row in _in_area(AssetKind.BRIDGE, clip)], middle, MOST_BRIDGES
+        [(row, _shape(row, clip)) for row in _in_area(AssetKind.BRIDGE, clip)], middle, MAX_BRIDGES
     )
-    kept_zones, left_out["zones"] = _nearest([(zone, _shape(zone, clip)) for zone in zones], middle, MOST_ZONES)
+    kept_zones, left_out["zones"] = _nearest([(zone, _shape(zone, clip)) for zone in zones], middle, MAX_ZONES)
     return Scene(
         box=box,
         clip=clip,
@@ -179,10 +179,10 @@ def _wider(box: Box, by_m: float) -> Box:
 
 
 def _ground(box: Box) -> SceneGround:
-    """As fine as the terrain model there, or as MOST_POSTS allow."""
+    """As fine as the terrain model there, or as MAX_POSTS allow."""
     west, south, east, north = box
     step_m = 2.0 * finest_step_m(box)
-    columns, rows = (min(max(math.ceil(side_m / step_m) + 1, 2), MOST_POSTS) for side_m in _sides_m(box))
+    columns, rows = (min(max(math.ceil(side_m / step_m) + 1, 2), MAX_POSTS) for side_m in _sides_m(box))
     lon, lat = np.meshgrid(np.linspace(west, east, columns), np.linspace(north, south, rows))
     heights = np.full(rows * columns, np.nan)
     if terrain_models():
@@ -207,9 +207,9 @@ def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
     _, lines = supports_and_lines(box)
     supports, lines = supports_and_lines(_reach(box, lines))
     found = overhead(supports, lines, box)
-    stays = _nearest_places(found.position, middle, MOST_SUPPORTS)
+    stays = _nearest_places(found.position, middle, MAX_SUPPORTS)
     centre = found.position[found.span].mean(axis=1)
-    hangs = _nearest_places(centre, middle, MOST_SPANS)
+    hangs = _nearest_places(centre, middle, MAX_SPANS)
     kept = found.where(stays, hangs)
     return kept, {"supports": int((~stays).sum()), "spans": len(found.span) - len(kept.span)}
 
@@ -261,11 +261,11 @@ def _shape(row: StoredAsset | StoredZone, clip: Box) -> shapely.geometry.base.Ba
 
 
 def _with_fewer_corners(shape: shapely.geometry.base.BaseGeometry) -> shapely.geometry.base.BaseGeometry:
-    """Half a metre off at most, or as much as it takes to have no more than MOST_CORNERS."""
+    """Half a metre off at most, or as much as it takes to have no more than MAX_CORNERS."""
     tolerance_deg = SIMPLER_DEG
     while True:
         simpler = shapely.simplify(shape, tolerance_deg)
-        if shapely.get_num_coordinates(simpler) <= MOST_CORNERS or tolerance_deg > COARSEST_DEG:
+        if shapely.get_num_coordinates(simpler) <= MAX_CORNERS or tolerance_deg > COARSEST_DEG:
             return shape if simpler.is_empty or not shapely.is_valid(simpler) else simpler
         tolerance_deg *= 2
 

@@ -8,11 +8,11 @@ from django.core.cache import cache
 from django.db import connection
 
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
-from workspace.cache_absence import CACHE_AWAY
+from workspace.cache_absence import CACHE_UNAVAILABLE
 
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
-DEEPEST_ZOOM = 22
+MAX_ZOOM = 22
 RECIPE = 5  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
@@ -26,9 +26,9 @@ BRIDGE_ZOOM = 10
 TOWER_ZOOM = 10
 OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
 ZONE_LABEL_ZOOM = 9
-LONGEST_SCHEDULE = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
-MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
-MOST_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
+MAX_SCHEDULE_LENGTH = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
+MAX_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
+MAX_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
 VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
 # The words of asset_label in selectors/assets.py.
 LABEL = f"""COALESCE(
@@ -52,7 +52,7 @@ ZONE_COLUMNS = f"""
     id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
     lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference,
     (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg,
-    CASE WHEN LENGTH(schedule::text) <= {LONGEST_SCHEDULE} THEN schedule::text END AS schedule
+    CASE WHEN LENGTH(schedule::text) <= {MAX_SCHEDULE_LENGTH} THEN schedule::text END AS schedule
 """
 ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
 SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
@@ -66,11 +66,11 @@ def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> by
     if edition is None or zoom > LAST_KEPT_ZOOM:
         return vector_tile(zoom, column, row)
     key = f"tile:{edition}:{zoom}/{column}/{row}"
-    with contextlib.suppress(*CACHE_AWAY):
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
         if (kept := cache.get(key)) is not None:
             return bytes(kept)
     tile = vector_tile(zoom, column, row)
-    with contextlib.suppress(*CACHE_AWAY):
+    with contextlib.suppress(*CACHE_UNAVAILABLE):
         cache.set(key, tile, KEPT_S)
     return tile
 
@@ -141,7 +141,7 @@ class NoSuchTile(Exception):
 
 def vector_tile(zoom: int, column: int, row: int) -> bytes:
     """The Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
-    if not (0 <= zoom <= DEEPEST_ZOOM and 0 <= column < 2**zoom and 0 <= row < 2**zoom):
+    if not (0 <= zoom <= MAX_ZOOM and 0 <= column < 2**zoom and 0 <= row < 2**zoom):
         raise NoSuchTile
     layers = [layer for layer in LAYERS if zoom >= layer.from_zoom]
     west, south, east, north = _box_deg(zoom, column, row)
@@ -152,7 +152,7 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
             {
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
                 "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
-                "most": next((most for last_zoom, most in MOST_FEATURES_FAR if zoom <= last_zoom), MOST_FEATURES),
+                "most": next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES),
                 "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM,
             },
         )  # fmt: skip

@@ -17,8 +17,8 @@ from inspection.selectors.terrain import grids_around, ground_heights_m, terrain
 from inspection.terrain.height_grid import HeightGrid
 from inspection.zones.reach import Limits, ZoneTable, agl_band
 
-MOST_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; the ground under a larger zone counts as not known
-MOST_VOIDS = 10_000  # posts without a height under one zone that are looked up in older models
+MAX_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; the ground under a larger zone counts as not known
+MAX_VOIDS = 10_000  # posts without a height under one zone that are looked up in older models
 KEPT_RANGES = 20_000
 COLUMNS = ("pk", "name", "wkb", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule")
 
@@ -90,7 +90,7 @@ def ground_range_m(polygon: shapely.MultiPolygon) -> GroundRange:
     """
     if polygon.is_empty:
         return UNKNOWN
-    grids = grids_around(polygon.bounds, MOST_TILES)
+    grids = grids_around(polygon.bounds, MAX_TILES)
     if not grids or not _are_under_all_of(grids, polygon):
         return UNKNOWN
     lowest, highest = math.inf, -math.inf
@@ -105,7 +105,7 @@ def ground_range_m(polygon: shapely.MultiPolygon) -> GroundRange:
     unknown = np.concatenate(voids)
     if len(unknown):
         unknown = unknown[shapely.intersects_xy(polygon, unknown)]
-    if len(unknown) > MOST_VOIDS or np.isnan(ground_heights_m(unknown)).any() or lowest > highest:
+    if len(unknown) > MAX_VOIDS or np.isnan(ground_heights_m(unknown)).any() or lowest > highest:
         return UNKNOWN
     return lowest, highest
 

@@ -8,10 +8,10 @@ from django.contrib.gis.geos import LineString, Polygon
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import NoFlyZone
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, NEAREST_POLE_DEG, widen
+from inspection.network.zones.zone_index import MAX_SHRINKING_LAT_DEG, METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, widen
 from inspection.terrain.profile import stretches_inside
 
-MOST_ZONES = 200
+MAX_ZONES = 200
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ def zones_along(line: FloatArray, near_m: float = 0.0) -> list[ZoneStretch]:
     fields = ("name", "geometry", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule")
     around = _box_around(line, near_m) if near_m else path
     found = []
-    for zone in NoFlyZone.objects.filter(geometry__intersects=around).only(*fields)[:MOST_ZONES]:
+    for zone in NoFlyZone.objects.filter(geometry__intersects=around).only(*fields)[:MAX_ZONES]:
         area = shapely.from_wkb(bytes(zone.geometry.wkb))
         inside = stretches_inside(line, area)
         if not near_m:
@@ -46,7 +46,7 @@ def zones_along(line: FloatArray, near_m: float = 0.0) -> list[ZoneStretch]:
 def _box_around(line: FloatArray, near_m: float) -> Polygon:
     west, south, east, north = box_of_line(line)
     high = near_m / METRES_PER_DEGREE_LAT
-    wide = near_m / (METRES_PER_DEGREE_LON * np.cos(np.radians(min(max(abs(south), abs(north)) + high, NEAREST_POLE_DEG))))
+    wide = near_m / (METRES_PER_DEGREE_LON * np.cos(np.radians(min(max(abs(south), abs(north)) + high, MAX_SHRINKING_LAT_DEG))))
     return Polygon.from_bbox((west - wide, south - high, east + wide, north + high))
 
 

@@ -13,9 +13,9 @@ from workspace.errors import ApiProblem
 from workspace.external_data import AttributesField, ExternalIdField
 
 HIGHEST_VOLTAGE_V = 2_000_000  # the highest line in service has 1,150 kV
-MOST_VOLTAGES = 12
-MOST_TAGS = 250
-HIGHEST_LIMIT_M = 100_000
+MAX_VOLTAGES = 12
+MAX_TAGS = 250
+MAX_LIMIT_M = 100_000
 
 
 def geometry_problem(fault: GeometryFault) -> ApiProblem:
@@ -39,7 +39,7 @@ class AssetInputSerializer(serializers.Serializer):
     operator = serializers.CharField(max_length=255, allow_blank=True, required=False)
     subtype = serializers.CharField(max_length=40, allow_blank=True, required=False)
     voltages_v = serializers.ListField(
-        child=serializers.IntegerField(min_value=1, max_value=HIGHEST_VOLTAGE_V), max_length=MOST_VOLTAGES, required=False
+        child=serializers.IntegerField(min_value=1, max_value=HIGHEST_VOLTAGE_V), max_length=MAX_VOLTAGES, required=False
     )
     circuits = serializers.IntegerField(min_value=1, max_value=100, allow_null=True, required=False)
     height_m = serializers.FloatField(min_value=0.1, max_value=1_000, allow_null=True, required=False)
@@ -54,9 +54,9 @@ class AssetInputSerializer(serializers.Serializer):
             self.fields["kind"].read_only = True
 
     def validate_tags(self, tags: dict[str, str]) -> dict[str, str]:
-        if len(tags) > MOST_TAGS or any(len(key) > 255 for key in tags):
+        if len(tags) > MAX_TAGS or any(len(key) > 255 for key in tags):
             raise serializers.ValidationError(
-                _("At most %(most_tags)s tags, with keys of at most 255 characters.") % {"most_tags": MOST_TAGS}
+                _("At most %(most_tags)s tags, with keys of at most 255 characters.") % {"most_tags": MAX_TAGS}
             )
         for key, value in tags.items():
             _stated(key, "tags")
@@ -77,7 +77,7 @@ class AssetInputSerializer(serializers.Serializer):
 class LimitInputSerializer(serializers.Serializer):
     """A height always says from where it is counted."""
 
-    value_m = serializers.FloatField(min_value=-1_000, max_value=HIGHEST_LIMIT_M)
+    value_m = serializers.FloatField(min_value=-1_000, max_value=MAX_LIMIT_M)
     reference = serializers.ChoiceField(choices=HeightReference.choices)
 
 

@@ -14,7 +14,7 @@ from workspace.author_names import AUTHOR_HELP, author_name
 from workspace.models import User
 from workspace.serializers import Declared
 
-LONGEST_NOTE = 500
+MAX_NOTE_LENGTH = 500
 
 
 class GapAssetSerializer(serializers.Serializer):
@@ -72,7 +72,7 @@ class UndoRepairSerializer(serializers.Serializer):
 
 
 class DismissSerializer(serializers.Serializer):
-    note = serializers.CharField(max_length=LONGEST_NOTE, allow_blank=True, default="")
+    note = serializers.CharField(max_length=MAX_NOTE_LENGTH, allow_blank=True, default="")
 
 
 class RepairedSerializer(serializers.Serializer):

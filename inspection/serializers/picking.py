@@ -9,9 +9,9 @@ from inspection.serializers.assets import FIELDS_OF_AN_ASSET
 from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
-MOST_REFS = 2_000
-LONGEST_REF = 255
-MOST_CORNERS = 5_000
+MAX_REFS = 2_000
+MAX_REF_LENGTH = 255
+MAX_CORNERS = 5_000
 
 
 class PickedAssetSerializer(serializers.Serializer):
@@ -27,9 +27,9 @@ class PickedAssetSerializer(serializers.Serializer):
 
 class LookupInputSerializer(serializers.Serializer):
     refs = serializers.ListField(
-        child=serializers.CharField(max_length=LONGEST_REF),
+        child=serializers.CharField(max_length=MAX_REF_LENGTH),
         allow_empty=False,
-        max_length=MOST_REFS,
+        max_length=MAX_REFS,
         help_text="references, names, keys of a file, or OSM ids such as w123; case and spaces do not count",
     )
     kinds = serializers.ListField(child=serializers.ChoiceField(choices=AssetKind.choices), required=False, help_text="empty: all")
@@ -53,7 +53,7 @@ class DrawnAreaSerializer(serializers.Serializer):
     type = serializers.ChoiceField(choices=["Polygon"])
     coordinates = serializers.ListField(
         child=serializers.ListField(
-            child=serializers.ListField(child=COORDINATE, min_length=2, max_length=3), min_length=3, max_length=MOST_CORNERS
+            child=serializers.ListField(child=COORDINATE, min_length=2, max_length=3), min_length=3, max_length=MAX_CORNERS
         ),
         min_length=1,
         max_length=1,

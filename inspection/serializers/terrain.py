@@ -14,8 +14,8 @@ from inspection.terrain.heights import REFERENCES
 from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
-MOST_VERTICES = 2_000
-MOST_PLACES = 5_000
+MAX_VERTICES = 2_000
+MAX_PLACES = 5_000
 
 
 class PositionField(serializers.ListField):
@@ -72,7 +72,7 @@ class GroundHeightSerializer(serializers.Serializer):
 
 
 class ProfileInputSerializer(serializers.Serializer):
-    line = serializers.ListField(child=PositionField(), min_length=2, max_length=MOST_VERTICES)
+    line = serializers.ListField(child=PositionField(), min_length=2, max_length=MAX_VERTICES)
     step_m = serializers.FloatField(
         min_value=1, max_value=100_000, required=False, help_text="no less than half a post's distance, which it is unless told"
     )
@@ -116,8 +116,8 @@ class ProfileSerializer(serializers.Serializer):
 
 
 class HeightsInputSerializer(serializers.Serializer):
-    positions = serializers.ListField(child=PositionField(), min_length=1, max_length=MOST_PLACES)
-    heights_m = serializers.ListField(child=serializers.FloatField(min_value=-1_000, max_value=100_000), max_length=MOST_PLACES)
+    positions = serializers.ListField(child=PositionField(), min_length=1, max_length=MAX_PLACES)
+    heights_m = serializers.ListField(child=serializers.FloatField(min_value=-1_000, max_value=100_000), max_length=MAX_PLACES)
     reference = serializers.ChoiceField(choices=REFERENCES, help_text="from where heights_m count; RELATIVE: above take-off")
     take_off = PositionField(required=False, help_text="unless told, the first position")
 

@@ -12,7 +12,7 @@ from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
 from workspace.serializers import Declared
 
-LONGEST_INTERVAL_H = 24 * 90
+MAX_INTERVAL_H = 24 * 90
 
 
 class ZoneSetSourceSerializer(SourceSerializer):
@@ -89,7 +89,7 @@ class SubscriptionChangeSerializer(serializers.Serializer):
     source_format = serializers.ChoiceField(choices=list(FORMAT_NAMES), allow_blank=True, required=False)
     licence = serializers.CharField(max_length=200, allow_blank=True, required=False)
     attribution = serializers.CharField(max_length=300, allow_blank=True, required=False)
-    interval_h = serializers.IntegerField(min_value=1, max_value=LONGEST_INTERVAL_H, required=False)
+    interval_h = serializers.IntegerField(min_value=1, max_value=MAX_INTERVAL_H, required=False)
     is_active = serializers.BooleanField(required=False)
 
     def validate_address(self, address: str) -> str:

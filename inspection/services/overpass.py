@@ -20,7 +20,7 @@ from workspace.outgoing import OutgoingError, OutgoingFailed, fetch
 
 TRIES = 3
 PAUSES_S = (5, 20)  # a question cannot be gone on with: after a cut it is asked again, whole
-LONGEST_PAUSE_S = 60
+MAX_PAUSE_S = 60
 BUSY = {429, 502, 503, 504}
 ATTRIBUTION = "© OpenStreetMap contributors, ODbL 1.0"
 _TAIL_BYTES = 4_096
@@ -29,7 +29,7 @@ _BLOCK_BYTES = 1024 * 1024
 
 def area_of(parameters: dict[str, Any]) -> Extent:
     """The box that parameters ask for. Raises WrongArea."""
-    return checked_box(parameters.get("overpass_bbox"), settings.OVERPASS_MOST_KM2)
+    return checked_box(parameters.get("overpass_bbox"), settings.OVERPASS_MAX_KM2)
 
 
 def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress: Progress) -> tuple[Upload, dict[str, Any]]:
@@ -41,7 +41,7 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
     with private_folder() as folder:
         answer = folder / "overpass.json"
         try:
-            _ask(question(box, most_bytes=settings.LARGEST_FILE_BYTES[ImportKind.OSM]), answer, progress)
+            _ask(question(box, most_bytes=settings.MAX_UPLOAD_BYTES[ImportKind.OSM]), answer, progress)
         except OutgoingError as error:
             raise FileRefused([Fault("", f"Overpass: {error}")]) from error
         if fault := complaint(_tail(answer)):
@@ -56,7 +56,7 @@ def _ask(text: str, to: Path, progress: Progress) -> None:
         progress("asking Overpass", 0.02)
         try:
             fetch(
-                settings.OVERPASS_ADDRESS, to=to, max_bytes=settings.LARGEST_FILE_BYTES[ImportKind.OSM], timeout_s=QUERY_TIMEOUT_S + 20,
+                settings.OVERPASS_ADDRESS, to=to, max_bytes=settings.MAX_UPLOAD_BYTES[ImportKind.OSM], timeout_s=QUERY_TIMEOUT_S + 20,
                 total_s=2 * QUERY_TIMEOUT_S, method="POST", data=urlencode({"data": text}).encode(),
                 headers={"Content-Type": "application/x-www-form-urlencoded"},
                 progress=lambda size: progress(f"{size / 2**20:.1f} MiB from Overpass", 0.05),
@@ -65,7 +65,7 @@ def _ask(text: str, to: Path, progress: Progress) -> None:
         except OutgoingFailed as error:
             if attempt == TRIES or (error.status is not None and error.status not in BUSY):
                 raise
-            _wait(min(error.retry_after_s or PAUSES_S[attempt - 1], LONGEST_PAUSE_S), progress)
+            _wait(min(error.retry_after_s or PAUSES_S[attempt - 1], MAX_PAUSE_S), progress)
 
 
 def _wait(pause_s: float, progress: Progress) -> None:

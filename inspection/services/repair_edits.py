@@ -25,10 +25,10 @@ from inspection.quality.repair import (
     vertex_at,
     with_vertices,
 )
-from inspection.quality.voltages import HIGHEST_V, MOST_VALUES
+from inspection.quality.voltages import MAX_V, MAX_VALUES
 from inspection.services.curation import PLACED
 
-MOST_TOWERS = 500  # along one span
+MAX_TOWERS = 500  # along one span
 REACH_M = 200.0  # of places clicked along a span, from the straight way
 ATTACH_M = 500.0  # a tower farther from its line is not its
 
@@ -61,7 +61,7 @@ def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
             raise CannotRepair(_("A tower along the span stands within %(reach_m)s m of it.") % {"reach_m": f"{REACH_M:.0f}"})
         places = in_order(start, end, given)
     else:
-        places = evenly_between(start, end, min(details["missing_towers"], MOST_TOWERS))
+        places = evenly_between(start, end, min(details["missing_towers"], MAX_TOWERS))
     line.geometry = LineString(with_vertices(course, leg, places), srid=4326)
     return [Change(line), *(_new_tower(line, place, NO_OSM_NODE) for place in places)]
 
@@ -162,10 +162,10 @@ def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
 
 def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     given = parameters.get("voltages_v", gap.details["offered_v"])
-    if not isinstance(given, list) or not 1 <= len(given) <= MOST_VALUES:
-        raise CannotRepair(_("Give 1 to %(most_values)s voltages in volts.") % {"most_values": MOST_VALUES})
-    if any(isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= HIGHEST_V for value in given):
-        raise CannotRepair(_("A voltage is a whole number of volts, at most %(highest_v)s.") % {"highest_v": f"{HIGHEST_V:,}"})
+    if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
+        raise CannotRepair(_("Give 1 to %(most_values)s voltages in volts.") % {"most_values": MAX_VALUES})
+    if any(isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= MAX_V for value in given):
+        raise CannotRepair(_("A voltage is a whole number of volts, at most %(highest_v)s.") % {"highest_v": f"{MAX_V:,}"})
     asset = _asset(gap.asset_id)
     asset.voltages_v = sorted(set(given), reverse=True)
     return [Change(asset)]
@@ -227,8 +227,8 @@ def _box_round(course: list[tuple[float, float]]) -> Polygon:
 
 
 def _positions(given: Any) -> list[tuple[float, float]]:
-    fault = CannotRepair(f"Give 1 to {MOST_TOWERS} positions, each as [longitude, latitude].")
-    if not isinstance(given, list) or not 1 <= len(given) <= MOST_TOWERS:
+    fault = CannotRepair(f"Give 1 to {MAX_TOWERS} positions, each as [longitude, latitude].")
+    if not isinstance(given, list) or not 1 <= len(given) <= MAX_TOWERS:
         raise fault
     places = []
     for place in given:

@@ -26,8 +26,8 @@ from workspace.services import create_job, fail_job, finish_job, record_change
 SILENCE_S = 20.0
 TOTAL_S = 120.0
 FIRST_RETRY = timedelta(minutes=15)  # doubled with each failure that follows
-LONGEST_RETRY = timedelta(days=1)  # or the interval, if that is longer
-MOST_AT_ONCE = 20  # fetches that one look at the clock starts
+MAX_RETRY_LENGTH = timedelta(days=1)  # or the interval, if that is longer
+MAX_CONCURRENT = 20  # fetches that one look at the clock starts
 _FOLDER_PREFIX = "spanwise-upload-"  # what a killed worker leaves is removed with the uploads
 _CHANGEABLE = ("address", "source_format", "licence", "attribution", "interval_h", "is_active")
 _OPEN = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
@@ -98,7 +98,7 @@ def start_due_fetches() -> list[Job]:
         due = ZoneSubscription.objects.select_for_update(skip_locked=True, of=["self"]).filter(
             is_active=True, next_fetch_at__lte=timezone.now()
         )
-        for subscription in due.order_by("next_fetch_at")[:MOST_AT_ONCE]:
+        for subscription in due.order_by("next_fetch_at")[:MAX_CONCURRENT]:
             _put_off(subscription)
             if open_fetch_of(subscription) is None:
                 jobs.append(_fetch_job(subscription, None))
@@ -116,7 +116,7 @@ def fetch_subscription(*, job: Job, progress: Progress) -> ImportProposal | None
         finish_job(job=job, message="The subscription is no longer there.")
         return None
     is_asked_for = job.created_by_id is not None
-    most_bytes = min(MAX_FILE_BYTES, settings.LARGEST_FILE_BYTES[ImportKind.ZONES])
+    most_bytes = min(MAX_FILE_BYTES, settings.MAX_UPLOAD_BYTES[ImportKind.ZONES])
     with tempfile.TemporaryDirectory(prefix=_FOLDER_PREFIX, dir=upload_folder()) as folder:
         path = Path(folder) / _file_name(subscription)
         progress("Fetching", 0.0)
@@ -209,7 +209,7 @@ def _note_failure(subscription: ZoneSubscription, job: Job, error: OutgoingError
         if held is not None:
             held.failures = min(held.failures + 1, 1_000)
             held.problem = str(error)[:500]
-            wait = min(FIRST_RETRY * 2 ** min(held.failures - 1, 20), max(LONGEST_RETRY, timedelta(hours=held.interval_h)))
+            wait = min(FIRST_RETRY * 2 ** min(held.failures - 1, 20), max(MAX_RETRY_LENGTH, timedelta(hours=held.interval_h)))
             if isinstance(error, OutgoingFailed) and error.retry_after_s is not None:
                 wait = max(wait, timedelta(seconds=error.retry_after_s))
             held.next_fetch_at = timezone.now() + wait

@@ -52,7 +52,7 @@ def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) ->
 
     Two that are begun at once wait for each other.
     """
-    _refuse_more_than(max(settings.LARGEST_FILE_BYTES.values()), size_bytes)
+    _refuse_more_than(max(settings.MAX_UPLOAD_BYTES.values()), size_bytes)
     with transaction.atomic():
         if created_by is not None:
             Organisation.objects.select_for_update(no_key=True).filter(pk=created_by.organisation_id).values_list("pk").first()
@@ -65,7 +65,7 @@ def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) ->
 
 def check_size_for(kind: str, size_bytes: int) -> None:
     """Each kind of data has its own limit. Raises UploadTooLarge."""
-    _refuse_more_than(settings.LARGEST_FILE_BYTES[kind], size_bytes)
+    _refuse_more_than(settings.MAX_UPLOAD_BYTES[kind], size_bytes)
 
 
 def delete_upload(*, upload: Upload) -> None:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from inspection.geodesy.wgs84 import FloatArray
 
 BLOCK_SIZE = 256
-LOWEST_M, HIGHEST_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void
+MIN_HEIGHT_M, MAX_HEIGHT_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void
 NO_WEIGHT = 1e-6  # of a post: less than this is the rounding of a position, a micrometre of height
 
 

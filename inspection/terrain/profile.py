@@ -8,8 +8,8 @@ import shapely
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
 
-MOST_SAMPLES = 5_000
-LEAST_STEP_M = 1.0
+MAX_SAMPLES = 5_000
+MIN_STEP_M = 1.0
 SAME_PLACE_M = 0.01
 
 
@@ -24,10 +24,10 @@ class Samples:
 def samples_along(line: FloatArray, step_m: float) -> Samples:
     """Places on the line of shape (k, 2), k ≥ 2, straight in longitude and latitude between vertices, no farther apart than step_m.
 
-    The step is widened where that would be more than MOST_SAMPLES.
+    The step is widened where that would be more than MAX_SAMPLES.
     """
     lengths_m = distance_m(line[:-1], line[1:])
-    step_m = max(step_m, LEAST_STEP_M, float(lengths_m.sum()) / max(MOST_SAMPLES - len(line), 1))
+    step_m = max(step_m, MIN_STEP_M, float(lengths_m.sum()) / max(MAX_SAMPLES - len(line), 1))
     distances, places = [np.zeros(1)], [line[:1]]
     before_m = 0.0
     for start, end, length_m in zip(line[:-1], line[1:], lengths_m.tolist(), strict=True):

@@ -10,7 +10,7 @@ from inspection.models import AssetKind
 from inspection.selectors import Box
 from workspace.errors import ApiProblem
 
-LONGEST_TEXT = 100
+MAX_TEXT_LENGTH = 100
 _LON, _LAT = r"-?(180|(1[0-7][0-9]|[0-9]{1,2})(\.[0-9]+)?)", r"-?(90|[0-8]?[0-9](\.[0-9]+)?)"
 LON_LAT = {"type": "string", "pattern": f"^{_LON},{_LAT}$"}
 BOX_TEXT = {"type": "string", "pattern": f"^{_LON},{_LAT},{_LON},{_LAT}$"}
@@ -45,6 +45,6 @@ def kinds_of(request: Request) -> list[AssetKind]:
 
 def text_of(request: Request) -> str:
     text = request.query_params.get("text", "").strip()
-    if len(text) > LONGEST_TEXT or not text.isprintable():
-        raise invalid("text", _("At most %(longest_text)s printable characters.") % {"longest_text": LONGEST_TEXT})
+    if len(text) > MAX_TEXT_LENGTH or not text.isprintable():
+        raise invalid("text", _("At most %(longest_text)s printable characters.") % {"longest_text": MAX_TEXT_LENGTH})
     return text

@@ -29,7 +29,7 @@ from workspace.models import Role
 from workspace.paging import asked_choice, asked_flag
 from workspace.whole_numbers import WholeNumber
 
-MOST_CHOICES = 20
+MAX_CHOICES = 20
 FROM = WholeNumber("from", "id of the support where it begins")
 TO = WholeNumber("to", "id of the support where it ends")
 
@@ -66,13 +66,13 @@ class AssetLookup(APIView):
         asked = {picking.plain_ref(ref): ref for ref in reversed(body.validated_data["refs"])}
         refs = list(reversed(asked))
         found = picking.assets_called(refs, kinds=body.validated_data.get("kinds", ()))
-        rows = {row["id"]: row for row in picked_assets(pk for ref in refs for pk in islice(found[ref], MOST_CHOICES))}
+        rows = {row["id"]: row for row in picked_assets(pk for ref in refs for pk in islice(found[ref], MAX_CHOICES))}
         results = [
             {
                 "ref": asked[ref],
                 "match": "none" if not found[ref] else "found" if len(found[ref]) == 1 else "several",
                 "count": len(found[ref]),
-                "assets": [rows[pk] for pk in found[ref][:MOST_CHOICES] if pk in rows],
+                "assets": [rows[pk] for pk in found[ref][:MAX_CHOICES] if pk in rows],
             }
             for ref in refs
         ]
@@ -102,8 +102,8 @@ class AssetsWithin(APIView):
             raise invalid("polygon", _("It encloses nothing."))
         kinds = body.validated_data.get("kinds") or [AssetKind.TOWER, AssetKind.BRIDGE]
         assets = picking.assets_in_area(area, kinds)
-        rows = list(assets.select_related("line").only(*FIELDS_OF_AN_ASSET)[: picking.MOST_IN_AN_AREA])
-        count = len(rows) if len(rows) < picking.MOST_IN_AN_AREA else assets.count()
+        rows = list(assets.select_related("line").only(*FIELDS_OF_AN_ASSET)[: picking.MAX_IN_AN_AREA])
+        count = len(rows) if len(rows) < picking.MAX_IN_AN_AREA else assets.count()
         return Response({"count": count, "assets": [picked_asset(asset) for asset in rows]})
 
 

@@ -18,7 +18,7 @@ DAY_S = 86_400.0
 EPOCH = date(1970, 1, 1)
 SUNRISE_ZENITH_DEG = 90 + 50 / 60  # 34' of refraction and the sun's radius of 16': U.S. Naval Observatory, "Rise, Set, and Twilight"
 TWILIGHT_ZENITH_DEG = 96.0  # the same, civil twilight
-FARTHEST_LAT_DEG = 89.8  # nearer to a pole its equations tell nothing
+MAX_LAT_DEG = 89.8  # nearer to a pole its equations tell nothing
 ROUNDS = 3  # the sun moves while one looks for it; the third round changes less than a second below 65 degrees of latitude
 
 _ZENITH_AND_DIRECTION: Mapping[str, tuple[float, SunDirection]] = {
@@ -29,7 +29,7 @@ _ZENITH_AND_DIRECTION: Mapping[str, tuple[float, SunDirection]] = {
 }
 SUN_ALLOWANCE_S = 120.0  # what the equations, the air and an observer on a hill differ by
 BOX_STEP_DEG = 0.1  # the sun is looked at on the corners of such a grid, so that neighbouring zones ask the same; 24 s of the sun's way
-LONGEST_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
+MAX_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
 EPOCH_WEEKDAY = DAYS.index("THU")  # of 1970-01-01
 _TIME = re.compile(r"(\d{2}):(\d{2}):(\d{2})Z")
 Box = tuple[float, float, float, float]  # west, south, east, north [deg]
@@ -45,7 +45,7 @@ def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float |
     Source: NOAA solar equations as the library astral has them, after J. Meeus, Astronomical Algorithms.
     """
     zenith_deg, direction = _ZENITH_AND_DIRECTION[event]
-    latitude = min(max(lat_deg, -FARTHEST_LAT_DEG), FARTHEST_LAT_DEG)
+    latitude = min(max(lat_deg, -MAX_LAT_DEG), MAX_LAT_DEG)
     midnight = julianday(EPOCH + timedelta(days=day))
     minutes = 720.0 - 4.0 * lon_deg
     for _ in range(ROUNDS):
@@ -104,7 +104,7 @@ def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> 
     if not entries:
         yield Span(first, last)
         return
-    if last - first > LONGEST_WINDOW_S:
+    if last - first > MAX_WINDOW_S:
         raise ValueError("too many days to look at")
     for entry in entries:
         weekdays = _weekdays(entry["day"])

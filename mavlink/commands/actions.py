@@ -13,7 +13,7 @@ from mavlink.commands.command import CommandStep, Effect, Seven
 from mavlink.vehicle_class import VehicleClass, refusal_words
 from mavlink.vehicle_state import VehicleState
 
-FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
+FIRST_PAUSE_S, MAX_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
 ABORT_ROUNDS = 3
@@ -265,4 +265,4 @@ def blind_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Mess
 
 def pause_s(sent: int) -> float:
     """After so many."""
-    return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), LONGEST_PAUSE_S)
+    return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), MAX_PAUSE_S)

@@ -11,10 +11,10 @@ from statistics import median
 from typing import NamedTuple
 
 WINDOW_S = 20.0  # of receipt, from which the pace is learnt
-SHORTEST_WINDOW_S = 4.0
-LEAST_POINTS = 8
-POINT_EVERY_S = 0.2
-REFIT_EVERY_S = 1.0
+MIN_WINDOW_S = 4.0
+MIN_POINTS = 8
+POINT_INTERVAL_S = 0.2
+REFIT_INTERVAL_S = 1.0
 ON_TIME_S = 1.0  # later than the earliest arrivals
 STEADY = 0.1  # by which the pace of both halves of the window may differ
 REAL_TIME = 0.05  # as near to 1 a pace is 1: clocks are better than this window
@@ -59,12 +59,12 @@ class VehicleClock:
         lateness_s = self.lateness_s(boot_s, now_s)
         self.offset_s += min(lateness_s, 0.0)
         self._early_s -= min(lateness_s, 0.0)
-        if self._points and now_s - self._points[-1].received_s < POINT_EVERY_S:
+        if self._points and now_s - self._points[-1].received_s < POINT_INTERVAL_S:
             return
         self._points.append(Point(now_s, boot_s, self._early_s))
         while now_s - self._points[0].received_s > WINDOW_S:
             self._points.popleft()
-        if abs(now_s - self._fitted_at_s) >= REFIT_EVERY_S:
+        if abs(now_s - self._fitted_at_s) >= REFIT_INTERVAL_S:
             self._fitted_at_s = now_s
             self._fit()
 
@@ -81,7 +81,7 @@ class VehicleClock:
     def _fit(self) -> None:
         points = list(self._points)
         on_time = [point for point in points if self.lateness_s(point.boot_s, point.received_s) < ON_TIME_S]
-        if len(on_time) >= LEAST_POINTS:
+        if len(on_time) >= MIN_POINTS:
             points = on_time
         pace = _steady_pace(points)
         if pace is None:
@@ -119,7 +119,7 @@ def _earliest(points: list[Point], rate: float) -> tuple[Point, float]:
 
 def _steady_pace(points: list[Point]) -> float | None:
     """Seconds a second, 1 where it is as good as 1; None while there are too few points, or it changes."""
-    if len(points) < LEAST_POINTS or points[-1].received_s - points[0].received_s < SHORTEST_WINDOW_S:
+    if len(points) < MIN_POINTS or points[-1].received_s - points[0].received_s < MIN_WINDOW_S:
         return None
     if any(later.boot_s < earlier.boot_s for earlier, later in pairwise(points)):
         return None

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
-LARGEST_SEQUENCE = 2**63 - 1
+MAX_SEQUENCE = 2**63 - 1
 EARLIEST_YEAR, LATEST_YEAR = 1970, 9998  # what a clock that was never set says, and what the database and Python both keep
-LONGEST_MODE = 30
+MAX_MODE_LENGTH = 30
 NEAR_KM, FAR_KM = 50.0, 500.0  # a place that is far as it stands and near with its two numbers changed over was sent the wrong way round
 EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
 
@@ -101,7 +101,7 @@ def _value(name: str, value: Any, known_place: tuple[float, float] | None) -> An
     if name in NUMBERS:
         found = _number(value, *NUMBERS[name])
         return found % 360.0 if name == "heading_deg" else found
-    return whole_number(value, *INTEGERS.get(name, (0, LARGEST_SEQUENCE)))
+    return whole_number(value, *INTEGERS.get(name, (0, MAX_SEQUENCE)))
 
 
 def instant(value: Any) -> datetime:
@@ -132,8 +132,8 @@ def _number(value: Any, lowest: float, highest: float) -> float:
 
 
 def _words(value: Any) -> str:
-    if not isinstance(value, str) or len(value) > LONGEST_MODE or not value.isprintable():
-        raise ValueError(f"At most {LONGEST_MODE} printable characters.")
+    if not isinstance(value, str) or len(value) > MAX_MODE_LENGTH or not value.isprintable():
+        raise ValueError(f"At most {MAX_MODE_LENGTH} printable characters.")
     return value
 
 

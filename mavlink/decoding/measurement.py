@@ -6,13 +6,13 @@ from dataclasses import dataclass, field, fields, replace
 from mavlink.frames import Message
 
 KEPT_FRAMES = 200.0  # over which the mean runs
-LARGEST_GAP = 128  # of numbers that wrap at 256; more is a repetition, another order, or a new start
+MAX_GAP = 128  # of numbers that wrap at 256; more is a repetition, another order, or a new start
 RADIO_FULL = 254
 RADIO_UNKNOWN = 255
 RADIO_KEPT_S = 10.0
-LONGEST_MODE = 30
-_SMALLEST, _LARGEST_SMALL, _LARGEST_INT = 0, 32_767, 2_147_483_647
-_COUNTED = (("mission_item", _LARGEST_INT), ("waypoint_sequence", _LARGEST_INT))
+MAX_MODE_LENGTH = 30
+_SMALLEST, _MAX_SMALL, _MAX_INT = 0, 32_767, 2_147_483_647
+_COUNTED = (("mission_item", _MAX_INT), ("waypoint_sequence", _MAX_INT))
 
 
 @dataclass
@@ -28,7 +28,7 @@ class LinkQuality:
     def count(self, component: int, sequence: int) -> None:
         before = self._last.get(component)
         step = 1 if before is None else (sequence - before) % 256
-        if not 1 <= step <= LARGEST_GAP:
+        if not 1 <= step <= MAX_GAP:
             return
         self._last[component] = sequence
         kept = (1.0 - 1.0 / KEPT_FRAMES) ** step
@@ -95,14 +95,14 @@ def believable(measurement: Measurement) -> Measurement:
     for name in ("battery_percent", "link_quality_percent"):
         if (value := getattr(measurement, name)) is not None and not 0 <= value <= 100:
             wrong[name] = None
-    for name, largest in (("gps_fix", _LARGEST_SMALL), ("satellites", _LARGEST_SMALL), *_COUNTED):
+    for name, largest in (("gps_fix", _MAX_SMALL), ("satellites", _MAX_SMALL), *_COUNTED):
         if (value := getattr(measurement, name)) is not None and not _SMALLEST <= value <= largest:
             wrong[name] = None
     heading_deg = measurement.heading_deg
     if heading_deg is not None and math.isfinite(heading_deg) and not 0 <= heading_deg < 360:
         wrong["heading_deg"] = heading_deg % 360.0 % 360.0  # twice: of a tiny negative angle the first gives 360
-    if "\0" in measurement.mode or len(measurement.mode) > LONGEST_MODE:
-        wrong["mode"] = measurement.mode.replace("\0", "")[:LONGEST_MODE]
+    if "\0" in measurement.mode or len(measurement.mode) > MAX_MODE_LENGTH:
+        wrong["mode"] = measurement.mode.replace("\0", "")[:MAX_MODE_LENGTH]
     return replace(measurement, **wrong) if wrong else measurement  # type: ignore[arg-type]
 
 

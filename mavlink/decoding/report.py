@@ -11,8 +11,8 @@ from mavlink.decoding.measurement import Measurement, believable
 from mavlink.frames import Message
 
 PIECE = 50  # characters of a whole piece; a shorter one is the last
-PATIENCE_S = 3.0
-MOST_OPEN = 8
+TIMEOUT_S = 3.0
+MAX_OPEN = 8
 LONGEST = 500
 KEPT_S = 10.0  # a value that was not told for so long is not known any more
 E7 = 1e7
@@ -60,13 +60,13 @@ class TextCollector:
         last = next((place for place, piece in collected.pieces.items() if len(piece) < PIECE), None)
         if last is not None and all(place in collected.pieces for place in range(last)):
             return [_closed(self._open.pop(key))]
-        return self._overdue(now_s, most=MOST_OPEN)
+        return self._overdue(now_s, most=MAX_OPEN)
 
     def tick(self, now_s: float) -> list[StatusText]:
-        return self._overdue(now_s, most=MOST_OPEN)
+        return self._overdue(now_s, most=MAX_OPEN)
 
     def _overdue(self, now_s: float, *, most: int) -> list[StatusText]:
-        over = [key for key, collected in self._open.items() if now_s - collected.received_s > PATIENCE_S]
+        over = [key for key, collected in self._open.items() if now_s - collected.received_s > TIMEOUT_S]
         over += [key for key in self._open if key not in over][: max(len(self._open) - len(over) - most, 0)]
         return [_closed(self._open.pop(key)) for key in over]
 

@@ -11,7 +11,7 @@ from mavlink.vehicle_plan import FlightLoad, MissionType
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
 # the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
-MOST_ITEMS = {(Flavour.ARDUPILOT, MissionType.MISSION): 649}
+MAX_ITEMS = {(Flavour.ARDUPILOT, MissionType.MISSION): 649}
 USUAL_ITEMS = {(Flavour.PX4, MissionType.MISSION): 500, (Flavour.PX4, MissionType.FENCE): 64, (Flavour.PX4, MissionType.RALLY): 8}
 FIRST_LEG = "MIS_DIST_1WP"  # PX4, in metres; 0 or below: not limited
 ANY_LEG = "MIS_DIST_WPS"
@@ -29,7 +29,7 @@ class LimitWarning:
 
 def too_many(load: FlightLoad, flavour: Flavour) -> LimitWarning | None:
     """The first list that no vehicle of the flavour takes."""
-    return next(_longer(load, flavour, MOST_ITEMS, "takes", "too-many-items"), None)
+    return next(_longer(load, flavour, MAX_ITEMS, "takes", "too-many-items"), None)
 
 
 def count_warnings(load: FlightLoad, flavour: Flavour) -> tuple[LimitWarning, ...]:

@@ -13,8 +13,8 @@ from missions.models.fleet import EndAction, Uav
 from workspace.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
-LONGEST_NAME = 200
-LONGEST_SENSOR = 100
+MAX_NAME_LENGTH = 200
+MAX_SENSOR_LENGTH = 100
 
 
 class MissionState(models.TextChoices):
@@ -43,7 +43,7 @@ class Mission(models.Model):
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="missions")
-    name = models.CharField(max_length=LONGEST_NAME)
+    name = models.CharField(max_length=MAX_NAME_LENGTH)
     author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="missions")
     state = models.CharField(max_length=20, choices=MissionState.choices, default=MissionState.DRAFT)
     objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)
@@ -144,7 +144,7 @@ class MissionUav(models.Model):
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
     sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
-    sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
+    sensors = ArrayField(models.CharField(max_length=MAX_SENSOR_LENGTH), default=list, blank=True)
     performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see planning/energy/performance.py")
     own_figures = ArrayField(
         models.CharField(max_length=20),
@@ -198,7 +198,7 @@ class InspectionTarget(models.Model):
     task = models.JSONField(default=dict, help_text="see planning/problem.py, Task")
     priority = models.CharField(max_length=6, choices=TargetPriority.choices, default=TargetPriority.NORMAL)
     uav_name = models.CharField(max_length=100, blank=True, help_text="the only UAV that may do it; empty = any")
-    sensor = models.CharField(max_length=LONGEST_SENSOR, blank=True, help_text="that its UAV must have; empty = any")
+    sensor = models.CharField(max_length=MAX_SENSOR_LENGTH, blank=True, help_text="that its UAV must have; empty = any")
     external_id = models.CharField(
         max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="", help_text="another system's id, such as a work item's"
     )

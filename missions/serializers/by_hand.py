@@ -6,28 +6,28 @@ from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import FASTEST_MPS
+from missions.serializers.limits import MAX_SPEED_MPS
 from missions.serializers.shapes import WaypointSerializer
 from missions.services.hand_checks import HandLook
-from missions.services.hand_points import MOST_WAYPOINTS, HandPoint
+from missions.services.hand_points import MAX_WAYPOINTS, HandPoint
 from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
 from workspace import strict_serializers as serializers
 from workspace.fields import FiniteFloatField
 
-MOST_LEGS = 200
-HIGHEST_AGL_M = 10_000.0
+MAX_LEGS = 200
+MAX_AGL_M = 10_000.0
 
 
 class HandPointSerializer(KnownFieldsSerializer):
     """A waypoint as it is wished."""
 
     position = PositionField()
-    altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_AGL_M)
+    altitude_agl_m = FiniteFloatField(min_value=0, max_value=MAX_AGL_M)
     was = serializers.IntegerField(
         allow_null=True, required=False, min_value=0, help_text="its place in the route until now; null: it is put in"
     )
     speed_mps = AboveZeroField(
-        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="over ground on the leg that leads here; null: the UAV's own"
+        allow_null=True, required=False, max_value=MAX_SPEED_MPS, help_text="over ground on the leg that leads here; null: the UAV's own"
     )
 
 
@@ -35,8 +35,8 @@ class HandRouteSerializer(KnownFieldsSerializer):
     waypoints = HandPointSerializer(many=True, allow_empty=False)
 
     def validate_waypoints(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        if len(value) > MOST_WAYPOINTS:
-            raise serializers.ValidationError(f"At most {MOST_WAYPOINTS} waypoints.")
+        if len(value) > MAX_WAYPOINTS:
+            raise serializers.ValidationError(f"At most {MAX_WAYPOINTS} waypoints.")
         return value
 
     def points(self) -> list[HandPoint]:
@@ -102,7 +102,7 @@ def hand_look_json(look: HandLook) -> dict[str, Any]:
 
 class LegEndSerializer(KnownFieldsSerializer):
     position = PositionField()
-    altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_AGL_M)
+    altitude_agl_m = FiniteFloatField(min_value=0, max_value=MAX_AGL_M)
     arrival_s = FiniteFloatField(required=False, allow_null=True, help_text="seconds after the departure; null: at any time of the flight")
 
 
@@ -110,7 +110,7 @@ class LegSerializer(KnownFieldsSerializer):
     start = LegEndSerializer()
     end = LegEndSerializer()
     speed_mps = AboveZeroField(
-        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="over ground; null: the UAV's own. Only with mission and uav"
+        allow_null=True, required=False, max_value=MAX_SPEED_MPS, help_text="over ground; null: the UAV's own. Only with mission and uav"
     )
 
 
@@ -121,8 +121,8 @@ class LegChecksInputSerializer(KnownFieldsSerializer):
     uav = serializers.IntegerField(required=False, allow_null=True, min_value=0, help_text="its place in that mission")
 
     def validate_legs(self, value: list[dict[str, Any]]) -> list[dict[str, Any]]:
-        if len(value) > MOST_LEGS:
-            raise serializers.ValidationError(f"At most {MOST_LEGS} legs.")
+        if len(value) > MAX_LEGS:
+            raise serializers.ValidationError(f"At most {MAX_LEGS} legs.")
         return value
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:

@@ -6,15 +6,15 @@ from drf_spectacular.utils import extend_schema_field
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
+from missions.serializers.limits import MAX_LEG_M, MIN_LEG_M
 from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import command_outcome_in_words
 from workspace import strict_serializers as serializers
 
-LONGEST_WHY = 300
-MOST_FLIGHTS = 100
+MAX_WHY_LENGTH = 300
+MAX_FLIGHTS = 100
 MAX_UAVS = 1_000
 PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"
 PRIORITIES = ("safety", "pause", "mission", "parameter")
@@ -52,25 +52,25 @@ class ApproveInputSerializer(KnownFieldsSerializer):
         required=False,
         allow_null=True,
         default=None,
-        min_value=SHORTEST_LEG_M,
-        max_value=LONGEST_LEG_M,
+        min_value=MIN_LEG_M,
+        max_value=MAX_LEG_M,
         help_text="autopilots are given points on each leg that is longer, on the same line; without it: legs as planned",
     )
 
 
 class ReasonInputSerializer(KnownFieldsSerializer):
-    reason = serializers.CharField(max_length=LONGEST_WHY, help_text="kept in the mission's history")
+    reason = serializers.CharField(max_length=MAX_WHY_LENGTH, help_text="kept in the mission's history")
 
 
 class WhyInputSerializer(KnownFieldsSerializer):
-    why = serializers.CharField(max_length=LONGEST_WHY, required=False, allow_blank=True, default="")
+    why = serializers.CharField(max_length=MAX_WHY_LENGTH, required=False, allow_blank=True, default="")
 
 
 class DispatchInputSerializer(WhyInputSerializer):
     uav = serializers.IntegerField(
         required=False, min_value=0, max_value=10_000, help_text="its place in the mission; without it: all that have nothing yet"
     )
-    flight = serializers.IntegerField(required=False, min_value=1, max_value=MOST_FLIGHTS, help_text="of this UAV, from 1 on")
+    flight = serializers.IntegerField(required=False, min_value=1, max_value=MAX_FLIGHTS, help_text="of this UAV, from 1 on")
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if "flight" in attrs and "uav" not in attrs:

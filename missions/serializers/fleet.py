@@ -6,9 +6,9 @@ from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.models import Base, CredentialKind, UavCredential, UavType
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.inputs import MAX_RANGE_M, MAX_SPEED_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import LARGEST_POWER_W
+from missions.serializers.limits import MAX_POWER_W
 from missions.serializers.performance import fault_words
 from planning.energy.performance import (
     AIRSPEEDS_MPS,
@@ -22,7 +22,7 @@ from planning.energy.performance import (
 )
 from workspace import strict_serializers as serializers
 
-MOST_SENSORS = 12
+MAX_SENSORS = 12
 
 
 class UavTypeSerializer(KnownFieldsSerializer):
@@ -30,17 +30,17 @@ class UavTypeSerializer(KnownFieldsSerializer):
 
     id = serializers.IntegerField(read_only=True)
     name = serializers.CharField(max_length=100)
-    max_range_m = AboveZeroField(allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery")
-    cruise_speed_mps = AboveZeroField(required=False, max_value=FASTEST_MPS)
+    max_range_m = AboveZeroField(allow_null=True, required=False, max_value=MAX_RANGE_M, help_text="metres on one battery")
+    cruise_speed_mps = AboveZeroField(required=False, max_value=MAX_SPEED_MPS)
     battery_wh = BetweenField(BATTERIES_WH, allow_null=True, required=False, help_text="watt-hours of a full battery")
     mass_kg = BetweenField(MASSES_KG, allow_null=True, required=False, help_text="kilograms at take-off")
     reserve_percent = BetweenField(RESERVES_PERCENT, required=False, help_text="that no plan uses")
     max_airspeed_mps = BetweenField(AIRSPEEDS_MPS, allow_null=True, required=False, help_text="null: its cruise speed")
     rotor_disk_m2 = BetweenField(ROTOR_DISKS_M2, allow_null=True, required=False, help_text="area swept by all rotors; null: the Iris's")
     hover_power_w = AboveZeroField(
-        allow_null=True, required=False, max_value=LARGEST_POWER_W, help_text="in a calm hover, as measured; null: worked out"
+        allow_null=True, required=False, max_value=MAX_POWER_W, help_text="in a calm hover, as measured; null: worked out"
     )
-    sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MOST_SENSORS)
+    sensors = serializers.ListField(child=serializers.CharField(max_length=50), required=False, max_length=MAX_SENSORS)
     uav_count = serializers.IntegerField(read_only=True)
     revision = serializers.IntegerField(read_only=True, help_text="the ETag")
     updated_at = serializers.DateTimeField(read_only=True)

@@ -13,21 +13,21 @@ from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
-    FARTHEST_RANGE_M,
-    FASTEST_MPS,
-    HIGHEST_WIND_M,
-    LARGEST_KEY,
-    LARGEST_POWER_W,
-    LEAST_CHARGING_W,
-    LONGEST_SENSOR,
-    LONGEST_UAV_NAME,
-    MOST_DAYS_AHEAD,
-    MOST_RALLY_POINTS,
-    MOST_SENSORS_OF_UAV,
-    MOST_SORTIES,
-    MOST_TARGETS,
-    MOST_WIND_LAYERS,
-    STRONGEST_WIND_MPS,
+    MAX_DAYS_AHEAD,
+    MAX_KEY,
+    MAX_POWER_W,
+    MAX_RALLY_POINTS,
+    MAX_RANGE_M,
+    MAX_SENSOR_LENGTH,
+    MAX_SENSORS_OF_UAV,
+    MAX_SORTIES,
+    MAX_SPEED_MPS,
+    MAX_TARGETS,
+    MAX_UAV_NAME_LENGTH,
+    MAX_WIND_LAYERS,
+    MAX_WIND_M,
+    MAX_WIND_MPS,
+    MIN_CHARGING_W,
 )
 from missions.serializers.performance import fault_words
 from missions.services import (
@@ -75,8 +75,8 @@ class TaskSerializer(KnownFieldsSerializer):
 class WindLayerSerializer(KnownFieldsSerializer):
     """Wind at a height above ground; between two heights it is interpolated, beyond them it stays."""
 
-    altitude_agl_m = FiniteFloatField(min_value=0, max_value=HIGHEST_WIND_M)
-    speed_mps = FiniteFloatField(min_value=0, max_value=STRONGEST_WIND_MPS)
+    altitude_agl_m = FiniteFloatField(min_value=0, max_value=MAX_WIND_M)
+    speed_mps = FiniteFloatField(min_value=0, max_value=MAX_WIND_MPS)
     from_deg = FiniteFloatField(min_value=0, max_value=359.999999, help_text="where it blows from, degrees from true north, clockwise")
 
 
@@ -88,7 +88,7 @@ class ConditionsSerializer(KnownFieldsSerializer):
 
     def to_internal_value(self, data: Any) -> Conditions:
         if isinstance(data, dict) and isinstance(data.get("wind"), list):
-            _no_more_than(MOST_WIND_LAYERS, data["wind"], "heights of wind")
+            _no_more_than(MAX_WIND_LAYERS, data["wind"], "heights of wind")
         try:
             return conditions_from_json(super().to_internal_value(data))
         except InvalidConditions as error:
@@ -103,7 +103,7 @@ class PerformanceFieldsSerializer(KnownFieldsSerializer):
     reserve_percent = BetweenField(RESERVES_PERCENT, required=False, help_text="of the battery, that no plan uses")
     max_airspeed_mps = BetweenField(AIRSPEEDS_MPS, required=False, allow_null=True, help_text="null: its cruise speed")
     rotor_disk_m2 = BetweenField(ROTOR_DISKS_M2, required=False, allow_null=True, help_text="null: the Iris's")
-    hover_power_w = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
+    hover_power_w = AboveZeroField(required=False, allow_null=True, max_value=MAX_POWER_W, help_text="as measured; null: worked out")
 
 
 class UavInputSerializer(PerformanceFieldsSerializer):
@@ -111,24 +111,24 @@ class UavInputSerializer(PerformanceFieldsSerializer):
 
     id = serializers.IntegerField(required=False, allow_null=True)
     is_simulated = serializers.BooleanField(read_only=True, help_text="of the stored UAV; sent again it says nothing")
-    name = serializers.CharField(max_length=LONGEST_UAV_NAME, required=False)
+    name = serializers.CharField(max_length=MAX_UAV_NAME_LENGTH, required=False)
     position = PositionField(required=False)
-    max_range_m = AboveZeroField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")
-    cruise_speed_mps = AboveZeroField(required=False, max_value=FASTEST_MPS)
+    max_range_m = AboveZeroField(required=False, allow_null=True, max_value=MAX_RANGE_M, help_text="null or missing: not limited")
+    cruise_speed_mps = AboveZeroField(required=False, max_value=MAX_SPEED_MPS)
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
     most_targets = serializers.IntegerField(
-        required=False, allow_null=True, min_value=1, max_value=MOST_TARGETS, help_text="null or missing: not limited"
+        required=False, allow_null=True, min_value=1, max_value=MAX_TARGETS, help_text="null or missing: not limited"
     )
     sorties = serializers.IntegerField(
         required=False,
         min_value=1,
-        max_value=MOST_SORTIES,
+        max_value=MAX_SORTIES,
         help_text="flights that it makes at most, each on a full battery; more than one only for a UAV that returns to its start",
     )
     sensors = serializers.ListField(
-        child=serializers.CharField(max_length=LONGEST_SENSOR),
+        child=serializers.CharField(max_length=MAX_SENSOR_LENGTH),
         required=False,
-        max_length=MOST_SENSORS_OF_UAV,
+        max_length=MAX_SENSORS_OF_UAV,
         help_text="missing: the stored UAV's",
     )
     own_figures = serializers.ListField(
@@ -148,7 +148,7 @@ class UavInputSerializer(PerformanceFieldsSerializer):
 class TargetInputSerializer(KnownFieldsSerializer):
     """An asset, a point (`position`) or `stretch` on one, or a bare `position`."""
 
-    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=LARGEST_KEY)
+    asset = serializers.IntegerField(required=False, allow_null=True, min_value=1, max_value=MAX_KEY)
     position = PositionField(required=False, allow_null=True)
     stretch = serializers.ListField(child=PositionField(), min_length=2, max_length=2, required=False, allow_null=True)
     task = TaskSerializer(required=False, allow_null=True)
@@ -156,10 +156,10 @@ class TargetInputSerializer(KnownFieldsSerializer):
         choices=TargetPriority.choices, required=False, help_text="a high one is never left out for any number of lower ones"
     )
     uav = serializers.CharField(
-        max_length=LONGEST_UAV_NAME, required=False, allow_null=True, help_text="name of the only UAV of the request that may do it"
+        max_length=MAX_UAV_NAME_LENGTH, required=False, allow_null=True, help_text="name of the only UAV of the request that may do it"
     )
     sensor = serializers.CharField(
-        max_length=LONGEST_SENSOR, required=False, allow_null=True, allow_blank=True, help_text="only UAVs that have it may do it"
+        max_length=MAX_SENSOR_LENGTH, required=False, allow_null=True, allow_blank=True, help_text="only UAVs that have it may do it"
     )
     external_id = ExternalIdField(help_text="another system's id, such as a work item's; empty: none")
     attributes = AttributesField(help_text="of other systems")
@@ -176,7 +176,7 @@ class LostLinkSerializer(KnownFieldsSerializer):
     """What UAVs do when their link is lost: go on, or hold for a while and return, or return to their start or the nearest rally point."""
 
     behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
-    rally_points = serializers.ListField(child=PositionField(), required=False, max_length=MOST_RALLY_POINTS)
+    rally_points = serializers.ListField(child=PositionField(), required=False, max_length=MAX_RALLY_POINTS)
     hold_s = FiniteFloatField(required=False, min_value=0, max_value=MAX_HOLD_S, help_text="before it returns; only with hold")
 
 
@@ -196,7 +196,7 @@ class LockListSerializer(serializers.ListSerializer):
 class LockSerializer(KnownFieldsSerializer):
     """Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route."""
 
-    uav = serializers.CharField(max_length=LONGEST_UAV_NAME, help_text="name of a UAV of the request")
+    uav = serializers.CharField(max_length=MAX_UAV_NAME_LENGTH, help_text="name of a UAV of the request")
     targets = serializers.ListField(
         child=serializers.IntegerField(min_value=0), allow_empty=False, help_text="indices of the targets, in the order flown"
     )
@@ -229,8 +229,8 @@ class OptionsSerializer(KnownFieldsSerializer):
     charging_w = FiniteFloatField(
         required=False,
         allow_null=True,
-        min_value=LEAST_CHARGING_W,
-        max_value=LARGEST_POWER_W,
+        min_value=MIN_CHARGING_W,
+        max_value=MAX_POWER_W,
         help_text="power of charging at towers on the way, of UAVs that fly once; null: there is none",
     )
 
@@ -240,7 +240,7 @@ class OptionsSerializer(KnownFieldsSerializer):
         return lost_link_from_json(value or {})
 
     def validate_departs_at(self, value: datetime | None) -> datetime | None:
-        if value is not None and abs((value - timezone.now()).days) > MOST_DAYS_AHEAD:
+        if value is not None and abs((value - timezone.now()).days) > MAX_DAYS_AHEAD:
             raise serializers.ValidationError(_("A departure lies within two years of today."))
         return value
 

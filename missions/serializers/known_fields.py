@@ -7,8 +7,8 @@ from typing import Any
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-MOST_TOLD = 10
-LONGEST_TOLD = 80
+MAX_TOLD = 10
+MAX_TOLD_LENGTH = 80
 UNKNOWN_TOLD = "unknown_fields_told"
 
 
@@ -19,11 +19,11 @@ class KnownFieldsSerializer(serializers.Serializer):
 
     def to_internal_value(self, data: Any) -> Any:
         if isinstance(data, Mapping):
-            unknown = [str(name)[:LONGEST_TOLD] for name in data if name not in self.fields]
+            unknown = [str(name)[:MAX_TOLD_LENGTH] for name in data if name not in self.fields]
             if unknown:
                 context = self.context
                 told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []
-                full = unknown[: max(0, MOST_TOLD - len(told))]
+                full = unknown[: max(0, MAX_TOLD - len(told))]
                 told += full
                 words = {name: [_words(name, self.fields)] for name in full}
                 raise serializers.ValidationError(words or {unknown[0]: [_("There is no such field.")]})

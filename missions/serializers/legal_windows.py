@@ -18,8 +18,8 @@ from missions.zone_selectors import LegalWindows
 from planning.clearance.zone_clearance import FlownRoute
 from workspace import strict_serializers as serializers
 
-MOST_WAYPOINTS = 20_000
-MOST_ROUTES = 50
+MAX_WAYPOINTS = 20_000
+MAX_ROUTES = 50
 
 
 class TimedWaypointSerializer(serializers.Serializer):
@@ -75,7 +75,7 @@ class TimedRouteField(serializers.Field):
 
 class LegalWindowsInputSerializer(KnownFieldsSerializer):
     routes = serializers.ListField(
-        child=TimedRouteField(), allow_empty=False, max_length=MOST_ROUTES, help_text="of a plan, as it was answered"
+        child=TimedRouteField(), allow_empty=False, max_length=MAX_ROUTES, help_text="of a plan, as it was answered"
     )
 
     def get_fields(self) -> dict[str, serializers.Field]:
@@ -83,8 +83,8 @@ class LegalWindowsInputSerializer(KnownFieldsSerializer):
         return super().get_fields() | {"from": begin}
 
     def validate_routes(self, routes: list[FlownRoute]) -> list[FlownRoute]:
-        if sum(len(route.position) for route in routes) > MOST_WAYPOINTS:
-            raise serializers.ValidationError(_("At most %(count)d waypoints can be looked at.") % {"count": MOST_WAYPOINTS})
+        if sum(len(route.position) for route in routes) > MAX_WAYPOINTS:
+            raise serializers.ValidationError(_("At most %(count)d waypoints can be looked at.") % {"count": MAX_WAYPOINTS})
         return routes
 
 

@@ -11,7 +11,7 @@ from django.conf import settings
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
-from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_KEY, LONGEST_UAV_NAME
+from missions.serializers.limits import MAX_KEY, MAX_RANGE_M, MAX_SPEED_MPS, MAX_UAV_NAME_LENGTH
 from missions.services import PlanRequest, TargetRequest, UavRequest
 from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
 
@@ -59,7 +59,7 @@ def _uav(value: Any) -> UavRequest:
     if (
         type(name) is not str
         or not name
-        or len(name) > LONGEST_UAV_NAME
+        or len(name) > MAX_UAV_NAME_LENGTH
         or not name.isascii()
         or not name.isprintable()
         or name != name.strip()
@@ -69,8 +69,8 @@ def _uav(value: Any) -> UavRequest:
     return UavRequest(
         name=name,
         position=_position(value.get("position")),
-        max_range_m=None if range_m is None else _above_zero(range_m, FARTHEST_RANGE_M),
-        cruise_speed_mps=_above_zero(value.get("cruise_speed_mps", settings.FLIGHT_RULES.cruise_speed_mps), FASTEST_MPS),
+        max_range_m=None if range_m is None else _above_zero(range_m, MAX_RANGE_M),
+        cruise_speed_mps=_above_zero(value.get("cruise_speed_mps", settings.FLIGHT_RULES.cruise_speed_mps), MAX_SPEED_MPS),
         end_action=_one_of(_END_ACTIONS, value.get("end_action", EndAction.HOVER.value)),
     )
 
@@ -80,7 +80,7 @@ def _target(value: Any) -> TargetRequest:
     asset, position, task = value.get("asset"), value.get("position"), value.get("task")
     if asset is None:
         at = _position(position)
-    elif type(asset) is int and 1 <= asset <= LARGEST_KEY and position is None:
+    elif type(asset) is int and 1 <= asset <= MAX_KEY and position is None:
         at = None
     else:
         raise _NotPlain

@@ -13,7 +13,7 @@ from workspace import strict_serializers as serializers
 from workspace.fields import FiniteFloatField
 from workspace.serializers import Declared
 
-MOST_FLIGHTS = 100  # a UAV from a base is one
+MAX_FLIGHTS = 100  # a UAV from a base is one
 
 
 class ReachabilityInputSerializer(OptionsSerializer):
@@ -21,7 +21,7 @@ class ReachabilityInputSerializer(OptionsSerializer):
 
     uavs = UavInputSerializer(many=True, allow_empty=False)
     bases = serializers.ListField(
-        child=serializers.IntegerField(min_value=1), required=False, max_length=MOST_FLIGHTS, help_text="ids of bases to start from"
+        child=serializers.IntegerField(min_value=1), required=False, max_length=MAX_FLIGHTS, help_text="ids of bases to start from"
     )
     box = serializers.ListField(
         child=FiniteFloatField(),
@@ -49,9 +49,9 @@ class ReachabilityInputSerializer(OptionsSerializer):
         rows = {row.pk: row for row in bases_of_organisation(self.context["organisation"]).filter(pk__in=asked)} if asked else {}
         if missing := [base for base in asked if base not in rows]:
             raise serializers.ValidationError({"bases": [_("There is no base %(base)s.") % {"base": missing[0]}]})
-        if len(attrs["uavs"]) * max(1, len(asked)) > MOST_FLIGHTS:
+        if len(attrs["uavs"]) * max(1, len(asked)) > MAX_FLIGHTS:
             raise serializers.ValidationError(
-                {"bases": [_("At most %(most)s flights, each UAV from each base, are looked at.") % {"most": MOST_FLIGHTS}]}
+                {"bases": [_("At most %(most)s flights, each UAV from each base, are looked at.") % {"most": MAX_FLIGHTS}]}
             )
         attrs["starts"] = tuple(BaseRequest(rows[base].name, LonLat(*rows[base].location.coords)) for base in asked)
         try:

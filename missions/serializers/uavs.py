@@ -7,7 +7,7 @@ from django.utils.translation import gettext as _
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.inputs import MAX_RANGE_M, MAX_SPEED_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.performance import fault_words
 from planning.energy.performance import (
@@ -51,9 +51,11 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
         required=False, help_text="MAVLink without a signature is taken for its own; changed by administrators alone"
     )
     max_range_m = AboveZeroField(
-        allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
+        allow_null=True, required=False, max_value=MAX_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )
-    cruise_speed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual")
+    cruise_speed_mps = AboveZeroField(
+        allow_null=True, required=False, max_value=MAX_SPEED_MPS, help_text="null: the type's, else the usual"
+    )
     battery_wh = BetweenField(BATTERIES_WH, allow_null=True, required=False, help_text="watt-hours of a full battery; null: the type's")
     mass_kg = BetweenField(MASSES_KG, allow_null=True, required=False, help_text="kilograms at take-off; null: the type's")
     reserve_percent = BetweenField(RESERVES_PERCENT, allow_null=True, required=False, help_text="that no plan uses; null: the type's")

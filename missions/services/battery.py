@@ -14,7 +14,7 @@ from planning.trajectory.sorties import wh_of_sorties
 
 JUST_BELOW = 1e-3
 LEFT = 0.999  # of a share: what is counted is rounded
-MOST_TRIED = 40  # targets of a route that are left out of it one by one
+MAX_TRIED = 40  # targets of a route that are left out of it one by one
 BEYOND_ENERGY = "beyond_energy"
 KEPT_BACK = "As drawn, over the ground and what stands tall, all routes that were tried with it take more than the battery may give."
 
@@ -48,7 +48,7 @@ def not_lasting_for(
     locked = {lock.uav for lock in request.locks}
     lacks = LeastLacks(request, found, ground)
     for uav, share in over.items():
-        if request.uavs[uav].name not in locked and len(routes[uav].targets) <= MOST_TRIED:
+        if request.uavs[uav].name not in locked and len(routes[uav].targets) <= MAX_TRIED:
             barred[uav] = _too_much_for(uav, request, lacks, None if routes[uav].lacks_wh > 0.0 else share)
     return {uav: targets for uav, targets in barred.items() if targets}
 

@@ -15,7 +15,7 @@ from planning.solver.progress import Progress
 from planning.trajectory.heights import FloatArray
 
 UNITS = {Objective.TOTAL: "m", Objective.MAKESPAN: "s", Objective.TIME: "s", Objective.ENERGY: "Wh"}
-MOST_POINTS = 6_000  # of all lines together: some 150 kB, once a second
+MAX_POINTS = 6_000  # of all lines together: some 150 kB, once a second
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Sketch:
     def _drawn(self, routes: Routes, bound: float | None) -> dict[str, Any]:
         problem = self.problem
         lines = {uav: self._line(uav, route) for uav, route in enumerate(routes) if route}
-        step = max(1, -(-sum(map(len, lines.values())) // MOST_POINTS))
+        step = max(1, -(-sum(map(len, lines.values())) // MAX_POINTS))
         return {
             "unit": UNITS[problem.objective],
             "value": round(problem.value(routes), 3),

@@ -29,7 +29,7 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 
 SAME_SPEED_MPS = 0.005
-MOST_STEPS = 5  # that can be taken back
+MAX_STEPS = 5  # that can be taken back
 
 
 def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[HandPoint], expected_revision: int | None = None) -> Mission:
@@ -43,9 +43,9 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
         rows, ground = list(route.waypoints.select_related("asset", "target")), hand_ground()
         until_now = kept_waypoints(rows)
         _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
-        if len(route.before_hand) == MOST_STEPS:  # the route as planned is forgotten, and with it what was proven of it
+        if len(route.before_hand) == MAX_STEPS:  # the route as planned is forgotten, and with it what was proven of it
             locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
-        route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MOST_STEPS:]
+        route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MAX_STEPS:]
         moved = zip(points, are_moved(points, until_now), strict=True)
         by_hand = {place_of(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
         _fly(locked, route, route_points(points, until_now), by_hand, ground)

@@ -23,8 +23,8 @@ from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from planning.trajectory.heights import GroundHeights
 
-MOST_TRIES = 6
-FIRM_FROM = MOST_TRIES - 2  # from this try on a battery counts as so much smaller, and nothing is kept from its UAV for it any more
+MAX_TRIES = 6
+FIRM_FROM = MAX_TRIES - 2  # from this try on a battery counts as so much smaller, and nothing is kept from its UAV for it any more
 
 KeptFrom = Mapping[int, frozenset[int]]
 
@@ -84,14 +84,14 @@ class DrawnAttempts:
         the question; what cannot be flown over is gone round from then on.
         """
         shown, scene = NOTHING, self.scene_with(None)
-        for number in range(MOST_TRIES):
+        for number in range(MAX_TRIES):
             found = self.attempt_on(scene, shown, 0.5**number)
             routes = found.routes(self.request, self.ground)
             over = battery_overruns(self.request, found, routes)
             in_the_way = spans_in_the_way(routes, scene.network, self.ground)
             if not over and not in_the_way:
                 break
-            if number == MOST_TRIES - 1:
+            if number == MAX_TRIES - 1:
                 found, routes = without_overruns(self.request, found, routes, over)
                 found, routes = without_routes_barred(self.request, found, routes, in_the_way)
                 break

@@ -13,8 +13,8 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 from workspace.number_text import number_text
 
 MOVED_M = 0.1  # less is rounding
-MOST_WAYPOINTS = 5_000
-LONGEST_M = 1_000_000.0
+MAX_WAYPOINTS = 5_000
+MAX_LENGTH_M = 1_000_000.0
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,16 @@ class HandPoint:
 
 def list_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
     """What is wrong with the list itself: with such a fault nothing else can be said of it."""
-    if len(points) > MOST_WAYPOINTS:
-        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MOST_WAYPOINTS}}
+    if len(points) > MAX_WAYPOINTS:
+        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MAX_WAYPOINTS}}
     kept = [point.was for point in points if point.was is not None]
     if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
         return {"waypoints": _("The waypoints are not in the order of the route.")}
     fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
     if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
         return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
-    if path_length_m(np.array([point.position for point in points])) > LONGEST_M:
-        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(LONGEST_M / 1_000)}}
+    if path_length_m(np.array([point.position for point in points])) > MAX_LENGTH_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(MAX_LENGTH_M / 1_000)}}
     return {}
 
 

@@ -14,7 +14,7 @@ from missions.services.requests import PlanRequest, task_from_json
 from planning.problem import Task
 from planning.trajectory.waypoints import WaypointKind
 
-MOST_KEPT = 32  # routes in a process
+MAX_KEPT = 32  # routes in a process
 
 
 class KeptAsset(NamedTuple):
@@ -83,7 +83,7 @@ def kept_waypoints(rows: Iterable[Waypoint]) -> tuple[KeptWaypoint, ...]:
     )
 
 
-@lru_cache(maxsize=MOST_KEPT)
+@lru_cache(maxsize=MAX_KEPT)
 def _kept(mission_id: UUID, revision: int, uav: int, edition: Edition) -> KeptRoute | None:
     mission = Mission.objects.get(pk=mission_id)
     found = _read(mission, uav)

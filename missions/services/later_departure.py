@@ -17,7 +17,7 @@ from missions.services.zone_choice import near_positions
 from planning.problem import Objective, Priority
 
 AHEAD_S = 48 * 3_600.0
-MOST_TRIES = 12
+MAX_TRIES = 12
 BETTER = 0.99  # of a value: less of a change is not worth the wait
 STEP_S = 60.0
 
@@ -25,7 +25,7 @@ STEP_S = 60.0
 def better_departure(*, request: PlanRequest, now: datetime) -> dict[str, Any]:
     """The first moment, of those at which a zone near the mission ends, at which a plan leaves out less or has less of its objective.
 
-    Looked at are the first MOST_TRIES of them in the AHEAD_S after the departure; without one, after now, and now itself. Each is a whole
+    Looked at are the first MAX_TRIES of them in the AHEAD_S after the departure; without one, after now, and now itself. Each is a whole
     plan. Raises InvalidRequest, NoGraph or GraphOutdated.
     """
     before = make_plan(request=request)
@@ -50,7 +50,7 @@ def _moments(request: PlanRequest, now: datetime) -> Iterator[datetime]:
     moments_s = {STEP_S * math.ceil(span.to_s / STEP_S) for span in spans if span.to_s < from_s + AHEAD_S}
     if request.departs_at is None:
         moments_s.add(STEP_S * math.ceil(from_s / STEP_S))
-    return (datetime.fromtimestamp(moment_s, UTC) for moment_s in sorted(moments_s)[:MOST_TRIES])
+    return (datetime.fromtimestamp(moment_s, UTC) for moment_s in sorted(moments_s)[:MAX_TRIES])
 
 
 def _is_better(request: PlanRequest, plan: Mapping[str, Any], before: Mapping[str, Any]) -> bool:

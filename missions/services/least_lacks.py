@@ -20,8 +20,8 @@ from planning.trajectory.sorties import wh_of_sorties
 
 IsClear = Callable[[PlannedRoute], bool]
 
-MOST_DRAWN = 300  # routes of one plan
-MOST_LISTED = 4  # targets of which each order is looked at
+MAX_DRAWN = 300  # routes of one plan
+MAX_LISTED = 4  # targets of which each order is looked at
 
 
 class Lack(NamedTuple):
@@ -61,12 +61,12 @@ class LeastLacks:
         self.barred: set[tuple[int, int]] = set()  # targets and UAVs: a way that was drawn passes what cannot be flown over
 
     def of_battery(self, target: int, only: int | None = None) -> Lack | None:
-        """Of all UAVs, or one of them; None where there is no way, or MOST_DRAWN are drawn already."""
+        """Of all UAVs, or one of them; None where there is no way, or MAX_DRAWN are drawn already."""
         best: Lack | None = None
         for counted_wh, uav, order in sorted(self._ways(target)):
             if best is not None and (counted_wh >= best.missing or best.missing <= 0.0):
                 break
-            if self._drawn >= MOST_DRAWN or only not in (None, uav):
+            if self._drawn >= MAX_DRAWN or only not in (None, uav):
                 continue
             self._drawn += 1
             route = self.found.drawn_alone(uav, order, self.ground)
@@ -126,7 +126,7 @@ class LeastLacks:
         """Every order over the visit, where targets are few: what is counted least may, as it is drawn, take more than another."""
         own = self.found.problem.visits[visit].target
         others = [number for number in range(len(self._visits)) if number != own]
-        if len(others) >= MOST_LISTED:
+        if len(others) >= MAX_LISTED:
             return
         for count in range(len(others) + 1):
             for targets in permutations(others, count):

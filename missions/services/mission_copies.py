@@ -9,7 +9,7 @@ from django.db.models import Model
 from django.utils.translation import gettext as _
 
 from missions.models import ENDED_STATES, InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
-from missions.models.missions import LONGEST_NAME
+from missions.models.missions import MAX_NAME_LENGTH
 from missions.services.missions import create_mission, note, request_of_mission
 from missions.services.refused import refuse
 from missions.services.still_apart import separation_of_stored
@@ -47,7 +47,7 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
     return create_mission(
         organisation=mission.organisation,
         author=author,
-        name=(name or _("{name} – follow-up").format(name=mission.name[: LONGEST_NAME - 20]))[:LONGEST_NAME],
+        name=(name or _("{name} – follow-up").format(name=mission.name[: MAX_NAME_LENGTH - 20]))[:MAX_NAME_LENGTH],
         request=replace(asked, uavs=uavs, targets=missed, locks=(), departs_at=None),
         external_id=mission.external_id,
         attributes=mission.attributes,
@@ -71,7 +71,7 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other
         values = {field: getattr(mission, field) for field in COPIED} | other
         if values["state"] != MissionState.DRAFT:
             values["state"] = MissionState.PLANNED
-        copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)
+        copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:MAX_NAME_LENGTH], **values)
         uavs = _copied(MissionUav, mission.mission_uavs.all(), mission=copy)
         targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, **NOT_FLOWN)
         rows = list(mission.routes.prefetch_related("waypoints"))
@@ -106,7 +106,7 @@ def _copy_of(row: Any, **values: Any) -> Any:
 
 def _free_name(mission: Mission) -> str:
     """ "North (copy)", then "North (copy 2)"."""
-    stem = mission.name[: LONGEST_NAME - 12]
+    stem = mission.name[: MAX_NAME_LENGTH - 12]
     taken = set(
         Mission.objects.filter(organisation=mission.organisation, deleted_at=None, name__startswith=stem).values_list("name", flat=True)
     )

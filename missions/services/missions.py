@@ -41,7 +41,7 @@ from workspace.models import Organisation, User
 from workspace.services import record_change
 
 BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
-MOST_NAMES = 5  # that an entry of the history keeps
+MAX_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
 
@@ -201,7 +201,7 @@ def _differences(before: dict[str, list[str]], after: dict[str, list[str]]) -> d
     for what, now in after.items():
         came, went = Counter(now) - Counter(before[what]), Counter(before[what]) - Counter(now)
         found |= {what: len(now), f"{what}_added": came.total(), f"{what}_removed": went.total()}
-        found[f"{what}_names"] = {"added": list(came)[:MOST_NAMES], "removed": list(went)[:MOST_NAMES]}
+        found[f"{what}_names"] = {"added": list(came)[:MAX_NAMES], "removed": list(went)[:MAX_NAMES]}
     return found
 
 

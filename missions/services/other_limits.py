@@ -11,7 +11,7 @@ from missions.services.attempts import Attempt
 from missions.services.least_lacks import LeastLacks
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
-from missions.services.unreached import LOCKED, MOST_NAMED, WIND, in_calm
+from missions.services.unreached import LOCKED, MAX_NAMED, WIND, in_calm
 from missions.services.wishes import has_sensor
 from planning.problem import BoolArray, Reason
 from planning.solver.reach import NO_WAY, least_needs, needed_range_m
@@ -31,7 +31,7 @@ class Limit(StrEnum):
 
 
 _OWN_LIMIT = {Reason.NO_PATH.value: Limit.NO_WAY, WIND: Limit.WIND}
-_EXPLAINED = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value, Reason.MOST_TARGETS.value, Reason.NO_PATH.value, WIND}
+_EXPLAINED = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value, Reason.MAX_TARGETS.value, Reason.NO_PATH.value, WIND}
 
 
 def with_other_limits(request: PlanRequest, found: Attempt, ground: GroundHeights | None) -> list[LeftOut]:
@@ -73,8 +73,8 @@ def _told(item: LeftOut, request: PlanRequest, limits: "_Limits") -> LeftOut:
 
 def _names(names: Sequence[str]) -> str:
     """The first of them, and how many more there are."""
-    more = len(names) - MOST_NAMED
-    return ", ".join(names[:MOST_NAMED]) + (f" +{more}" if more > 0 else "")
+    more = len(names) - MAX_NAMED
+    return ", ".join(names[:MAX_NAMED]) + (f" +{more}" if more > 0 else "")
 
 
 class _Limits:

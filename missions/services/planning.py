@@ -42,9 +42,9 @@ SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the l
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
 LARGEST = "201-"
 P = ParamSpec("P")
-MOST_GROUNDS = 5  # that may follow one another while one plan is made
-MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
-MOST_TRIES = 6  # with more zones each time
+MAX_GROUNDS = 5  # that may follow one another while one plan is made
+MAX_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
+MAX_TRIES = 6  # with more zones each time
 
 
 @dataclass(frozen=True, order=True)
@@ -190,8 +190,8 @@ class _Planner:
         if not choice.changes:
             return best, best
         chosen, freest = choice.narrowest, None
-        for _ in range(MOST_TRIES):
-            tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
+        for _ in range(MAX_TRIES):
+            tried = self._finished(ground, choice, chosen, share / MAX_TRIES)
             freest = freest or tried
             if not tried.worth < best.worth:
                 best = best.beside(tried, self.request)
@@ -214,7 +214,7 @@ class _Planner:
         What rises over wires in a valley may come into a zone under which its way was to lead: that is kept clear of at all heights then.
         """
         closed = np.zeros_like(chosen)
-        for _ in range(MOST_TRIES):
+        for _ in range(MAX_TRIES):
             tried = self._finished(ground, choice, chosen, share, closed)
             if not tried.met:
                 return tried
@@ -288,7 +288,7 @@ class _Planner:
     ) -> tuple[list[PlannedRoute], Separation, OtherFlights]:
         """A route that is put off until after the flights that were looked up may meet those that come later: these are looked up, too."""
         window_s = settings.FLIGHT_RULES.longest_flight_s
-        for _ in range(MOST_WINDOWS):
+        for _ in range(MAX_WINDOWS):
             others = _others_in_the_air(self.request, window_s)
             routes, separation = routes_apart(self.request, alone, choice.table, others.routes, may_raise=may_raise)
             ends_s = max((route.departs_s + in_the_air_s(route) for route in routes), default=0.0)
@@ -317,7 +317,7 @@ def make_plan(
     places, gone = places_of(request.targets, read.points)
     planner = _Planner(request, places, gone, stop, on_progress, seed, search_s)
     ground = read.ground()
-    for _ in range(MOST_GROUNDS):
+    for _ in range(MAX_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
         with in_turn():
             plan, freest = planner.best_on(ground)

@@ -35,8 +35,8 @@ from missions.services.staggered_returns import return_in_steps
 from missions.services.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 
-SLOWEST_MPS = 0.5
-LOWEST_TAKE_OFF_M = 1.0
+MIN_SPEED_MPS = 0.5
+MIN_TAKE_OFF_M = 1.0
 MAX_WAIT_S = 900.0  # before a return
 FROM_THE_GROUND = frozenset({CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START})
 BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION})
@@ -90,7 +90,7 @@ def mission_in_hand(uav: Uav) -> Mission | None:
 
 def speed_limits_mps(uav: Uav) -> tuple[float, float]:
     """Between which it can be told to fly: its airspeed is the most, or what it cruises at where that is not stated."""
-    return SLOWEST_MPS, performance_of(uav).max_airspeed_mps or uav.speed_mps
+    return MIN_SPEED_MPS, performance_of(uav).max_airspeed_mps or uav.speed_mps
 
 
 def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str, Any]:
@@ -98,7 +98,7 @@ def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str,
     if kind == CommandKind.CHANGE_SPEED:
         return {"speed_mps": _within("speed_mps", given, *speed_limits_mps(uav), "m/s")}
     if kind == CommandKind.TAKE_OFF:
-        return {"altitude_relative_m": _within("altitude_relative_m", given, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+        return {"altitude_relative_m": _within("altitude_relative_m", given, MIN_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
     if kind == CommandKind.SET_RETURN_HEIGHT:
         return _return_height(uav, given)
     if kind == CommandKind.RETURN and given:
@@ -134,7 +134,7 @@ def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
     if own_return(told.get("autopilot", ""), told.get("parameters", {})) is None:
         raise refuse("not_read", _("The return height of %(uav)s was never read: connect it first.") % values)
     heights = {name: value for name, value in given.items() if name != THEN_RETURN}
-    checked = {"height_m": _within("height_m", heights, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+    checked = {"height_m": _within("height_m", heights, MIN_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
     return checked | {THEN_RETURN: True} if given.get(THEN_RETURN) else checked
 
 

@@ -18,7 +18,7 @@ from planning.solver.reach import NEAREST, needed_range_m, reachable
 LOCKED = " It is locked to others: the run is left out as a whole."
 WIND = "wind"
 TOO_STRONG = "The wind is too strong on every way to it, or back."
-MOST_NAMED = 3  # UAVs that a reason names
+MAX_NAMED = 3  # UAVs that a reason names
 
 
 def unreached_places(
@@ -52,7 +52,7 @@ def unreached_places(
             found.append(LeftOut(place.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))
             continue
         named: tuple[int, ...] = () if item.uav is None else (uavs[item.uav],)
-        if item.reason is Reason.MOST_TARGETS:
+        if item.reason is Reason.MAX_TARGETS:
             able = _able(asked.problem, uavs, visits)
             reason, message = item.reason.value, _all_have_enough(request.targets[place.target], able, request)
             named = tuple(able)
@@ -126,7 +126,7 @@ def _nobody_may(target: TargetRequest, request: PlanRequest, grounded: Mapping[i
 
 def _why_grounded(uavs: Sequence[int], grounded: Mapping[int, Grounding]) -> list[str]:
     """Of the first of these UAVs."""
-    return [grounded[uav].message for uav in uavs if uav in grounded][:MOST_NAMED]
+    return [grounded[uav].message for uav in uavs if uav in grounded][:MAX_NAMED]
 
 
 def _able(problem: Problem, uavs: Sequence[int], visits: Sequence[int]) -> list[int]:
@@ -139,7 +139,7 @@ def _all_have_enough(target: TargetRequest, able: Sequence[int], request: PlanRe
     """Each UAV that could do it alone has its most: which they are, where they are few."""
     if target.uav:
         return f"It is tied to {target.uav}, which has as many targets as it may have."
-    if not able or len(able) > MOST_NAMED:
+    if not able or len(able) > MAX_NAMED:
         return "Each UAV that can do it has as many targets as it may have."
     full = [request.uavs[uav] for uav in able]
     if len(full) == 1:

@@ -27,9 +27,9 @@ from planning.trajectory.heights import inspection_agl_m
 
 NEARLY = 0.9  # of a limit: no other target fits
 NOTICEABLE = 1.05  # times as long as in calm air
-MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
+MAX_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
-LEAST_DETOUR_M = 20.0
+MIN_DETOUR_M = 20.0
 
 
 def what_binds(
@@ -102,7 +102,7 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
     if not routes[uav]:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
     scene = current_scene(request, is_by_length=is_by_length)
-    wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MOST_VISITS else set(routes[uav])
+    wanted = {target for route in routes for target in route} if sum(map(len, routes)) <= MAX_VISITS else set(routes[uav])
     field = _field(request, wanted, scene, scene.graph, scene.leg_zones)
     order = _best_order(request, field, uav, routes[uav])
     legs_m = _legs_m(request, field, uav, order)
@@ -256,7 +256,7 @@ def _detours(
     found: list[tuple[float, list[tuple[int, str]]]] = []
     for flown_m, least_m, left, right, passed in zip(legs_m, free_m, froms, tos, nodes, strict=False):
         extra_m = flown_m - least_m
-        if not (np.isfinite(extra_m) and extra_m >= LEAST_DETOUR_M):
+        if not (np.isfinite(extra_m) and extra_m >= MIN_DETOUR_M):
             found.append((0.0, []))
             continue
         line = np.concatenate([np.array([left]), graph.position[passed], np.array([right])])

@@ -29,8 +29,8 @@ from planning.solver.reach import needed_range_m
 from planning.trajectory.heights import is_above_limit
 from workspace.models import Organisation
 
-MOST_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
-LEAST_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight
+MAX_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
+MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight
 
 
 def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
@@ -159,7 +159,7 @@ def _stretches_outside(place: Place, scene: Scene) -> list[list[list[float]]]:
     barred = shapely.union_all(widen(scene.zones.polygons, 1.5 * scene.access.zone_clearance_m + 1.0))
     parts = shapely.get_parts(shapely.difference(LineString(place.course), barred))
     ends = [np.array(part.coords) for part in parts if part.geom_type == "LineString"]
-    return [[line[0].tolist(), line[-1].tolist()] for line in ends if path_length_m(line) >= LEAST_STRETCH_M]
+    return [[line[0].tolist(), line[-1].tolist()] for line in ends if path_length_m(line) >= MIN_STRETCH_M]
 
 
 def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) -> list[UavRequest]:
@@ -172,7 +172,7 @@ def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) 
         if uav.range_m is None or away_m <= uav.range_m:
             spare = UavRequest(uav.name, at, uav.range_m, uav.speed_mps, EndAction(uav.end_action), uav.pk, sensors=tuple(uav.sensors))
             found.append((away_m, spare))
-    return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MOST_SPARE]]
+    return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MAX_SPARE]]
 
 
 def _needs(fleet: PlanRequest, place: Place, scene: Scene) -> tuple[Ways, np.ndarray]:

@@ -29,7 +29,7 @@ from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 from workspace.whole_numbers import WholeNumber
 
-MOST_EXPLAINED = 20  # routes, and targets, of one answer
+MAX_EXPLAINED = 20  # routes, and targets, of one answer
 SHORTEST_WAYS = "shortest_ways"
 EVERYBODY = frozenset(Role)
 UAVS = WholeNumber("uav", "the routes of these UAVs alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
@@ -41,7 +41,7 @@ def explain_mission(
 ) -> dict[str, Any]:
     """On the ground of now, as explain_route and explain_unreached_target tell; mission: with its routes, waypoints and targets loaded.
 
-    uavs, targets: those that are asked about, by their places in the mission; None: all of them, up to MOST_EXPLAINED of each. A route
+    uavs, targets: those that are asked about, by their places in the mission; None: all of them, up to MAX_EXPLAINED of each. A route
     that can no longer be explained, as the ground has changed, tells why under `fault`. Raises NoGraph.
     """
     place_of = {target.pk: target.sequence for target in mission.targets.all()}
@@ -55,13 +55,13 @@ def explain_mission(
         target.sequence for target in mission.targets.all() if target.unassigned_reason and (targets is None or target.sequence in targets)
     ]
     return {
-        "routes": [_route(request, orders, uav, is_by_length=is_by_length) for uav in flown[:MOST_EXPLAINED]],
+        "routes": [_route(request, orders, uav, is_by_length=is_by_length) for uav in flown[:MAX_EXPLAINED]],
         "targets": [
             explain_unreached_target(request=request, target=target, organisation=mission.organisation)
-            for target in left_out[:MOST_EXPLAINED]
+            for target in left_out[:MAX_EXPLAINED]
         ],
-        "more_routes": max(0, len(flown) - MOST_EXPLAINED),
-        "more_targets": max(0, len(left_out) - MOST_EXPLAINED),
+        "more_routes": max(0, len(flown) - MAX_EXPLAINED),
+        "more_targets": max(0, len(left_out) - MAX_EXPLAINED),
     }
 
 

@@ -13,7 +13,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.zones.activity import Span
-from missions.serializers.inputs import MOST_DAYS_AHEAD
+from missions.serializers.inputs import MAX_DAYS_AHEAD
 from missions.serializers.legal_windows import LegalWindowsInputSerializer, LegalWindowsSerializer, legal_windows_json
 from missions.views.missions import mission_or_404
 from missions.zone_selectors import flown_route, legal_windows
@@ -78,7 +78,7 @@ def _moment(text: str) -> datetime:
 def _window(begin: datetime | None) -> Span:
     """Of whole seconds."""
     begin = begin or timezone.now()
-    if abs((begin - timezone.now()).days) > MOST_DAYS_AHEAD:
+    if abs((begin - timezone.now()).days) > MAX_DAYS_AHEAD:
         raise serializers.ValidationError({"from": [_("A departure lies within two years of today.")]})
     from_s = float(math.floor(begin.timestamp()))
     return Span(from_s, from_s + AHEAD_S)

@@ -124,7 +124,7 @@ def _target_count(body: Any) -> int:
 def refuse_too_many_jobs(user: User) -> None:
     """429 for whoever has as many large plans waiting and running as one may have: before any work."""
     try:
-        refuse_jobs_beyond(settings.MOST_OPEN_PLANS, user=user, task=SOLVE_PLAN)
+        refuse_jobs_beyond(settings.MAX_OPEN_PLANS, user=user, task=SOLVE_PLAN)
     except TooManyJobs as error:
         raise _too_many(error) from error
 
@@ -133,7 +133,7 @@ def planning_job(user: User, task: str, parameters: dict[str, Any], targets: int
     """A job that plans so many targets, on its way to a worker once this transaction is committed."""
     try:
         job = create_job_within(
-            settings.MOST_OPEN_PLANS,
+            settings.MAX_OPEN_PLANS,
             organisation=user.organisation,
             created_by=user,
             task=task,

@@ -16,16 +16,16 @@ from inspection.selectors import NoGraph
 from missions import services
 from missions.serializers.plain_request import plain_request
 from workspace.authentication import holder_of, holder_of_session
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.models import TokenScope
 from workspace.parsers import read_json
 from workspace.permissions import PLANNERS
 from workspace.throttling import ScopedRate
 from workspace.turns import in_turn
 
-LARGEST_BODY = 64 * 1024
+MAX_BODY = 64 * 1024
 _ORDINARY_ACCEPT = frozenset({"*/*", "application/json"})
-_BEGIN_ANEW = (APIException, services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_AWAY)
+_BEGIN_ANEW = (APIException, services.InvalidRequest, NoGraph, services.GraphOutdated, *DATABASE_UNAVAILABLE)
 
 
 def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | None:
@@ -61,7 +61,7 @@ def _is_ordinary(request: HttpRequest) -> bool:
         request.method == "POST"
         and told.get("CONTENT_TYPE") == "application/json"
         and length.isdecimal()
-        and int(length) <= LARGEST_BODY
+        and int(length) <= MAX_BODY
         and told.get("HTTP_ACCEPT", "*/*") in _ORDINARY_ACCEPT
         and "HTTP_IDEMPOTENCY_KEY" not in told
         and "HTTP_PREFER" not in told

@@ -7,8 +7,8 @@ import numpy as np
 from inspection.zones.reach import ZoneTable
 from planning.clearance.zone_clearance import FloatArray, Margins, ZoneFacts
 
-LEAST_DEGREE_M = 110_574.0  # metres in a degree of latitude, on the equator
-NEAREST_POLE_DEG = 89.0
+MIN_DEGREE_M = 110_574.0  # metres in a degree of latitude, on the equator
+MAX_SHRINKING_LAT_DEG = 89.0
 
 
 def zones_near(
@@ -28,8 +28,8 @@ def zones_near(
 def _are_near(table: ZoneTable, positions: FloatArray, lateral_m: float) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
     if not len(positions) or not len(table):
         return np.zeros(len(table), dtype=bool)
-    farthest_lat = min(float(np.abs(positions[:, 1]).max()), NEAREST_POLE_DEG)
-    high = lateral_m / LEAST_DEGREE_M
+    farthest_lat = min(float(np.abs(positions[:, 1]).max()), MAX_SHRINKING_LAT_DEG)
+    high = lateral_m / MIN_DEGREE_M
     wide = high / math.cos(math.radians(farthest_lat))
     (west, south), (east, north) = positions.min(axis=0).tolist(), positions.max(axis=0).tolist()
     near: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (

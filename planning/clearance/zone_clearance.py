@@ -21,7 +21,7 @@ Limits = tuple[float | None, str, float | None, str]  # lower [m] and from where
 
 TAKE_OFF = -1  # number of the leg up to the first waypoint
 EQUATOR_RADIUS_M, ECCENTRICITY_SQUARED = 6_378_137.0, 0.006694380  # WGS84
-FEWEST_DEGREE_M = 110_574.0  # in a degree of latitude, on the equator
+MIN_DEGREE_M = 110_574.0  # in a degree of latitude, on the equator
 STRETCHED_EXCESS = 1.5  # a leg a degree of latitude from the others is off by less than that up to 70 degrees
 
 
@@ -247,7 +247,7 @@ def _near_rows(line: FloatArray, polygons: Geometries, lateral_m: float) -> NDAr
 def _reach_deg(line: FloatArray, lateral_m: float) -> FloatArray:
     """How many degrees of longitude and latitude the clearance is at most."""
     farthest_lat = min(float(np.abs(line[:, 1]).max()), 89.0)
-    reach: FloatArray = np.array([1.0 / math.cos(math.radians(farthest_lat)), 1.0]) * lateral_m / FEWEST_DEGREE_M
+    reach: FloatArray = np.array([1.0 / math.cos(math.radians(farthest_lat)), 1.0]) * lateral_m / MIN_DEGREE_M
     return reach
 
 
@@ -296,7 +296,7 @@ def _beside(polygon: BaseGeometry, legs: Geometries, lateral_m: float) -> tuple[
     flat_legs = shapely.transform(legs, lambda places: places * stretch)
     flat = shapely.transform(polygon, lambda places: places * stretch)
     shapely.prepare(flat)
-    beside = np.flatnonzero(shapely.dwithin(flat, flat_legs, STRETCHED_EXCESS * lateral_m / FEWEST_DEGREE_M))
+    beside = np.flatnonzero(shapely.dwithin(flat, flat_legs, STRETCHED_EXCESS * lateral_m / MIN_DEGREE_M))
     ends = shapely.get_coordinates(shapely.shortest_line(flat, flat_legs[beside])).reshape(-1, 2, 2) / stretch
     latitude = np.radians(ends[:, :, 1].mean(axis=1))
     flattening = 1.0 - ECCENTRICITY_SQUARED * np.sin(latitude) ** 2

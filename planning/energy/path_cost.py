@@ -30,7 +30,7 @@ from planning.trajectory.heights import pass_agl_m
 FloatArray = NDArray[np.float64]
 
 NO_HEADWAY = 1e9  # seconds and joules of a step against too strong a wind: sums of it stay numbers, and a way with it is no way
-MOST_BYTES = 100 * 2**20  # of sums kept for one graph; of 200,000 nodes they take 10 MB for each wind and kind of UAV
+MAX_BYTES = 100 * 2**20  # of sums kept for one graph; of 200,000 nodes they take 10 MB for each wind and kind of UAV
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ _one_thread = Lock()
 def graph_taken(
     graph: InspectionGraph, flying: FlightClass, conditions: Conditions, rules: FlightRules, ground: NodeGround | None
 ) -> GraphTaken:
-    """What every step of the graph takes, summed up. What was used last is kept, within MOST_BYTES for a graph."""
+    """What every step of the graph takes, summed up. What was used last is kept, within MAX_BYTES for a graph."""
     ground_m = _NOT_KNOWN if ground is None else ground.node_m
     key = (flying, conditions, rules, id(ground_m))  # which is held with what is kept, so that no other has its number
     with _one_thread:
@@ -102,7 +102,7 @@ def graph_taken(
     kept = GraphTaken(sums_along(graph, taken), air, passed_m, ground_m)
     with _one_thread:
         kept_of_graph[key] = kept
-        while len(kept_of_graph) > 1 and sum(one.sums.nbytes for one in kept_of_graph.values()) > MOST_BYTES:
+        while len(kept_of_graph) > 1 and sum(one.sums.nbytes for one in kept_of_graph.values()) > MAX_BYTES:
             kept_of_graph.popitem(last=False)
     return kept
 

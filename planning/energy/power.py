@@ -19,13 +19,13 @@ FloatArray = NDArray[np.float64]
 INDUCED_FACTOR = 1.15  # an uneven inflow costs more than momentum theory's even one (Leishman 2.6.2: 1.1 to 1.2)
 DRIVE_EFFICIENCY = 0.85  # shaft power for electrical power: motor 0.88 x speed controller 0.97, common for small UAVs
 ACROSS_ROTORS = 2.0  # drag area along the rotors' axis for each m2 in their plane: the Iris is flat
-LEAST_HEADWAY_MPS = 0.5  # slower over ground than this is no flight plan
+MIN_HEADWAY_MPS = 0.5  # slower over ground than this is no flight plan
 TOO_STRONG = 0.0  # metres a second over ground where the wind leaves no headway
 
 # The table of watts that routes are timed with; between its rows and columns the error is below 0.1 %.
 AIRSPEED_STEP_MPS = 0.5
 AIRSPEEDS = 201
-LEAST_DENSITY, DENSITY_STEP, DENSITIES = 0.3, 0.1, 14  # kg/m3, from 9 km above sea to the frost of -60 °C
+MIN_DENSITY, DENSITY_STEP, DENSITIES = 0.3, 0.1, 14  # kg/m3, from 9 km above sea to the frost of -60 °C
 LEVEL, CLIMBING = 0, 1
 
 
@@ -87,13 +87,13 @@ def ground_and_air_speed(wanted_mps: float, limit_mps: float, along_mps: float, 
         return wanted_mps, air_mps
     spare_mps = math.sqrt(limit_mps * limit_mps - across_mps * across_mps)
     ground_mps = along_mps + spare_mps if wanted_mps > along_mps else along_mps - spare_mps
-    return (TOO_STRONG, TOO_STRONG) if ground_mps < LEAST_HEADWAY_MPS else (ground_mps, limit_mps)
+    return (TOO_STRONG, TOO_STRONG) if ground_mps < MIN_HEADWAY_MPS else (ground_mps, limit_mps)
 
 
 @njit(cache=True, nogil=True)
 def watts(table: FloatArray, phase: int, airspeed_mps: float, air_density: float) -> float:
     """What the table says between its rows and columns; beyond the last of them as there."""
-    row = min(max((air_density - LEAST_DENSITY) / DENSITY_STEP, 0.0), DENSITIES - 1.0)
+    row = min(max((air_density - MIN_DENSITY) / DENSITY_STEP, 0.0), DENSITIES - 1.0)
     column = min(max(airspeed_mps / AIRSPEED_STEP_MPS, 0.0), AIRSPEEDS - 1.0)
     lower, left = min(int(row), DENSITIES - 2), min(int(column), AIRSPEEDS - 2)
     row, column = row - lower, column - left
@@ -114,7 +114,7 @@ def _fill(
     rotor_drag: float,
 ) -> None:
     for row in range(DENSITIES):
-        air_density = LEAST_DENSITY + DENSITY_STEP * row
+        air_density = MIN_DENSITY + DENSITY_STEP * row
         for column in range(AIRSPEEDS):
             airspeed_mps = AIRSPEED_STEP_MPS * column
             for phase in range(2):

@@ -41,10 +41,10 @@ BoolArray = NDArray[np.bool_]
 
 CALM = Conditions()
 USUAL = FlightRules()
-FARTHEST_M, MOST_WH = 1e12, 1e12  # stand for no limit where what is missing is worked out
+MAX_DISTANCE_M, MAX_WH = 1e12, 1e12  # stand for no limit where what is missing is worked out
 SAME_PLACE_M = 1.0  # nodes nearer than that have become one
 NEAREST_LEGS = 24  # of a node that no flight gets to over the network, as `clear_legs` gives a target
-MOST_ROUND = 40  # nodes from which legs round zones are looked for
+MAX_ROUND = 40  # nodes from which legs round zones are looked for
 TRIED_LEGS = (1, 8, 64)  # of the nearest to each part of the network: more, where all of these meet zones
 
 
@@ -197,9 +197,9 @@ def _reach_of_nodes(
             able_m[can], flight[can] = needed_m[can], number
             has_way |= np.isfinite(needed_m)
             against = np.isfinite(needed_m) & np.isfinite(needed_wh)
-            np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, FARTHEST_M), np.inf), out=missing_m)
+            np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, MAX_DISTANCE_M), np.inf), out=missing_m)
             enough = against & (needed_m <= one.limit_m)
-            np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MOST_WH), np.inf), out=missing_wh)
+            np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MAX_WH), np.inf), out=missing_wh)
     verdict = np.full(count, Verdict.CUT_OFF, dtype=np.int8)
     verdict[has_way] = Verdict.WIND
     verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
@@ -309,7 +309,7 @@ class _Look:
     def legs_round(self, nodes: IntArray, known: BoolArray, component: NDArray[np.int32]) -> list[tuple[IntArray, IntArray, FloatArray]]:
         """What a plan would find for each of the nodes, of no more than some: legs round zones are looked for one by one."""
         found = []
-        for node in nodes[:MOST_ROUND].tolist():
+        for node in nodes[:MAX_ROUND].tolist():
             place = Terminal(LonLat(*self.graph.position[node].tolist()))
             legs = access_legs(self.graph, self.zones, place, self.rules)
             counts = known[component[legs.node]]
@@ -441,7 +441,7 @@ class _Scene:
 
     def _round(self, place: LonLat, nodes: IntArray, ways: _Ways, flying: FlightClass | None) -> None:
         """Nodes that nothing else reaches, round the zones that stand before them."""
-        for node in nodes[:MOST_ROUND].tolist():
+        for node in nodes[:MAX_ROUND].tolist():
             target = Terminal(LonLat(*self.graph.position[node].tolist()))
             for leg in direct_legs([Terminal(place)], [target], self.zones, self.rules):
                 self._put(place, np.array([node]), np.array([leg.length_m]), np.array([leg.cost]), ways, flying)

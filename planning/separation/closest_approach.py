@@ -25,7 +25,7 @@ ECCENTRICITY_2 = FLATTENING * (2.0 - FLATTENING)
 TOUCHING_M = 1e-6  # UAVs that are just as far apart as they have to be are apart, whatever rounding does to it
 EDGE = 1e-9  # of a piece: what rounding may put an extreme outside it
 NOTHING = np.inf  # seconds between two routes that share no place
-MOST_CORNERS = 8  # of a square cut by a strip
+MAX_CORNERS = 8  # of a square cut by a strip
 
 
 @njit(cache=True, nogil=True)
@@ -121,14 +121,14 @@ def gaps(one: FloatArray, other: FloatArray, lateral_m: float, vertical_m: float
     x2, y2 = -(other[SIDES + LON] - other[LON]) * east_m, -(other[SIDES + LAT] - other[LAT]) * north_m
     long_s, other_long_s = one[SIDES + TIME] - one[TIME], other[SIDES + TIME] - other[TIME]
 
-    corners = np.empty((MOST_CORNERS, 2))
+    corners = np.empty((MAX_CORNERS, 2))
     corners[0, 0], corners[0, 1], corners[1, 0], corners[1, 1] = 0.0, 0.0, 1.0, 0.0
     corners[2, 0], corners[2, 1], corners[3, 0], corners[3, 1] = 1.0, 1.0, 0.0, 1.0
     count = 4
     h0, h1, h2 = one[HEIGHT] - other[HEIGHT], one[SIDES + HEIGHT] - one[HEIGHT], other[HEIGHT] - other[SIDES + HEIGHT]
     is_comparable = not math.isnan(h0 + h1 + h2)
     if is_comparable and max(abs(h0), abs(h0 + h1), abs(h0 + h2), abs(h0 + h1 + h2)) > vertical_m:
-        lower = np.empty((MOST_CORNERS, 2))
+        lower = np.empty((MAX_CORNERS, 2))
         count = _cut(corners, count, h0, h1, h2, vertical_m, lower)
         count = _cut(lower, count, -h0, -h1, -h2, vertical_m, corners)
 

@@ -19,7 +19,7 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 SLACK_S = 1e-3  # a UAV that is put off is put off by so much more than it has to be, whatever rounding does
-MOST_LAYERS = 8
+MAX_LAYERS = 8
 ALWAYS_FREE = np.empty((0, 2))
 
 
@@ -374,7 +374,7 @@ class _Search:
         done: list[int] = []
         for route in order:
             choices = []
-            for higher in range(MOST_LAYERS + 1):
+            for higher in range(MAX_LAYERS + 1):
                 if self._variant(route, higher) is None:
                     break
                 against = [self.between(other, layer[other], route, higher) + delay_s[other] for other in done]

@@ -9,7 +9,7 @@ from numba import njit
 from planning.problem import BoolArray, FloatArray, IntArray, Problem
 from planning.solver.cost_matrices import NO_WAY_M, Classes, Kind, Quantities, classes_of, quantities_of
 
-MOST_TRIED = 8
+MAX_TRIED = 8
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class LeastRoute:
 class LeastRoutes:
     """Of the UAVs and visits of a problem, in one quantity.
 
-    Of up to MOST_TRIED targets each order is tried. Of more, the best way there and the best way back may both lead over the same visit,
+    Of up to MAX_TRIED targets each order is tried. Of more, the best way there and the best way back may both lead over the same visit,
     which no route does: then one of the two goes round it, whichever makes the route the lesser.
     """
 
@@ -41,7 +41,7 @@ class LeastRoutes:
         others = self._target != self._target[visit]
         if self._allowed is not None:
             others &= self._allowed[uav]
-        if self._target.max() < MOST_TRIED:
+        if self._target.max() < MAX_TRIED:
             others |= self._target == self._target[visit]
             amount, order = _least_of_all_orders(first, onward, end, self._target, others, self._target[visit])
             return LeastRoute(_closed(amount), tuple(order.tolist()) or (visit,))

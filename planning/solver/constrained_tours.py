@@ -17,7 +17,7 @@ from planning.solver.problem_arrays import Arcs
 from planning.solver.reach import least_ways
 from planning.solver.tours import shortest_tours, walk_back
 
-MOST_LABELS = 96  # of one set and last visit
+MAX_LABELS = 96  # of one set and last visit
 ALL_LABELS = 300_000  # some tenths of a second; beyond, each set and last visit keeps but the shortest tour and those that take least
 ALIKE = 1e-10  # the share of a limit by which tours may differ and count as taking the same: rounding
 
@@ -49,7 +49,7 @@ class Tours:
         return tuple(reversed(visits))
 
 
-def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MOST_LABELS) -> Tours:
+def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MAX_LABELS) -> Tours:
     """counts (sets,) are the targets done by each set; most_labels those kept of each set and last visit."""
     burden, number = arcs.burden, int(arcs.class_of[uav])
     back_m = np.ascontiguousarray(arcs.onward_m[number].T)

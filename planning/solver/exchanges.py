@@ -13,7 +13,7 @@ from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.plan_state import NO, YES, Ground, Plan, RandomState, draw, draw_below
 
 NEIGHBOURS = 12
-LONGEST_SEGMENT = 40
+MAX_SEGMENT_LENGTH = 40
 SHORT_SEGMENT = 3
 EXCHANGE_SHARE = 0.1  # how often whole routes change their UAVs, or a tail goes to a UAV that does not fly
 APPENDED_SHARE = 0.5  # of these
@@ -90,7 +90,7 @@ def draw_move(ground: Ground, plan: Plan, random: RandomState, longest: int) -> 
 @njit(cache=True, nogil=True)
 def _segment(random: RandomState, size: int, place: int) -> tuple[int, int]:
     """Where a segment with the place at one of its ends begins and ends."""
-    length = 1 + draw_below(random, min(size, SHORT_SEGMENT if draw(random) < 0.5 else LONGEST_SEGMENT))
+    length = 1 + draw_below(random, min(size, SHORT_SEGMENT if draw(random) < 0.5 else MAX_SEGMENT_LENGTH))
     if draw(random) < 0.5:
         return place, min(size, place + length)
     return max(0, place + 1 - length), place + 1

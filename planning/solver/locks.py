@@ -7,7 +7,7 @@ import numpy as np
 
 from planning.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
 
-MOST_WAYS = 16  # through a locked run between the same two visits, of which none beats another
+MAX_WAYS = 16  # through a locked run between the same two visits, of which none beats another
 
 
 @dataclass(frozen=True)
@@ -143,8 +143,8 @@ def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> tuple[list
         for visits in alternatives[1:]:
             before = [run for found in ways.values() for run in found]
             ways = {visit: _unbeaten([_onward(problem, run, visit) for run in before]) for visit in visits}
-            is_whole = is_whole and all(len(found) <= MOST_WAYS for found in ways.values())
-            ways = {visit: found[:MOST_WAYS] for visit, found in ways.items()}
+            is_whole = is_whole and all(len(found) <= MAX_WAYS for found in ways.values())
+            ways = {visit: found[:MAX_WAYS] for visit, found in ways.items()}
         runs += [run for found in ways.values() for run in found if np.isfinite(run.length_m)]
     return runs, is_whole
 

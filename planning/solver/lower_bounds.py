@@ -17,8 +17,8 @@ from planning.solver.reach import least_ways
 SUBSET_TARGETS = 9
 SUBSET_TRIALS = 60
 ARC_LOOKS = 60_000_000  # how many arcs an ascent may look at, some tenths of a second
-LEAST_STEPS, MOST_STEPS = 100, 1_500
-PATIENCE = 20  # steps without a better bound before the steps get shorter
+MIN_STEPS, MAX_STEPS = 100, 1_500
+TIMEOUT = 20  # steps without a better bound before the steps get shorter
 HAIR = 1e-9  # the share by which rounding could lift a bound
 
 
@@ -124,7 +124,7 @@ def _over_others(arcs: Arcs) -> Arcs:
 def _by_forest(arcs: Arcs, shift_m: FloatArray, usable: BoolArray, certain: IntArray, total_m: float) -> float:
     """The bound from spanning forests over the certain targets; total_m is that of a plan, shift_m (c, v) see `_between_targets`."""
     apart_m, start_m, end_m, service_s = _between_targets(arcs, shift_m, usable, certain)
-    steps = int(np.clip(ARC_LOOKS // (len(certain) ** 2 + 1), LEAST_STEPS, MOST_STEPS))
+    steps = int(np.clip(ARC_LOOKS // (len(certain) ** 2 + 1), MIN_STEPS, MAX_STEPS))
     free_m, _ = _ascent(apart_m, start_m, end_m, max(total_m, 1.0), steps, False, arcs.speed_mps)
     if not arcs.is_makespan:
         return float(free_m)
@@ -243,7 +243,7 @@ def _ascent(
             if value > best + 1e-5 * abs(best):
                 waited = 0
             best, best_reward = value, reward
-        if waited >= PATIENCE:
+        if waited >= TIMEOUT:
             pace, waited = pace / 2.0, 0
         square = (degree * degree).sum() + (balance * balance).sum()
         if square == 0.0 or pace < 1e-4:

@@ -15,8 +15,8 @@ RandomState = NDArray[np.uint64]  # one number
 # numba compiles a function once more for an argument that is a literal; these have its plain types.
 NO, YES = cast(bool, np.bool_(False)), cast(bool, np.bool_(True))
 FIRST, ABSENT = cast(int, np.int64(0)), cast(int, np.int64(-1))
-MOST_NEIGHBOURS = 60
-MOST_JOINED = 12
+MAX_NEIGHBOURS = 60
+MAX_JOINED = 12
 ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
 NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
@@ -105,7 +105,7 @@ class Workspace(NamedTuple):
 def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     option, option_from = arcs.visits_of_target
     apart_m = _apart_m(arcs)
-    near = np.argsort(apart_m, axis=1, kind="stable")[:, : MOST_NEIGHBOURS + 1]
+    near = np.argsort(apart_m, axis=1, kind="stable")[:, : MAX_NEIGHBOURS + 1]
     far_m = np.full(len(arcs.weight), NO_WAY_M)
     twin = _twins(problem)
     turned_m = arcs.onward_m.transpose(0, 2, 1)
@@ -174,7 +174,7 @@ def _joined(apart_m: FloatArray) -> IntArray:
     detour_m = apart_m - _longest_between(apart_m)
     np.fill_diagonal(detour_m, -1.0)
     order = np.lexsort((apart_m, np.round(detour_m, 3)), axis=1)
-    return np.ascontiguousarray(order[:, : MOST_JOINED + 1])
+    return np.ascontiguousarray(order[:, : MAX_JOINED + 1])
 
 
 @njit(cache=True, nogil=True)

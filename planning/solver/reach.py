@@ -208,7 +208,7 @@ def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits:
     """Why it is left out though some UAV could do it alone."""
     able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
     if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
-        return Told(Reason.MOST_TARGETS, "Each UAV that can do it has as many targets as it may have.")
+        return Told(Reason.MAX_TARGETS, "Each UAV that can do it has as many targets as it may have.")
     has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
     if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
         alone = "within range and battery" if has_range else "within what the battery may give"

@@ -31,10 +31,10 @@ from planning.solver.plan_state import (
 )
 
 MEAN_REMOVED = 10.0
-LONGEST_STRING = 10.0
+MAX_STRING_LENGTH = 10.0
 SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
 KEEP_SHARE = 0.01  # how often one more of them is let go
-AROUND_LONGEST_SHARE = 0.5
+AROUND_MAX_SHARE = 0.5
 MOVES_FOR_TOTAL, MOVES_FOR_LONGEST = 20, 4  # in each round; for the longest route, taking out and putting back brings more
 NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
 
@@ -101,7 +101,7 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
         temperature *= cooling
         for _ in range(moves):
             longest = -1
-            if ground.is_makespan and draw(work.random) < AROUND_LONGEST_SHARE:
+            if ground.is_makespan and draw(work.random) < AROUND_MAX_SHARE:
                 longest = longest_of(ground, plan)
             if longest >= 0 and plan.size[longest] == 0:
                 break
@@ -187,11 +187,11 @@ def _ruin(ground: Ground, work: Workspace) -> int:
         flying += 1 if plan.size[uav] else 0
     if not flown:
         return 0
-    longest_string = min(LONGEST_STRING, flown / flying)
+    longest_string = min(MAX_STRING_LENGTH, flown / flying)
     most_strings = 4.0 * MEAN_REMOVED / (1.0 + longest_string) - 1.0
     strings = int(draw(random) * most_strings + 1.0)
     seed = draw_below(random, targets)
-    if ground.is_makespan and draw(random) < AROUND_LONGEST_SHARE:
+    if ground.is_makespan and draw(random) < AROUND_MAX_SHARE:
         longest = longest_of(ground, plan)
         seed = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
     waiting = 0

@@ -20,7 +20,7 @@ CONSTRUCTIONS = 6
 LOOK_INTERVAL_S = 0.1
 TARGET_ROUNDS_PER_STEP = 40_000  # rounds times targets, some tens of milliseconds
 FIXED_STEPS = 40  # of each chain in a search without a time, a second or less in all
-MOST_ROUNDS_PER_STEP = 600
+MAX_ROUNDS_PER_STEP = 600
 # Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by `benchmarks.assignment`.
 TOTAL_TEMPERATURES = ((4.0, 0.05), (1.5, 0.05))
 MAKESPAN_TEMPERATURES = ((1.0, 0.003), (0.4, 0.003))
@@ -80,7 +80,7 @@ def best_found(
     one they go on until it is over. `stop` is asked and `on_look` told the share of the search ten times a second.
     """
     ground = ground_of(problem, Arcs.of(problem), usable)
-    rounds = max(1, min(MOST_ROUNDS_PER_STEP, TARGET_ROUNDS_PER_STEP // problem.target_count))
+    rounds = max(1, min(MAX_ROUNDS_PER_STEP, TARGET_ROUNDS_PER_STEP // problem.target_count))
     share, is_over = _Share(), Event()
 
     def fly(chain: Chain) -> None:

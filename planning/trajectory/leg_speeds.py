@@ -6,7 +6,7 @@ from typing import NamedTuple
 from inspection.geodesy.short_vector import short_vector_m
 from planning.energy.conditions import Conditions, wind_in_table
 from planning.energy.performance import Performance
-from planning.energy.power import LEAST_HEADWAY_MPS, TOO_STRONG, ground_and_air_speed
+from planning.energy.power import MIN_HEADWAY_MPS, TOO_STRONG, ground_and_air_speed
 from planning.trajectory.waypoints import Waypoints
 
 ROUNDING_MPS = 1e-6
@@ -54,11 +54,11 @@ def _range(waypoints: Waypoints, place: int, cruise_speed_mps: float, max_airspe
     limit_mps = cruise_speed_mps if max_airspeed_mps is None else max_airspeed_mps
     wind = _wind_on_leg(waypoints, place, conditions)
     if wind is None:
-        return SpeedRange(LEAST_HEADWAY_MPS, limit_mps)
+        return SpeedRange(MIN_HEADWAY_MPS, limit_mps)
     along_mps, across_mps = wind
     spare_mps = math.sqrt(max(limit_mps**2 - across_mps**2, 0.0))
     most_mps = along_mps + spare_mps
-    return SpeedRange(max(LEAST_HEADWAY_MPS, along_mps - spare_mps), most_mps if max_airspeed_mps is not None else min(most_mps, limit_mps))
+    return SpeedRange(max(MIN_HEADWAY_MPS, along_mps - spare_mps), most_mps if max_airspeed_mps is not None else min(most_mps, limit_mps))
 
 
 def _wind_on_leg(waypoints: Waypoints, place: int, conditions: Conditions) -> tuple[float, float] | None:

@@ -17,7 +17,7 @@ from simulation.flight.weather import Weather
 DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
 WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
 CATCH_UP_S = 1.0  # until a new fix is believed
-LEAST_V = 1.0
+MIN_V = 1.0
 VERTICAL_SHARE = 0.25  # near the ground gusts have little room to go up and down
 KELVIN = 273.15
 OFF_GROUND_M = 0.3  # above standing: from here on it flies
@@ -84,7 +84,7 @@ class Battery:
         open_v = airframe.cells * (airframe.empty_cell_v + (airframe.full_cell_v - airframe.empty_cell_v) * share)
         # P = U I and U = open - R I: the root with the small current; beyond the greatest power the voltage breaks down to half.
         under_root = max(open_v**2 - 4.0 * airframe.resistance_ohm * power_w, 0.0)
-        volts = max(0.5 * (open_v + under_root**0.5), LEAST_V)
+        volts = max(0.5 * (open_v + under_root**0.5), MIN_V)
         return volts, power_w / volts
 
 

@@ -13,7 +13,7 @@ Vector = tuple[float, float, float]
 CORNER_M = 1.3  # how far inside a waypoint the corner may be cut; ArduCopter's WPNAV_RADIUS is 2 m, PX4's NAV_ACC_RAD 10 m
 STRAIGHT_RAD = 1e-3  # less of a turn is none
 REVERSAL_RAD = math.radians(150.0)  # more of a turn is made standing
-LEAST_LEG_M = 0.05
+MIN_LEG_M = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ def _legs(start: Vector, vias: Sequence[Via], pace: Pace) -> list[_Leg]:
         away = (via.place[0] - here[0], via.place[1] - here[1], via.place[2] - here[2])
         length_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)
         level_m = math.hypot(away[0], away[1])
-        if length_m < LEAST_LEG_M:
+        if length_m < MIN_LEG_M:
             legs.append(_Leg(here, legs[-1].along if legs else (0.0, 0.0, 1.0), 0.0, via.speed_mps, via.mark))
             continue
         limits = [(pace.climb_mps if away[2] > 0 else pace.descent_mps) * length_m / abs(away[2])] if away[2] else []

@@ -9,7 +9,7 @@ from simulation.flight.events import Crashed, Event
 from simulation.flight.states import MissionState, Mode, Refused, UavState
 from simulation.flight.uav import SimulatedUav
 
-LONGEST_S = 4 * 3_600.0  # no battery of ours lasts so long
+MAX_DURATION_S = 4 * 3_600.0  # no battery of ours lasts so long
 SETTLES_S = 2.0  # after the last item, until it hovers there
 
 
@@ -51,7 +51,7 @@ class Flown:
         return self.end.true_position if self.ending is Ending.LANDED else None
 
 
-def fly_mission(uav: SimulatedUav, *, longest_s: float = LONGEST_S, sample_steps: int = 1) -> Flown:
+def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_steps: int = 1) -> Flown:
     """Arm, fly the mission that was loaded, until it stands on the ground, hovers after its last item, or has crashed.
 
     A sample each `sample_steps` steps of 0.04 s. It ends for each mission: one that never comes to an end empties the battery.

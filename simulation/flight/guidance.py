@@ -9,7 +9,7 @@ from simulation.flight.airframe import Airframe
 from simulation.flight.course import Pace, Piece, Vector
 
 NEAR_ENOUGH_M = 0.01
-SLOWEST_MPS = 0.1  # so that an end is reached and not only approached
+MIN_SPEED_MPS = 0.1  # so that an end is reached and not only approached
 STILL: Vector = (0.0, 0.0, 0.0)
 GATE_LEASH_M = 1.0
 
@@ -78,7 +78,7 @@ class Reference:
         piece = self._pieces[self._number]
         left_m = piece.length_m - self._s_m
         in_time_mps = math.sqrt(piece.end_mps**2 + 2.0 * self._acceleration_mps2 * max(left_m, 0.0))
-        wanted_mps = max(min(piece.fastest_mps * share, in_time_mps), min(SLOWEST_MPS, share * SLOWEST_MPS))
+        wanted_mps = max(min(piece.fastest_mps * share, in_time_mps), min(MIN_SPEED_MPS, share * MIN_SPEED_MPS))
         change_mps = self._acceleration_mps2 * dt_s
         # It slows as hard as the course asks for: it was drawn so that this is no more than what is gained each second.
         speed_mps = (

@@ -8,7 +8,7 @@ from simulation.flight.course import Vector, Via
 from simulation.flight.states import Mode
 
 INSIDE_M = 0.1  # by which the chords may lie inside the circle
-WIDEST_RAD = math.radians(15.0)  # of one chord
+MAX_RAD = math.radians(15.0)  # of one chord
 AT_HEIGHT_M = 0.5
 OVER_PLACE_M = 0.5
 
@@ -21,7 +21,7 @@ def around(centre: Vector, start: Vector, turns: float, radius_m: float) -> list
     radius = abs(radius_m)
     begin = math.atan2(start[0] - centre[0], start[1] - centre[1])
     whole = 2.0 * math.pi * turns
-    widest = min(WIDEST_RAD, 2.0 * math.acos(max(1.0 - INSIDE_M / radius, 0.0))) if radius > 0.0 else whole
+    widest = min(MAX_RAD, 2.0 * math.acos(max(1.0 - INSIDE_M / radius, 0.0))) if radius > 0.0 else whole
     chords = max(math.ceil(whole / widest), 1) if whole > 0.0 and radius > 0.0 else 0
     step = math.copysign(whole / chords, radius_m) if chords else 0.0
     bearings = [begin + step * number for number in range(chords + 1)]

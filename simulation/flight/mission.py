@@ -8,9 +8,9 @@ from simulation.flight.guidance import Gate
 from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOff
 from simulation.flight.states import Mode
 
-LEAST_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
+MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
 STOPPED_WITHIN_M = 0.5
-MOST_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
+MAX_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
 
 
 class Mission:
@@ -44,7 +44,7 @@ class Mission:
     def step(self, cockpit: Cockpit) -> None:
         if self._stuck != cockpit.faults.stuck_item and self._run_end is not None:
             self._run_end = None  # to be flown from here anew, with another end
-        for _ in range(MOST_ORDERS_A_STEP):
+        for _ in range(MAX_ORDERS_A_STEP):
             if self.is_done or not self._advances(cockpit):
                 return
 
@@ -115,7 +115,7 @@ class Mission:
             if isinstance(order, flown.FlyTo):
                 place = cockpit.vector_of(order.place)
                 vias.append(Via(place, speed_mps, index))
-                gates[index] = Gate(place, max(order.radius_m or cockpit.settings.acceptance_m, LEAST_RADIUS_M))
+                gates[index] = Gate(place, max(order.radius_m or cockpit.settings.acceptance_m, MIN_RADIUS_M))
                 end = index
                 if order.hold_s > 0.0 or index == self._stuck or order.place.height_m is None or order.place.position is None:
                     break

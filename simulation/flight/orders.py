@@ -11,10 +11,10 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 
 E7 = 1e7
-MOST_ITEMS = 10_000
-HIGHEST_M, MOST_SPEED_MPS, LONGEST_S = 10_000.0, 100.0, 86_400.0
+MAX_ITEMS = 10_000
+MAX_HEIGHT_M, MAX_SPEED_MPS, MAX_DURATION_S = 10_000.0, 100.0, 86_400.0
 USUAL_CIRCLE_M = 10.0  # ArduCopter, CIRCLE_RADIUS
-MOST_CIRCLE_M, MOST_TURNS = 5_000.0, 100.0
+MAX_CIRCLE_M, MAX_TURNS = 5_000.0, 100.0
 _AMSL = {mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT}
 _RELATIVE = {mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT}
 _TERRAIN = {mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT}
@@ -165,8 +165,8 @@ _IGNORED = frozenset(
 
 def orders(items: Sequence[MissionItem], *, is_home_first: bool) -> tuple[Order, ...]:
     """One for each item. `is_home_first`: item 0 is home, as ArduPilot has it, and nothing to fly. Raises CannotFly."""
-    if len(items) > MOST_ITEMS:
-        raise CannotFly(MOST_ITEMS, "too-many", f"{len(items)} items; at most {MOST_ITEMS} are kept.")
+    if len(items) > MAX_ITEMS:
+        raise CannotFly(MAX_ITEMS, "too-many", f"{len(items)} items; at most {MAX_ITEMS} are kept.")
     read = tuple(NOTHING if is_home_first and index == 0 else _order(index, item) for index, item in enumerate(items))
     for index, order in enumerate(read):
         if isinstance(order, Jump) and not 0 <= order.index < len(read):
@@ -186,7 +186,7 @@ def _order(index: int, item: MissionItem) -> Order:
     if command == mavlink.MAV_CMD_NAV_LOITER_TURNS:
         turns, radius_m = 1.0 if math.isnan(one) else one, USUAL_CIRCLE_M if math.isnan(three) or three == 0.0 else three
         return FlyAround(
-            _place(index, item), _within(index, turns, 0.0, MOST_TURNS, 1), _within(index, radius_m, -MOST_CIRCLE_M, MOST_CIRCLE_M, 3)
+            _place(index, item), _within(index, turns, 0.0, MAX_TURNS, 1), _within(index, radius_m, -MAX_CIRCLE_M, MAX_CIRCLE_M, 3)
         )
     if command in (mavlink.MAV_CMD_NAV_LOITER_UNLIM, mavlink.MAV_CMD_NAV_LOITER_TO_ALT):
         return FlyTo(_place(index, item), math.inf if command == mavlink.MAV_CMD_NAV_LOITER_UNLIM else 0.0)
@@ -197,7 +197,7 @@ def _order(index: int, item: MissionItem) -> Order:
     if command == mavlink.MAV_CMD_NAV_DELAY:
         return Wait(_seconds(index, one, 1))
     if command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
-        return NOTHING if math.isnan(two) or two < 0.0 else SetSpeed(_within(index, two, 0.1, MOST_SPEED_MPS, 2))
+        return NOTHING if math.isnan(two) or two < 0.0 else SetSpeed(_within(index, two, 0.1, MAX_SPEED_MPS, 2))
     if command in (mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI):
         is_end = command == mavlink.MAV_CMD_DO_SET_ROI and not (item.longitude_e7 or item.latitude_e7 or item.altitude_m)
         return LookAt(None if is_end else _place(index, item))
@@ -231,7 +231,7 @@ def _place(index: int, item: MissionItem) -> Place:
         raise CannotFly(index, "invalid", f"latitude {lat:g} is beyond the pole.", 5)
     if not abs(lon) <= 180.0:
         raise CannotFly(index, "invalid", f"longitude {lon:g} is beyond 180 degrees.", 6)
-    if math.isinf(height_m) or abs(height_m) > HIGHEST_M:
+    if math.isinf(height_m) or abs(height_m) > MAX_HEIGHT_M:
         raise CannotFly(index, "invalid", f"a height of {height_m:g} m is beyond what is flown.", 7)
     above = Above.SEA if item.frame in _AMSL else Above.HOME if item.frame in _RELATIVE else Above.GROUND
     is_here = item.longitude_e7 == 0 and item.latitude_e7 == 0
@@ -239,7 +239,7 @@ def _place(index: int, item: MissionItem) -> Place:
 
 
 def _seconds(index: int, value: float, parameter: int) -> float:
-    return 0.0 if math.isnan(value) else max(_within(index, value, -1.0, LONGEST_S, parameter), 0.0)
+    return 0.0 if math.isnan(value) else max(_within(index, value, -1.0, MAX_DURATION_S, parameter), 0.0)
 
 
 def _positive(index: int, value: float, parameter: int) -> float:

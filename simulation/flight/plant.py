@@ -20,7 +20,7 @@ FOOT_M = 0.3048
 GUIDANCE_STEP_S = 0.04
 PHYSICS_HZ = (250, 125, 100)  # below 100 Hz the legs' springs are not followed any more
 J_PER_WH = 3600.0
-HIGHEST_M = 20_000.0  # above it, or under the ground, the model has come apart
+MAX_HEIGHT_M = 20_000.0  # above it, or under the ground, the model has come apart
 _READ = (
     "position/long-gc-deg",
     "position/lat-geod-deg",
@@ -163,7 +163,7 @@ class Plant:
         values[_VELOCITY] = [speed * FOOT_M for speed in values[_VELOCITY]]
         motion = Motion._make(values)
         # One sum is not a number if any of its parts is not; infinities do not cancel out unseen, either.
-        if not math.isfinite(sum(motion)) or not abs(motion.altitude_amsl_m) < HIGHEST_M:
+        if not math.isfinite(sum(motion)) or not abs(motion.altitude_amsl_m) < MAX_HEIGHT_M:
             raise CameApart("the state of the model is not a number")
         return motion
 

@@ -12,10 +12,10 @@ from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
 from planning.trajectory.waypoints import WaypointKind
 
-MOST_WAYPOINTS = 9_000
+MAX_WAYPOINTS = 9_000
 HEIGHTS_M = (1.0, 5_000.0)
 SPEEDS_MPS = (0.2, 50.0)
-LONGEST_LEG_M = 200_000.0  # beyond any battery of ours
+MAX_LEG_M = 200_000.0  # beyond any battery of ours
 
 
 class InvalidRoute(ValueError):
@@ -38,8 +38,8 @@ def read_route(value: Any) -> RouteFile:
     waypoints = value.get("waypoints")
     if not isinstance(waypoints, list) or not waypoints:
         raise InvalidRoute("waypoints must be a list with at least one waypoint.")
-    if len(waypoints) > MOST_WAYPOINTS:
-        raise InvalidRoute(f"waypoints has {len(waypoints):,} entries; at most {MOST_WAYPOINTS:,} are flown.")
+    if len(waypoints) > MAX_WAYPOINTS:
+        raise InvalidRoute(f"waypoints has {len(waypoints):,} entries; at most {MAX_WAYPOINTS:,} are flown.")
     positions, heights = [], []
     for number, waypoint in enumerate(waypoints):
         if not isinstance(waypoint, Mapping):
@@ -48,9 +48,9 @@ def read_route(value: Any) -> RouteFile:
         if number and abs(positions[-1].lon - positions[-2].lon) > 180.0:
             raise InvalidRoute(f"waypoints[{number}] is on the other side of the 180th meridian; routes across it are not flown.")
         heights.append(_number(waypoint.get("altitude_relative_m"), f"waypoints[{number}].altitude_relative_m", *HEIGHTS_M))
-        if number and (length_m := path_length_m(np.array(positions[-2:]))) > LONGEST_LEG_M:
+        if number and (length_m := path_length_m(np.array(positions[-2:]))) > MAX_LEG_M:
             raise InvalidRoute(
-                f"waypoints[{number}] is {length_m / 1000:,.0f} km from the one before; at most {LONGEST_LEG_M / 1000:.0f} km are flown. "
+                f"waypoints[{number}] is {length_m / 1000:,.0f} km from the one before; at most {MAX_LEG_M / 1000:.0f} km are flown. "
                 "A position is [longitude, latitude]."
             )
     return RouteFile(tuple(positions), tuple(heights), _number(value.get("speed_mps"), "speed_mps", *SPEEDS_MPS))

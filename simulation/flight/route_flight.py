@@ -20,9 +20,9 @@ from simulation.flight.weather import Weather
 
 FloatArray = NDArray[np.float64]
 TRACK_STEPS = 5  # a line of the track each 0.2 s
-MOST_BESIDE_M = 5.0
-MOST_LANDING_M = 2.0
-LEAST_RESERVE_PERCENT = 20.0  # as plans keep it by default
+MAX_BESIDE_M = 5.0
+MAX_LANDING_M = 2.0
+MIN_RESERVE_PERCENT = 20.0  # as plans keep it by default
 
 
 def cross_track_m(track: FloatArray, legs: NDArray[np.int64], waypoints: Sequence[LonLat]) -> FloatArray:
@@ -130,14 +130,14 @@ def _reasons(
         reasons.append(f"The UAV gave the mission up after {own.at_s:.0f} s. {why[-1] if why else ''}".strip())
     if flown.ending is Ending.FLYING:
         reasons.append("The flight did not come to an end.")
-    if len(beside) and beside.max() > MOST_BESIDE_M:
-        reasons.append(f"Up to {beside.max():.1f} m beside the route, limit {MOST_BESIDE_M:g} m.")
+    if len(beside) and beside.max() > MAX_BESIDE_M:
+        reasons.append(f"Up to {beside.max():.1f} m beside the route, limit {MAX_BESIDE_M:g} m.")
     if flown.touched_down_at is not None:
         off_m = _distance_m(flown.touched_down_at, route.positions[-1])
-        if off_m > MOST_LANDING_M:
-            reasons.append(f"Landed {off_m:.1f} m from the last waypoint, limit {MOST_LANDING_M:g} m.")
-    if flown.end.battery_percent < LEAST_RESERVE_PERCENT:
-        reasons.append(f"{flown.end.battery_percent:.0f} % battery at the end, limit {LEAST_RESERVE_PERCENT:g} %.")
+        if off_m > MAX_LANDING_M:
+            reasons.append(f"Landed {off_m:.1f} m from the last waypoint, limit {MAX_LANDING_M:g} m.")
+    if flown.end.battery_percent < MIN_RESERVE_PERCENT:
+        reasons.append(f"{flown.end.battery_percent:.0f} % battery at the end, limit {MIN_RESERVE_PERCENT:g} %.")
     return reasons
 
 

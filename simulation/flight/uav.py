@@ -23,7 +23,7 @@ from simulation.flight.weather import Weather
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
 SETTLES_S = 2.0  # on the ground, until the model rests
-SLOWEST_MPS = 0.2
+MIN_SPEED_MPS = 0.2
 
 
 def told(
@@ -251,7 +251,7 @@ class SimulatedUav:
         """Over ground, until a mission item says otherwise."""
         if not (math.isfinite(speed_mps) and speed_mps > 0.0):
             return Refused("speed", "A speed is above 0.")
-        self._cockpit.speed_mps = min(max(speed_mps, SLOWEST_MPS), self.airframe.max_speed_mps)
+        self._cockpit.speed_mps = min(max(speed_mps, MIN_SPEED_MPS), self.airframe.max_speed_mps)
         self._pilot.revision += 1
         if self._cockpit.is_in_air and not self._pilot.manoeuvre.is_landing and self._pilot.manoeuvre.mode in (Mode.MISSION, Mode.GO_TO):
             self._pilot.manoeuvre.begin(self._cockpit)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 from planning.energy.conditions import Conditions
 
-MOST_GUSTS_MPS = 15.0
-MOST_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe
+MAX_GUSTS_MPS = 15.0
+MAX_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe
 GUST_TIME_S = 3.0
 
 
@@ -29,9 +29,9 @@ class Weather:
     turbulence_mps_at_20ft: float = 0.0
 
     def __post_init__(self) -> None:
-        _check("gusts_mps", self.gusts_mps, 0.0, MOST_GUSTS_MPS)
+        _check("gusts_mps", self.gusts_mps, 0.0, MAX_GUSTS_MPS)
         _check("gust_time_s", self.gust_time_s, 0.1, 600.0)
-        _check("turbulence_mps_at_20ft", self.turbulence_mps_at_20ft, 0.0, MOST_TURBULENCE_MPS)
+        _check("turbulence_mps_at_20ft", self.turbulence_mps_at_20ft, 0.0, MAX_TURBULENCE_MPS)
 
 
 def _check(name: str, value: float, least: float, most: float) -> None:

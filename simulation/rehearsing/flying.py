@@ -17,8 +17,8 @@ STEP_S = 0.04  # of a UAV's step
 STEPS_A_SAMPLE = 5
 TOGETHER_S = 1.0  # no UAV is ahead of another one by more
 HOVERS_S = 10.0  # after its last waypoint, before a flight that ends so is over
-PATIENCE = 3.0  # times the planned duration
-PATIENCE_S = 600.0  # and so much more: then a flight does not end by itself
+TIMEOUT = 3.0  # times the planned duration
+TIMEOUT_S = 600.0  # and so much more: then a flight does not end by itself
 UP_THERE = 0.95  # of a take-off's height
 
 
@@ -184,7 +184,7 @@ class _Flyer:
             self._end(Ending.LANDED)
         elif self._flight.end_action == HOVER and vehicle.now_s >= self._complete_s + HOVERS_S:
             self._end(Ending.HOVERING)
-        elif vehicle.now_s > PATIENCE * self._planned_s(self._flight) + PATIENCE_S:
+        elif vehicle.now_s > TIMEOUT * self._planned_s(self._flight) + TIMEOUT_S:
             self._end(Ending.UNFINISHED)
 
     def _note(self, vehicle: Vehicle) -> None:

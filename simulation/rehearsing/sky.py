@@ -14,10 +14,10 @@ WIND_TURBULENT_FROM_MPS = 1.0  # in a calm there is no turbulence
 WORN_BATTERY_PERCENT = 80.0  # of its rated energy, at which batteries are commonly taken out of service
 PREVAILING_FROM_DEG = 270.0
 LOW_AGL_M = 10.0  # 33 feet: where winds are told
-LONGEST_NAME = 60
+MAX_NAME_LENGTH = 60
 OWN_KEYS = {"name", "wind", "temperature_c", "gusts_mps", "turbulence_mps_at_20ft", "battery_percent"}
-MOST_GUSTS_MPS = 10.0
-LEAST_BATTERY_PERCENT = 10.0
+MAX_GUSTS_MPS = 10.0
+MIN_BATTERY_PERCENT = 10.0
 
 
 class Named(StrEnum):
@@ -72,15 +72,15 @@ def own_sky(value: Any, planned: Conditions) -> Sky:
     stated = {key: value[key] for key in ("wind", "temperature_c") if value.get(key) is not None}
     conditions = conditions_from_json(conditions_to_json(planned) | stated)
     name = value.get("name") or ""
-    if not isinstance(name, str) or len(name) > LONGEST_NAME:
-        raise InvalidConditions("name", f"must be a text of at most {LONGEST_NAME} characters")
+    if not isinstance(name, str) or len(name) > MAX_NAME_LENGTH:
+        raise InvalidConditions("name", f"must be a text of at most {MAX_NAME_LENGTH} characters")
     turbulence = value.get("turbulence_mps_at_20ft")
     return Sky(
         Named.OWN,
         conditions,
-        gusts_mps=_within(value.get("gusts_mps"), 0.0, MOST_GUSTS_MPS, 0.0, "gusts_mps"),
+        gusts_mps=_within(value.get("gusts_mps"), 0.0, MAX_GUSTS_MPS, 0.0, "gusts_mps"),
         turbulence_mps_at_20ft=_within(turbulence, 0.0, MAX_WIND_MPS, _turbulence_of(conditions), "turbulence_mps_at_20ft"),
-        battery_percent=_within(value.get("battery_percent"), LEAST_BATTERY_PERCENT, 100.0, 100.0, "battery_percent"),
+        battery_percent=_within(value.get("battery_percent"), MIN_BATTERY_PERCENT, 100.0, 100.0, "battery_percent"),
         name=name,
     )
 

@@ -1,12 +1,12 @@
 """The air of a set of conditions, as simulated UAVs fly in it."""
 
-from simulation.flight.weather import MOST_GUSTS_MPS, MOST_TURBULENCE_MPS, Weather
+from simulation.flight.weather import MAX_GUSTS_MPS, MAX_TURBULENCE_MPS, Weather
 from simulation.rehearsing.sky import Sky
 
 
 def weather_of(sky: Sky) -> Weather:
     return Weather(
         conditions=sky.conditions,
-        gusts_mps=min(sky.gusts_mps, MOST_GUSTS_MPS),
-        turbulence_mps_at_20ft=min(sky.turbulence_mps_at_20ft, MOST_TURBULENCE_MPS),
+        gusts_mps=min(sky.gusts_mps, MAX_GUSTS_MPS),
+        turbulence_mps_at_20ft=min(sky.turbulence_mps_at_20ft, MAX_TURBULENCE_MPS),
     )

@@ -7,7 +7,7 @@ from workspace import strict_serializers as serializers
 from workspace.models import JobState
 from workspace.serializers import Declared, JobErrorField
 
-MOST_CONDITIONS = 8
+MAX_CONDITIONS = 8
 LEVELS = VerdictLevel.choices
 
 
@@ -15,7 +15,7 @@ class RehearsalInputSerializer(serializers.Serializer):
     conditions = serializers.ListField(
         child=serializers.JSONField(),
         min_length=1,
-        max_length=MOST_CONDITIONS,
+        max_length=MAX_CONDITIONS,
         required=False,
         help_text=(
             "each flown by itself: calm, as-planned, strong-wind, weak-battery, or an object with own figures: name, wind and "

@@ -17,9 +17,9 @@ from simulation.serializers.shapes import RehearsalConditionsSerializer
 from workspace import strict_serializers as serializers
 
 SPEEDS = (1, 2, 5, 10)
-MOST_POOL_UAVS = 100
-HIGHEST_SYSTEM = 250
-SHORTEST_LIFETIME_S, USUAL_LIFETIME_S, LONGEST_TOLD_S = 60, 3_600, 7 * 86_400
+MAX_POOL_UAVS = 100
+MAX_SYSTEM_ID = 250
+MIN_LIFETIME_S, USUAL_LIFETIME_S, MAX_TOLD_S = 60, 3_600, 7 * 86_400
 
 
 NOT_OF_THE_FLEET = gettext_lazy(
@@ -105,10 +105,10 @@ class PoolUavSerializer(KnownFieldsSerializer):
 
 
 class SimulationInputSerializer(KnownFieldsSerializer):
-    uavs: serializers.ListSerializer[Any] = serializers.ListSerializer(child=PoolUavSerializer(), min_length=1, max_length=MOST_POOL_UAVS)
+    uavs: serializers.ListSerializer[Any] = serializers.ListSerializer(child=PoolUavSerializer(), min_length=1, max_length=MAX_POOL_UAVS)
     lifetime_s = serializers.IntegerField(
-        min_value=SHORTEST_LIFETIME_S,
-        max_value=LONGEST_TOLD_S,
+        min_value=MIN_LIFETIME_S,
+        max_value=MAX_TOLD_S,
         default=USUAL_LIFETIME_S,
         help_text="then they end",
     )
@@ -117,12 +117,12 @@ class SimulationInputSerializer(KnownFieldsSerializer):
     speed = serializers.ChoiceField(choices=SPEEDS, default=1)
     conditions = ConditionsField(default="calm", help_text=CONDITIONS_TOLD)
     faults = FaultsSerializer(required=False)
-    first_system_id = serializers.IntegerField(min_value=1, max_value=HIGHEST_SYSTEM, default=1, help_text="the others' follow")
+    first_system_id = serializers.IntegerField(min_value=1, max_value=MAX_SYSTEM_ID, default=1, help_text="the others' follow")
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        if attrs["first_system_id"] + len(attrs["uavs"]) - 1 > HIGHEST_SYSTEM:
-            raise serializers.ValidationError({"first_system_id": f"System ids end at {HIGHEST_SYSTEM}."})
+        if attrs["first_system_id"] + len(attrs["uavs"]) - 1 > MAX_SYSTEM_ID:
+            raise serializers.ValidationError({"first_system_id": f"System ids end at {MAX_SYSTEM_ID}."})
         return attrs
 
 

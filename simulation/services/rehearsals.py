@@ -147,7 +147,7 @@ def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed
     plan, ground = plan_to_fly(mission), planning_read().ground()
     with transaction.atomic():
         job = create_job_within(
-            settings.MOST_OPEN_REHEARSALS,
+            settings.MAX_OPEN_REHEARSALS,
             organisation=mission.organisation,
             created_by=actor,
             task=REHEARSE,

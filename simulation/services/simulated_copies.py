@@ -12,7 +12,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.models import LinkKind, Mission, MissionUav, Uav, UavState
-from missions.models.missions import LONGEST_NAME
+from missions.models.missions import MAX_NAME_LENGTH
 from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval import approve_mission
 from missions.services.mission_copies import duplicate_mission
@@ -82,7 +82,7 @@ def _bring_back_twins(copy: Mission, actor: User) -> None:
 def _make_copy(mission: Mission, places: Sequence[MissionUav], actor: User) -> Mission:
     twins = {place.sequence: _twin(place, actor) for place in places}
     retire_idle_twins(organisation=mission.organisation, actor=actor, but=[twin.pk for twin in twins.values()])
-    name = _("{name} (simulated)").format(name=mission.name[: LONGEST_NAME - 20])
+    name = _("{name} (simulated)").format(name=mission.name[: MAX_NAME_LENGTH - 20])
     copy = duplicate_mission(
         mission=mission, author=actor, name=name, simulates=mission, departs_at=None, external_id="", attributes={},
         is_demo=mission.is_demo,

@@ -22,7 +22,7 @@ from simulation.vehicle_models import PRESENT
 from workspace.models import User
 
 FLOWN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-HIGHEST_SYSTEM = 250  # those above are ground stations
+MAX_SYSTEM_ID = 250  # those above are ground stations
 LIFETIME_S = 4 * 3_600.0
 
 
@@ -67,7 +67,7 @@ def reachable(uav: Uav, actor: User) -> Uav:
     """With a system id, and a key unless it needs none: what a gateway knows it by. Made keys are shown to nobody."""
     if uav.mavlink_system_id is None:
         taken = set(Uav.objects.exclude(mavlink_system_id=None).values_list("mavlink_system_id", flat=True))
-        free = next((number for number in range(1, HIGHEST_SYSTEM + 1) if number not in taken), None)
+        free = next((number for number in range(1, MAX_SYSTEM_ID + 1) if number not in taken), None)
         if free is None:
             raise refuse("no_system_id", _("All MAVLink system ids are taken."))
         try:

@@ -194,8 +194,8 @@ def check_quota(organisation: Organisation, wanted: int) -> None:
         simulation__end_wanted_at=None,
         state__in=PRESENT,
     ).count()
-    if present + wanted > settings.MOST_SIMULATED_UAVS:
-        raise QuotaReached(max(settings.MOST_SIMULATED_UAVS - present, 0))
+    if present + wanted > settings.MAX_SIMULATED_UAVS:
+        raise QuotaReached(max(settings.MAX_SIMULATED_UAVS - present, 0))
 
 
 def note_start(simulation: Simulation, actor: User, *, speed: float, uavs: int, faults: Mapping[str, Any] | None) -> None:
@@ -218,7 +218,7 @@ def note(simulation: Simulation, actor: User | None, action: str, facts: dict[st
 
 def lifetime_end(lifetime_s: float) -> datetime:
     """From now; no simulation lasts longer than the setting says."""
-    return timezone.now() + timedelta(seconds=min(lifetime_s, settings.LONGEST_SIMULATION_H * 3_600.0))
+    return timezone.now() + timedelta(seconds=min(lifetime_s, settings.MAX_SIMULATION_H * 3_600.0))
 
 
 def _free_ports(count: int) -> list[int]:

@@ -39,7 +39,7 @@ def options_of_settings(*, name: str | None = None, most_uavs: int | None = None
     named = name or settings.SIMULATOR_NAME or f"{socket.gethostname()}-{os.getpid()}"
     return Options(
         name=re.sub(r"[^\w.-]", "-", named)[:80],
-        most_load=float(settings.SIMULATOR_MOST_UAVS if most_uavs is None else most_uavs),
+        most_load=float(settings.SIMULATOR_MAX_UAVS if most_uavs is None else most_uavs),
         gateway=gateway_address(reached_at) if reached_at else None,
         host=settings.SIMULATOR_HOST,
     )

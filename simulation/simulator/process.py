@@ -35,13 +35,13 @@ from simulation.simulator.options import Options
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.lease_times import held_until_s
 
 logger = logging.getLogger(__name__)
-EVERY_S = 0.5
-TELL_EVERY_S = 1.0
-AWAY_EVERY_S = 60.0  # one line of log
+INTERVAL_S = 0.5
+REPORT_INTERVAL_S = 1.0
+UNAVAILABLE_INTERVAL_S = 60.0  # one line of log
 LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 
 
@@ -84,7 +84,7 @@ class Simulator:
     flights: dict[UUID, Flight] = field(default_factory=dict)
     _stop: threading.Event = field(default_factory=threading.Event)
     _told_s: float = 0.0
-    _quiet_until_s: float = -AWAY_EVERY_S
+    _quiet_until_s: float = -UNAVAILABLE_INTERVAL_S
 
     def run(self) -> None:
         logger.info("simulator %s has begun", self.options.holder)
@@ -93,9 +93,9 @@ class Simulator:
             try:
                 close_old_connections()
                 self.round()
-            except DATABASE_AWAY as error:
+            except DATABASE_UNAVAILABLE as error:
                 self._go_on_without_database(error)
-            self._stop.wait(EVERY_S)
+            self._stop.wait(INTERVAL_S)
         pulse.rest(LOOP)
         self._give_back()
 
@@ -109,7 +109,7 @@ class Simulator:
         self._take()
         for change in take_changes(ids=list(self.flights)) if self.flights else ():
             self._pass_on(change)
-        if time.monotonic() - self._told_s >= TELL_EVERY_S:
+        if time.monotonic() - self._told_s >= REPORT_INTERVAL_S:
             self._told_s = time.monotonic()
             for key, flight in self.flights.items():
                 tell(simulation_id=key, holder=self.options.holder, pace=flight.pace(), vehicles=flight.told())
@@ -148,7 +148,7 @@ class Simulator:
                 launches = [launch_of(vehicle, held.simulation, options) for vehicle in held.vehicles]
                 until_s = held_until_s(asked_s, options.lease_s)
                 self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches, held_until_s=until_s)
-            except DATABASE_AWAY:
+            except DATABASE_UNAVAILABLE:
                 raise
             except NoGateway:
                 logger.warning(
@@ -188,7 +188,7 @@ class Simulator:
         """They fly on until their leases are out: then another simulator may have them, and two of one UAV would be one too many."""
         connection.close()
         if time.monotonic() >= self._quiet_until_s:
-            self._quiet_until_s = time.monotonic() + AWAY_EVERY_S
+            self._quiet_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
             logger.warning("the database is away, no simulation is taken or changed: %s", type(error).__name__)
         self._let_go()
 
@@ -196,7 +196,7 @@ class Simulator:
         self._end_all()
         try:
             release_simulations(holder=self.options.holder)
-        except DATABASE_AWAY:
+        except DATABASE_UNAVAILABLE:
             logger.warning("the database is away: leases run out by themselves")
 
     def _end_all(self) -> None:

@@ -15,7 +15,7 @@ from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio
 from simulation.vehicle_protocol.flavour import Flavour
 
-HIGHEST_SYSTEM = 250  # those above are ground stations
+MAX_SYSTEM_ID = 250  # those above are ground stations
 METRES_PER_DEGREE = 111_195.0
 
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 
 from mavlink.frames import Damage, Frame, frames_of_datagram
 
-LARGEST_DATAGRAM = 65_535
-MOST_DATAGRAMS = 100  # that are heard before something else has its turn
-MOST_PEERS = 16
+MAX_DATAGRAM_BYTES = 65_535
+MAX_DATAGRAMS = 100  # that are heard before something else has its turn
+MAX_PEERS = 16
 HEARTBEAT = 0  # its message id
-FEWEST_HEARTBEATS = 3  # of a station that sends them regularly
+MIN_HEARTBEATS = 3  # of a station that sends them regularly
 SILENT_AFTER_S = 2.0  # of wall time; such stations send one a second
 FORGOTTEN_AFTER_S = 60.0  # of silence; the addresses it was given never
 Address = tuple[str, int]
@@ -85,9 +85,9 @@ class Radio:
 
     def received(self) -> Iterator[tuple[Frame, Address]]:
         """What has come in, with who sent it."""
-        for _ in range(MOST_DATAGRAMS):
+        for _ in range(MAX_DATAGRAMS):
             try:
-                datagram, address = self.socket.recvfrom(LARGEST_DATAGRAM)
+                datagram, address = self.socket.recvfrom(MAX_DATAGRAM_BYTES)
             except BlockingIOError:
                 return
             except OSError:  # what was sent before could not be delivered
@@ -99,7 +99,7 @@ class Radio:
 
     def is_station_silent(self, now_s: float) -> bool:
         """Whether a station that has sent heartbeats is late with the next one: it may not keep up with what it is sent."""
-        return self._heartbeats >= FEWEST_HEARTBEATS and now_s - self._heartbeat_s > SILENT_AFTER_S
+        return self._heartbeats >= MIN_HEARTBEATS and now_s - self._heartbeat_s > SILENT_AFTER_S
 
     def link_of(self, address: Address) -> int | None:
         """Of who sent something that was believed; None while too many others are talking."""
@@ -121,7 +121,7 @@ class Radio:
         for other, peer in list(self._peers.items()):
             if not peer.is_given and now_s - peer.heard_s > FORGOTTEN_AFTER_S:
                 del self._peers[other]
-        if len(self._peers) >= MOST_PEERS and not is_given:
+        if len(self._peers) >= MAX_PEERS and not is_given:
             return None
         self._links += 1
         return self._peers.setdefault(address, _Peer(self._links, now_s, is_given))

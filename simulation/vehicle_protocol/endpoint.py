@@ -32,9 +32,9 @@ from simulation.vehicle_protocol.streams import Streams
 from simulation.vehicle_protocol.vehicle import Vehicle
 
 PIECE = 50  # bytes of one STATUSTEXT
-MOST_PIECES = 5
+MAX_PIECES = 5
 HEARTBEAT_S = 1.0
-LARGEST_NUMBER = 65_535
+MAX_NUMBER = 65_535
 SEVERITIES = {
     Severity.INFO: mavlink.MAV_SEVERITY_INFO, Severity.WARNING: mavlink.MAV_SEVERITY_WARNING,
     Severity.CRITICAL: mavlink.MAV_SEVERITY_CRITICAL,
@@ -43,10 +43,10 @@ SEVERITIES = {
 
 def text_messages(text: str, severity: int, number: int) -> list[Message]:
     """In pieces where it is long; `number` (1 to 65535) names what belongs together. Words are cut where they would go on for ever."""
-    words = text.encode("ascii", "replace")[: PIECE * MOST_PIECES]
+    words = text.encode("ascii", "replace")[: PIECE * MAX_PIECES]
     pieces = [words[start : start + PIECE] for start in range(0, len(words), PIECE)] or [b""]
     identity = number if len(pieces) > 1 else 0
-    if identity and len(pieces[-1]) == PIECE and len(pieces) < MOST_PIECES:
+    if identity and len(pieces[-1]) == PIECE and len(pieces) < MAX_PIECES:
         pieces.append(b"")  # a full last piece would not tell that it is the last
     return [mavlink.MAVLink_statustext_message(severity, piece, identity, place) for place, piece in enumerate(pieces)]
 
@@ -214,7 +214,7 @@ class Endpoint:
         return [Outgoing(one) for one in self._text(words, mavlink.MAV_SEVERITY_WARNING)] if words else []
 
     def _text(self, words: str, severity: int) -> list[Message]:
-        self._texts = self._texts % LARGEST_NUMBER + 1
+        self._texts = self._texts % MAX_NUMBER + 1
         return text_messages(words, severity, self._texts)
 
     def _reached(self, event: events.ItemReached) -> list[Message]:

@@ -11,7 +11,7 @@ from simulation.vehicle_protocol.fence import Fence
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.parameters import Parameters
 
-EVERY_S = 0.4  # of simulated time
+INTERVAL_S = 0.4  # of simulated time
 
 
 class FenceAction(StrEnum):
@@ -43,7 +43,7 @@ class FenceWatch:
         """at_s: simulated seconds."""
         if at_s < self._next_s:
             return FenceAction.NONE
-        self._next_s = at_s + EVERY_S
+        self._next_s = at_s + INTERVAL_S
         was_broken = self.is_broken
         self.is_broken = is_in_air and self.is_enabled and self.fence.is_broken_at(place)
         return self.action if self.is_broken and not was_broken else FenceAction.NONE

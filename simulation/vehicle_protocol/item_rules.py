@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
-from simulation.flight.orders import HIGHEST_M, CannotFly, orders
+from simulation.flight.orders import MAX_HEIGHT_M, CannotFly, orders
 from simulation.vehicle_protocol.flavour import Flavour
 
-MOST_ITEMS = {
+MAX_ITEMS = {
     Flavour.PX4: {MissionType.MISSION: 2_000, MissionType.FENCE: 64, MissionType.RALLY: 32},
     Flavour.ARDUPILOT: {MissionType.MISSION: 649, MissionType.FENCE: 84, MissionType.RALLY: 50},  # without home
 }
@@ -73,7 +73,7 @@ def _refusal_of_place(item: MissionItem) -> int | None:
         return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
     if abs(item.longitude_e7) > 1_800_000_000:
         return int(mavlink.MAV_MISSION_INVALID_PARAM6_Y)
-    return None if abs(item.altitude_m) <= HIGHEST_M else int(mavlink.MAV_MISSION_INVALID_PARAM7)
+    return None if abs(item.altitude_m) <= MAX_HEIGHT_M else int(mavlink.MAV_MISSION_INVALID_PARAM7)
 
 
 def _refusal_of_fence(items: Sequence[MissionItem]) -> int | None:

@@ -15,11 +15,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.frames import Message
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.item_rules import MOST_ITEMS, refusal_of, refusal_of_list
+from simulation.vehicle_protocol.item_rules import MAX_ITEMS, refusal_of, refusal_of_list
 from simulation.vehicle_protocol.stations import Outgoing, Station
 
 E7 = 1e7
-_LARGEST_E7 = 2**31 - 1
+_MAX_E7 = 2**31 - 1
 WITH_PLACE = frozenset(
     {16, 17, 18, 19, 21, 22, 31, 82, 195, 201}
 )  # of a mission: waypoints, loiter, land, take-off, splines, regions of interest
@@ -31,8 +31,8 @@ KEPT_BY_ARDUPILOT = {
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: 1, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: 1,
     mavlink.MAV_CMD_NAV_RALLY_POINT: 0,
 }  # fmt: skip
-REQUEST_EVERY_S = 0.25
-MOST_REQUESTS = 20  # of one item
+REQUEST_INTERVAL_S = 0.25
+MAX_REQUESTS = 20  # of one item
 ALL_LISTS = mavlink.MAV_MISSION_TYPE_ALL
 ACCEPTED, DENIED = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_DENIED)
 Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # a MAV_MISSION_RESULT; nothing has changed unless it is ACCEPTED
@@ -81,7 +81,7 @@ def as_kept(item: MissionItem, kind: MissionType, flavour: Flavour) -> MissionIt
 
 def _e7(degrees: float) -> int:
     """Out of range where it is no number, so that it is refused for its place."""
-    return max(-_LARGEST_E7, min(_LARGEST_E7, round(degrees * E7))) if math.isfinite(degrees) else _LARGEST_E7
+    return max(-_MAX_E7, min(_MAX_E7, round(degrees * E7))) if math.isfinite(degrees) else _MAX_E7
 
 
 def _float32(value: float) -> float:
@@ -127,9 +127,9 @@ class MissionServer:
 
     def tick(self, now_s: float) -> list[Outgoing]:
         upload = self._upload
-        if upload is None or now_s < upload.asked_s + REQUEST_EVERY_S:
+        if upload is None or now_s < upload.asked_s + REQUEST_INTERVAL_S:
             return []
-        if upload.requests >= MOST_REQUESTS:
+        if upload.requests >= MAX_REQUESTS:
             self._upload = None
             return [_ack(mavlink.MAV_MISSION_OPERATION_CANCELLED, upload.kind, upload.station)]
         upload.requests += 1
@@ -146,7 +146,7 @@ class MissionServer:
             return [_ack(DENIED, kind, station)]
         self._upload = self._done = None
         flown = max(message.count - self._first(kind), 0)
-        if flown > MOST_ITEMS[self.flavour][kind]:
+        if flown > MAX_ITEMS[self.flavour][kind]:
             return [_ack(mavlink.MAV_MISSION_NO_SPACE, kind, station)]
         if message.count == 0:
             return [_ack(self.put(kind, ()), kind, station)]

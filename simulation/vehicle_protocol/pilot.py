@@ -28,7 +28,7 @@ from simulation.vehicle_protocol.vehicle import Vehicle
 ACCEPTED, DENIED, FAILED = int(mavlink.MAV_RESULT_ACCEPTED), int(mavlink.MAV_RESULT_DENIED), int(mavlink.MAV_RESULT_FAILED)
 UNSUPPORTED, REJECTED = int(mavlink.MAV_RESULT_UNSUPPORTED), int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 FORCE = 21_196  # of COMPONENT_ARM_DISARM
-LEAST_TAKE_OFF_M = 1.0
+MIN_TAKE_OFF_M = 1.0
 AIRSPEED, GROUND_SPEED = 0, 1
 PAUSE, GO_ON = 0, 1
 
@@ -104,7 +104,7 @@ class Pilot:
         relative_m = self.vehicle.settings.take_off_height_m
         if height_m is not None:
             wanted_m = height_m if command.is_above_sea is False else height_m - state.home_amsl_m
-            relative_m = wanted_m if wanted_m >= LEAST_TAKE_OFF_M else relative_m
+            relative_m = wanted_m if wanted_m >= MIN_TAKE_OFF_M else relative_m
         outcome = self.vehicle.take_off(relative_m)
         if outcome.is_done:
             self.shown.asked = usual_number(self.flavour, Mode.TAKE_OFF)

@@ -29,7 +29,7 @@ TERMINATE_SESSION, RESET_SESSIONS = 1, 2
 OPENING = frozenset({4, 11})  # for reading, for writing; 6 would create a file
 ACK, NAK = 128, 129
 UNKNOWN_COMMAND, FILE_NOT_FOUND = 7, 10
-_LARGEST_NS = 2**63 - 1
+_MAX_NS = 2**63 - 1
 Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
 
 
@@ -66,7 +66,7 @@ def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoi
     """now_s: by one clock that never goes back. A message that bears a time of ours already is itself an answer."""
     if message.tc1 != 0:
         return []
-    now_ns = min(int(now_s * 1e9), _LARGEST_NS)
+    now_ns = min(int(now_s * 1e9), _MAX_NS)
     return [Outgoing(mavlink.MAVLink_timesync_message(now_ns, message.ts1), station)]
 
 

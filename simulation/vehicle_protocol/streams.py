@@ -24,8 +24,8 @@ INTERVALS_S = {
 }
 WIND_INTERVAL_S = 2.0
 WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
-SHORTEST_S = 0.04  # a step of the flight
-LONGEST_S = 3_600.0
+MIN_DURATION_S = 0.04  # a step of the flight
+MAX_DURATION_S = 3_600.0
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # multiples of it lie evenly, however many there are
 
 
@@ -69,7 +69,7 @@ class Streams:
             self._due_s.pop(message, None)
         else:
             interval_s = interval_us / 1e6 if interval_us else self._usual.get(message, 1.0)
-            self._intervals_s[message] = min(max(interval_s, SHORTEST_S), LONGEST_S)
+            self._intervals_s[message] = min(max(interval_s, MIN_DURATION_S), MAX_DURATION_S)
             self._due_s[message] = -math.inf
         self._next_s = -math.inf
         return True

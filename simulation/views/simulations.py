@@ -153,8 +153,8 @@ class Simulations(APIView):
         body = shapes.SimulationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         values = body.validated_data
-        if values["lifetime_s"] > settings.LONGEST_SIMULATION_H * 3_600:
-            raise invalid("lifetime_s", _("At most %(hours)g hours.") % {"hours": settings.LONGEST_SIMULATION_H})
+        if values["lifetime_s"] > settings.MAX_SIMULATION_H * 3_600:
+            raise invalid("lifetime_s", _("At most %(hours)g hours.") % {"hours": settings.MAX_SIMULATION_H})
         try:
             simulation = start_pool(
                 organisation=request.user.organisation,
@@ -285,5 +285,5 @@ def _is_over() -> ApiProblem:
 
 def _too_many(error: QuotaReached) -> ApiProblem:
     words = _("Your organisation may have %(most)s simulated UAVs at once; %(free)s are free.")
-    values = {"most": settings.MOST_SIMULATED_UAVS, "free": error.free}
+    values = {"most": settings.MAX_SIMULATED_UAVS, "free": error.free}
     return ApiProblem(429, "too_many_simulated_uavs", words % values, retry_after_s=RETRY_AFTER_S)

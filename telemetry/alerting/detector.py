@@ -7,7 +7,7 @@ from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.situation import Situation
 
-LOOK_EVERY_S = 1.0
+POLL_INTERVAL_S = 1.0
 
 
 def _none(_limits: Limits, _interval_s: float) -> float:
@@ -37,4 +37,4 @@ class Detector:
     def delay_s(self, limits: Limits, report_interval_s: float = 1.0) -> float:
         """From a fault until its alert is open, at most, where reports come so often."""
         waits_s = self.own_delay_s(limits, report_interval_s) + self.raise_after_s
-        return self.reports * report_interval_s + waits_s + LOOK_EVERY_S
+        return self.reports * report_interval_s + waits_s + POLL_INTERVAL_S

@@ -22,12 +22,12 @@ HIGHER_M = 2.0
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 STEP_S = 2.0
-MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
+MAX_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
 DEGREE_M = 111_195.0
-MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
+MAX_MET = 8  # others that each is told of: in a crowd more would say nothing new
 SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
 FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # by which metres across the ground and in height are weighed against each other
-SLOWEST_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
+MIN_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
 NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
@@ -138,7 +138,7 @@ def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
     if told.altitude_relative_m is None or moving.height_m is None:
         return None
     seconds = [STEP_S * step for step in range(len(moving.ahead))]
-    points = line.planned_ahead(place, told.altitude_relative_m, max(moving.climb_mps, SLOWEST_CLIMB_MPS), seconds)
+    points = line.planned_ahead(place, told.altitude_relative_m, max(moving.climb_mps, MIN_CLIMB_MPS), seconds)
     if points is None:
         return None
     origin = line.frame.origin
@@ -216,7 +216,7 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
             continue
         first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
         is_new = (first.uav_id, second.uav_id) not in told
-        if is_new and met[first.uav_id] >= MOST_MET and met[second.uav_id] >= MOST_MET:
+        if is_new and met[first.uav_id] >= MAX_MET and met[second.uav_id] >= MAX_MET:
             continue
         found[first.uav_id].append(_meeting(first, second, float(lateral_m[pair]), float(height_m[pair]), float(in_s[pair])))
         if is_new:
@@ -260,8 +260,8 @@ def _closest(between: FloatArray, above: FloatArray) -> tuple[FloatArray, FloatA
 
 
 def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, in_s: float) -> Meeting:
-    bound_m = math.hypot(min(first.bound_m, MOST_BOUND_M), min(second.bound_m, MOST_BOUND_M))
-    bound_height_m = math.hypot(min(first.bound_height_m, MOST_BOUND_M), min(second.bound_height_m, MOST_BOUND_M))
+    bound_m = math.hypot(min(first.bound_m, MAX_BOUND_M), min(second.bound_m, MAX_BOUND_M))
+    bound_height_m = math.hypot(min(first.bound_height_m, MAX_BOUND_M), min(second.bound_height_m, MAX_BOUND_M))
     origin = first.here or first.ahead[0]
     one, other = _flying(first, origin), _flying(second, origin)
     east_m, north_m = other.east_m - one.east_m, other.north_m - one.north_m

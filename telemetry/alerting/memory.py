@@ -14,7 +14,7 @@ from telemetry.estimation.report import Report
 INTERVALS_KEPT = 5
 UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
 FALL_MPS = 8.0  # multicopters are set to descend by 1 to 5 m/s
-SHORTEST_FALL_S = 0.2  # between two reports, for their heights to tell a speed
+MIN_FALL_S = 0.2  # between two reports, for their heights to tell a speed
 
 
 @dataclass
@@ -113,7 +113,7 @@ def _is_falling(report: Report, before: Report | None) -> bool:
     seconds = report.measured_s - before.measured_s
     if report.boot is not None and before.boot is not None and report.boot.stream == before.boot.stream:
         seconds = report.boot.clock_s - before.boot.clock_s
-    return seconds >= SHORTEST_FALL_S and (earlier_m - told.altitude_relative_m) / seconds > FALL_MPS
+    return seconds >= MIN_FALL_S and (earlier_m - told.altitude_relative_m) / seconds > FALL_MPS
 
 
 def _place(line: RouteLine, report: Report, before: Place | None) -> Place | None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 KEPT_S = 600.0  # for which a word of the battery counts where nothing else speaks of it
 BEFORE_S, AFTER_S = 15.0, 10.0  # of a change of mode: words that may give its reason
-MOST_QUOTED = 3
+MAX_QUOTED = 3
 _BATTERY = re.compile(r"\bbatt", re.IGNORECASE)
 _WORSE = re.compile(r"critical|emergency|dangerous|fail", re.IGNORECASE)
 _LOW = re.compile(r"\blow\b|empty|unhealthy", re.IGNORECASE)
@@ -23,7 +23,7 @@ class Said:
 def quoted(said: Sequence[Said], from_s: float, to_s: float) -> str:
     """The last few that were received between two moments, the newest last; empty for none."""
     texts = dict.fromkeys(word.text for word in said if from_s <= word.at_s <= to_s)
-    return "; ".join(list(texts)[-MOST_QUOTED:])
+    return "; ".join(list(texts)[-MAX_QUOTED:])
 
 
 def words_of_battery(said: Sequence[Said], now_s: float) -> Said | None:

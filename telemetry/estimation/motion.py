@@ -25,7 +25,7 @@ BRAKES_S = 1.3
 DRIFT_MPS = 0.06  # of one that holds
 STEERED_S = 6.0  # how long a velocity tells of one that a person steers
 STEERED_MPS2 = 0.9
-UNFORESEEN_HZ, MOST_UNFORESEEN = 1.0 / 2_000.0, 0.03  # how often somebody stops or calls back one that flies its route
+UNFORESEEN_HZ, MAX_UNFORESEEN = 1.0 / 2_000.0, 0.03  # how often somebody stops or calls back one that flies its route
 SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors that reports share: of GPS, and of the barometer
 
 
@@ -88,7 +88,7 @@ def after(state: State, after_s: float, *, with_reach: bool = True) -> Belief:
 
 def _held(after_s: float) -> float:
     """What an ellipse holds of those that still fly on, to hold 95 of 100 of all: the others may be anywhere behind."""
-    return 0.95 / (1.0 - min(UNFORESEEN_HZ * after_s, MOST_UNFORESEEN))
+    return 0.95 / (1.0 - min(UNFORESEEN_HZ * after_s, MAX_UNFORESEEN))
 
 
 def state_speed(state: State) -> float:

@@ -23,13 +23,13 @@ GRID = 241
 PACE_SD = 0.06  # of a UAV that has not flown yet
 PACE_WANDERS = 0.008  # in a second
 SUREST_SD = 0.02  # of a pace, however long it was seen
-LEAST_PACE, MOST_PACE = 0.4, 1.8
+MIN_PACE, MAX_PACE = 0.4, 1.8
 GUST_SD, GUST_S = 0.025, 25.0  # of speed, and for how long one lasts
-SMALLEST_S = 0.04
+MIN_S = 0.04
 NOW_S = 25.0  # for how long the speed of this moment tells of what comes
 NOW_SHARE = 0.8
 EVEN_S = (-4.0, -2.0, 2.0)  # from now: where it must fly as it does now
-LEAST_EVEN_MPS = 1.0
+MIN_EVEN_MPS = 1.0
 ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, along it and across; corners are cut
 NOT_EVEN = 0.03  # how often it is off along it as well
 FAR_M = 40.0
@@ -130,7 +130,7 @@ def _moved(profile: Profile, pace: Pace, clock: FloatArray, from_s: FloatArray, 
     slack_s2 = _at(plain_s, clock, profile.doubt_s2) - _at(from_s, clock, profile.doubt_s2)
     middle_s = plain_s + pace.now * NOW_S * -np.expm1(-moving_s / NOW_S)
     gusts_s2 = 2.0 * GUST_SD**2 * GUST_S**2 * (moving_s / GUST_S + np.expm1(-moving_s / GUST_S))
-    return middle_s, np.sqrt(SMALLEST_S**2 + gusts_s2 + pace.variance * moving_s**2 + slack_s2)
+    return middle_s, np.sqrt(MIN_S**2 + gusts_s2 + pace.variance * moving_s**2 + slack_s2)
 
 
 def _at_any_time(from_s: FloatArray, doubt_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
@@ -216,7 +216,7 @@ def _learnt(
         gain = variance / (variance + seen_s2 / moving_s**2)
         better = pace.pace * (1.0 + gain * float(places_s.mean() - middle_s.mean()) / moving_s)
         variance *= 1.0 - gain
-    better, variance = min(max(better, LEAST_PACE), MOST_PACE), min(max(variance, SUREST_SD**2), PACE_SD**2)
+    better, variance = min(max(better, MIN_PACE), MAX_PACE), min(max(variance, SUREST_SD**2), PACE_SD**2)
     return Pace(nominal_s, better, variance, _now(profile, clock, places_s, sight))
 
 
@@ -227,7 +227,7 @@ def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen)
     here_s = float(places_s.mean())
     each = np.array(velocity(profile, clock, here_s + np.array([0.0, *EVEN_S])))
     by_profile_mps = float(np.linalg.norm(each[:, 0]))
-    if by_profile_mps < LEAST_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
+    if by_profile_mps < MIN_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
         return 0.0
     told_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
     return NOW_SHARE * min(max(told_mps / by_profile_mps - 1.0, -0.5), 0.5)

@@ -24,8 +24,8 @@ DESCENT_SHARE = 0.75  # of the speed of climbing: PX4 1.5 of 3 m/s, ArduCopter 1
 LANDING_MPS = 0.7  # PX4's MPC_LAND_SPEED; ArduCopter's LAND_SPEED is 0.5
 SLOW_BELOW_M = 8.0  # where both land slowly
 SETTLE_S = 1.5  # until it stands at a task, and until it leaves
-SLOWEST_MPS = 0.5
-SLOWS_SHARE, LEAST_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
+MIN_SPEED_MPS = 0.5
+SLOWS_SHARE, MIN_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
 STEPS = 12  # of a leg
 # Standard deviations of how long something takes, beside the speed.
 STRAIGHT_S, TURN_S = 0.15, 1.6  # at a waypoint that is passed, and by the sine of half the bend more
@@ -120,8 +120,8 @@ def _route_nodes(flight: Flight, frame: LocalFrame, knowledge: Knowledge) -> lis
 
 def _landing(above: _Node, ground_m: float) -> list[_Node]:
     slow_m = min(ground_m + SLOW_BELOW_M, above.height_m)
-    slowly = _Node(above.east_m, above.north_m, slow_m, SLOWEST_MPS, None)
-    return [slowly, _Node(above.east_m, above.north_m, ground_m, SLOWEST_MPS, 0.0, lands=True)]
+    slowly = _Node(above.east_m, above.north_m, slow_m, MIN_SPEED_MPS, None)
+    return [slowly, _Node(above.east_m, above.north_m, ground_m, MIN_SPEED_MPS, 0.0, lands=True)]
 
 
 def _speed_in_wind(east_m: float, north_m: float, wished_mps: float, agl_m: float, knowledge: Knowledge) -> float:
@@ -133,7 +133,7 @@ def _speed_in_wind(east_m: float, north_m: float, wished_mps: float, agl_m: floa
     across = (wind_north * east_m - wind_east * north_m) / length_m
     limit_mps = math.inf if knowledge.max_airspeed_mps is None else knowledge.max_airspeed_mps
     speed_mps = ground_and_air_speed(float(wished_mps), float(limit_mps), float(along), float(across))[0]
-    return SLOWEST_MPS if speed_mps == TOO_STRONG else float(speed_mps)
+    return MIN_SPEED_MPS if speed_mps == TOO_STRONG else float(speed_mps)
 
 
 def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, ends_in_air: bool, start_mps: float = 0.0) -> Profile:
@@ -141,7 +141,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
     step = np.diff(place, axis=0)
     level_m, length_m = np.hypot(step[:, 0], step[:, 1]), np.linalg.norm(step, axis=1)
     up_mps, down_mps = knowledge.climb_speed_mps, DESCENT_SHARE * knowledge.climb_speed_mps
-    level_s = level_m / np.array([max(node.speed_mps, SLOWEST_MPS) for node in nodes[1:]])
+    level_s = level_m / np.array([max(node.speed_mps, MIN_SPEED_MPS) for node in nodes[1:]])
     vertical_s = np.where(step[:, 2] > 0, step[:, 2] / up_mps, -step[:, 2] / down_mps)
     vertical_s = np.where([node.lands for node in nodes[1:]], np.abs(step[:, 2]) / LANDING_MPS, vertical_s)
     wanted_s = np.maximum(np.maximum(level_s, vertical_s), 1e-6)
@@ -214,7 +214,7 @@ def _corner_speeds(nodes: list[_Node], bend: FloatArray, length_m: FloatArray, w
     speed[0] = start_mps
     for number in range(1, len(nodes) - 1):
         if nodes[number].hold_s is None and min(length_m[number - 1], length_m[number]) > 0.01:
-            share = max(1.0 - SLOWS_SHARE * bend[number], LEAST_CORNER_SHARE)
+            share = max(1.0 - SLOWS_SHARE * bend[number], MIN_CORNER_SHARE)
             speed[number] = min(wanted_mps[number - 1], wanted_mps[number]) * share
     for number in range(1, len(nodes)):
         speed[number] = min(speed[number], math.sqrt(speed[number - 1] ** 2 + 2 * ACCELERATION_MPS2 * length_m[number - 1]))

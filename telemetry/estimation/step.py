@@ -18,7 +18,7 @@ from telemetry.estimation.report import Report
 
 GPS_VARIANCE_M2 = 0.45**2  # each way, of what no two reports share
 BARO_VARIANCE_M2 = 0.25**2
-LONGEST_DIFFERENCE_S = 15.0  # between two positions, for a velocity
+MAX_DIFFERENCE_S = 15.0  # between two positions, for a velocity
 STANDS_BELOW_MPS = 0.7
 CLIMBS_ABOVE_MPS = 0.5
 AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it comes down there
@@ -107,7 +107,7 @@ def _sight(phase: Phase, told: Measurement, place: tuple[float, float] | None) -
 def _velocity_from(state: State, belief: Belief, place: tuple[float, float] | None, at_s: float) -> tuple[float, float, float]:
     """Where none was told: from two positions, or as believed."""
     past_s = at_s - state.placed_s
-    if place is None or not 0.5 <= past_s <= LONGEST_DIFFERENCE_S:
+    if place is None or not 0.5 <= past_s <= MAX_DIFFERENCE_S:
         return belief.east_mps, belief.north_mps, belief.up_mps
     return (place[0] - state.east_m) / past_s, (place[1] - state.north_m) / past_s, belief.up_mps
 

@@ -12,7 +12,7 @@ from telemetry.exports.xml_text import xml_text
 NAMESPACE = "http://www.topografix.com/GPX/1/1"
 OWN_NAMESPACE = "urn:spanwise:telemetry:1"
 POINTS_A_PIECE = 200
-HIGHEST_HDOP = 99.0  # what receivers say who do not know
+MAX_HDOP = 99.0  # what receivers say who do not know
 FIXES = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps"}  # GPS_FIX_TYPE; better ones have no word in GPX
 OUTSIDE_EXTENSIONS = {"altitude_amsl_m", "satellites", "hdop"}
 
@@ -54,7 +54,7 @@ def _point(record: LoggedRecord) -> str:
         parts.append(f"<fix>{FIXES[fix]}</fix>")
     if satellites is not None:
         parts.append(f"<sat>{satellites}</sat>")
-    if isinstance(hdop, float) and hdop < HIGHEST_HDOP:
+    if isinstance(hdop, float) and hdop < MAX_HDOP:
         parts.append(f"<hdop>{hdop:.2f}</hdop>")
     own: list[tuple[str, Value]] = [
         ("received_at", time_text(record.received_at)),

@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 
 from telemetry.exports.logged_record import FLAGS, PLACES, REPORTED, LoggedRecord, Value
 
-EVERY_S = 1.0
+INTERVAL_S = 1.0
 EARLY = 0.25  # of the interval: reports of one a second do not come on the second
 POSITION_DIGITS = 7  # degrees, as MAVLink counts them: a centimetre
 # Decimal places by unit; MAVLink has heights in mm, speeds in cm/s, headings in 0.01 deg, volts in mV and amperes in cA, of which the
@@ -26,7 +26,7 @@ _HEADING = PLACES["heading_deg"]
 _IS_FROM_FUTURE = PLACES["is_from_future"]
 
 
-def for_files(records: Iterable[LoggedRecord], *, every_s: float = EVERY_S) -> Iterator[LoggedRecord]:
+def for_files(records: Iterable[LoggedRecord], *, every_s: float = INTERVAL_S) -> Iterator[LoggedRecord]:
     """The records in the same order, rounded; of each stream of a UAV one every so many seconds, all with 0."""
     return map(rounded, records if every_s == 0.0 else one_every(records, every_s))
 

@@ -61,14 +61,14 @@ ADVICE = {
 FENCE_PARAMETERS = ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE")
 FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
 UNTOLD = "The UAV has not told how far apart waypoints may be."
-LOOK_EVERY_S = 0.25
+POLL_INTERVAL_S = 0.25
 logger = logging.getLogger(__name__)
-PROGRESS_EVERY_S = 0.5
+PROGRESS_INTERVAL_S = 0.5
 TRY_AGAIN_IN_S = 2.0
 UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
 NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
 CLEAR_AGAIN_IN_S = 15.0
-MOST_ATTEMPTS = 100
+MAX_ATTEMPTS = 100
 UNSETTLED_S = 2.0  # for which what was sent before may still arrive
 DATABASE_RETRY_S = 0.5
 
@@ -122,7 +122,7 @@ async def send_blind(order: Order, session: Session, may_send: Callable[[], bool
             next_s = now_s + pause_s(sent)
             if not await is_wanted():
                 return
-        await asyncio.sleep(LOOK_EVERY_S)
+        await asyncio.sleep(POLL_INTERVAL_S)
 
 
 @dataclass
@@ -189,7 +189,7 @@ class Carriage:
         await self._end(note_released)
 
     async def _refuse(self, reason: CannotCarry) -> None:
-        if reason.is_for_good or self.command.attempts >= MOST_ATTEMPTS:
+        if reason.is_for_good or self.command.attempts >= MAX_ATTEMPTS:
             await self._end(note_failed, reason.code, reason.words)
         else:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
@@ -268,7 +268,7 @@ class Carriage:
 
         def advance(done: int) -> None:
             nonlocal read, noted_s
-            if done > read and time.monotonic() - noted_s >= PROGRESS_EVERY_S:
+            if done > read and time.monotonic() - noted_s >= PROGRESS_INTERVAL_S:
                 read, noted_s = done, time.monotonic()
                 self._note(note_read_back, self.command.pk, done=done, total=total, **self._fence)
 
@@ -316,7 +316,7 @@ class Carriage:
                 mixes = len(keeper.mixes)
                 words = "; ".join(mix.words for mix in keeper.mixes)
                 self._note(tell_of_mission, self.command, is_mixed=True, words=words)
-            if time.monotonic() - noted_s >= PROGRESS_EVERY_S:
+            if time.monotonic() - noted_s >= PROGRESS_INTERVAL_S:
                 noted_s = time.monotonic()
                 progress = keeper.progress
                 self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)

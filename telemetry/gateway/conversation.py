@@ -10,7 +10,7 @@ from mavlink.frames import Message
 from telemetry.gateway.session import Session
 from workspace.timed_waits import wait_for_event
 
-LONGEST_NAP_S = 0.5
+MAX_NAP_S = 0.5
 
 
 class Keeper(Protocol):
@@ -62,6 +62,6 @@ class Conversation:
 
     async def _wait(self) -> None:
         wake_at_s = self.keeper.wake_at_s
-        nap_s = LONGEST_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), LONGEST_NAP_S)
+        nap_s = MAX_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), MAX_NAP_S)
         if await wait_for_event(self._heard, nap_s):
             self._heard.clear()

@@ -11,11 +11,11 @@ from typing import Any, ParamSpec, TypeVar
 
 from django.db import close_old_connections, connection, connections
 
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 
 logger = logging.getLogger(__name__)
 
-LONGEST_LOCK_WAIT_S = 1.0
+MAX_LOCK_WAIT_S = 1.0
 
 P = ParamSpec("P")
 Result = TypeVar("Result")
@@ -41,7 +41,7 @@ class DatabaseThread:
                 if connection.connection is None:
                     self._connect()
                 return do(*args, **kwargs)
-            except DATABASE_AWAY as error:
+            except DATABASE_UNAVAILABLE as error:
                 connection.close()
                 raise DatabaseAway(str(error)) from error
 
@@ -58,4 +58,4 @@ class DatabaseThread:
             own.inc_thread_sharing()  # closed by whoever ends the threads
             self._connections.append(own)
         with own.cursor() as cursor:
-            cursor.execute("SELECT set_config('lock_timeout', %s, false)", [f"{LONGEST_LOCK_WAIT_S:g}s"])
+            cursor.execute("SELECT set_config('lock_timeout', %s, false)", [f"{MAX_LOCK_WAIT_S:g}s"])

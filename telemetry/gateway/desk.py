@@ -25,8 +25,8 @@ from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
-LOOK_EVERY_S = 1.0
-MOST_UPLOADS = 8
+POLL_INTERVAL_S = 1.0
+MAX_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
 NOTES_AT_ONCE = 4  # the end of a command may have to wait for its mission; the beginning of another must not
@@ -52,7 +52,7 @@ class Desk:
                 await self.look()
             except DatabaseAway:
                 await asyncio.sleep(RETRY_S)
-            if await wait_for_event(self._hint, LOOK_EVERY_S):
+            if await wait_for_event(self._hint, POLL_INTERVAL_S):
                 self._hint.clear()
 
     async def look(self) -> None:
@@ -73,9 +73,9 @@ class Desk:
         await self.database.run(expire_overdue)
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
-            await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
+            await self._claim(served, CommandAxis.MISSION, MAX_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
             for axis in (CommandAxis.SPEED, CommandAxis.PARAMETER):
-                await self._claim(served, axis, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
+                await self._claim(served, axis, settings.GATEWAY_MAX_COMMANDS - len(self._carriages))
         if unheard:
             await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
         self._begin()
@@ -135,7 +135,7 @@ class Desk:
             return not any(other.kind in LOADING for other in own)
         if command.kind in LOADING and any(other.kind in SETS_IN_MOTION for other in own):
             return False
-        return command.kind not in LOADING or sum(other.kind in LOADING for other in under_way) < MOST_UPLOADS
+        return command.kind not in LOADING or sum(other.kind in LOADING for other in under_way) < MAX_UPLOADS
 
     def _ended(self, task: asyncio.Task[None]) -> None:
         if not task.cancelled() and task.exception() is not None:

@@ -28,7 +28,7 @@ from telemetry.models import FlightLog
 CARRY_KEYS = frozenset({mavlink.MAVLINK_MSG_ID_SETUP_SIGNING})
 BUFFER = 64 * 1024
 logger = logging.getLogger(__name__)
-SYNC_EVERY_S = 2.0
+SYNC_INTERVAL_S = 2.0
 DISARMED_FOR_S = 2.0
 FORGOTTEN_AFTER_S = 1_800.0  # a flight that ended unheard
 ROWS_WAITING = 1_000

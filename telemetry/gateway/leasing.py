@@ -16,7 +16,7 @@ from workspace.lease_times import held_until_s
 from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
-LEASES_EVERY_S = 1.0
+LEASES_INTERVAL_S = 1.0
 RETRY_S = 0.5
 GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
 WAITED_TOO_LONG_S = 15.0
@@ -48,7 +48,7 @@ class Leasing:
                 await asyncio.sleep(RETRY_S)
             self.wanted.clear()
             await asyncio.sleep(GATHERED_S)
-            await wait_for_event(self.wanted, LEASES_EVERY_S)
+            await wait_for_event(self.wanted, LEASES_INTERVAL_S)
 
     async def _hold(self) -> None:
         now_s, asked_s = time.time(), time.monotonic()

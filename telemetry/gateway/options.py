@@ -65,6 +65,6 @@ def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name:
         tcp=tcp_addresses,
         name=re.sub(r"[^\w.-]", "-", name or settings.GATEWAY_NAME or usual)[:80],
         log_dir=Path(settings.FLIGHT_LOG_DIR),
-        most_records=settings.GATEWAY_MOST_RECORDS,
-        log_mib=settings.LARGEST_FLIGHT_LOG_MIB,
+        most_records=settings.GATEWAY_MAX_RECORDS,
+        log_mib=settings.MAX_FLIGHT_LOG_MIB,
     )

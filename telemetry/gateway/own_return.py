@@ -10,8 +10,8 @@ from mavlink.parameters import BY_NAME
 from mavlink.rtl import NAMES, PARAMETERS
 from mavlink.vehicle_state import VehicleState
 
-ASK_EVERY_S = 2.0
-MOST_QUESTIONS = 5  # a vehicle that has no such parameters says nothing
+REQUEST_INTERVAL_S = 2.0
+MAX_QUESTIONS = 5  # a vehicle that has no such parameters says nothing
 
 
 @dataclass(frozen=True)
@@ -28,18 +28,18 @@ class OwnReturn:
     """Of one vehicle. Times are monotonic seconds."""
 
     _wanted_since_s: float = 0.0
-    _asked_s: float = -ASK_EVERY_S
-    _questions_left: int = MOST_QUESTIONS
+    _asked_s: float = -REQUEST_INTERVAL_S
+    _questions_left: int = MAX_QUESTIONS
     _told_s: float = 0.0
 
     def ask_anew(self, now_s: float) -> None:
         """Somebody may have set them since."""
-        self._wanted_since_s, self._questions_left = now_s, MOST_QUESTIONS
+        self._wanted_since_s, self._questions_left = now_s, MAX_QUESTIONS
 
     def questions(self, state: VehicleState, now_s: float) -> list[Message]:
         """What is to be sent now: for what was not told since it was wanted."""
         groups = PARAMETERS.get(state.flavour or "", ())
-        if not groups or not self._questions_left or now_s - self._asked_s < ASK_EVERY_S:
+        if not groups or not self._questions_left or now_s - self._asked_s < REQUEST_INTERVAL_S:
             return []
         untold = [group for group in groups if all(state.parameters_at_s.get(name, -1.0) < self._wanted_since_s for name in group)]
         if not untold:

@@ -15,12 +15,12 @@ from telemetry.gateway.options import Address
 
 logger = logging.getLogger(__name__)
 
-LARGEST_DATAGRAM = 65_535
+MAX_DATAGRAM_BYTES = 65_535
 DRAINED_FOR_S = 0.02  # before other work has its turn
 PIECE = 16_384  # bytes of a connection that are looked at together
 RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system grants them
-MOST_CONNECTIONS = 256  # beyond them the one goes that has brought no frame for longest
-MOST_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
+MAX_CONNECTIONS = 256  # beyond them the one goes that has brought no frame for longest
+MAX_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
 SILENT_CONNECTION_S = 60.0
 
 
@@ -57,7 +57,7 @@ class TcpPeer:
 
     def send(self, frame: bytes) -> None:
         transport = self.writer.transport
-        if not transport.is_closing() and transport.get_write_buffer_size() < MOST_UNSENT:
+        if not transport.is_closing() and transport.get_write_buffer_size() < MAX_UNSENT:
             self.writer.write(frame)
 
 
@@ -109,7 +109,7 @@ class Listeners:
         until_s = time.monotonic() + DRAINED_FOR_S
         while time.monotonic() < until_s:
             try:
-                datagram, address = listener.recvfrom(LARGEST_DATAGRAM)
+                datagram, address = listener.recvfrom(MAX_DATAGRAM_BYTES)
             except BlockingIOError:
                 return
             except OSError:  # an answer of ours that could not be delivered is told here
@@ -119,7 +119,7 @@ class Listeners:
                 self.receive(frames, UdpPeer(listener, address), time.time())
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        while len(self._connections) >= MOST_CONNECTIONS:
+        while len(self._connections) >= MAX_CONNECTIONS:
             self._drop(min(self._connections, key=lambda other: self._connections[other]))
         self._connections[writer] = time.monotonic()
         host, port = writer.get_extra_info("peername")[:2]

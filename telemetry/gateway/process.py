@@ -24,7 +24,7 @@ from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
-from telemetry.gateway.flights import SYNC_EVERY_S, Flights
+from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
 from telemetry.gateway.leasing import Leasing
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
@@ -35,14 +35,14 @@ from telemetry.gateway.unknown_senders import UnknownSenders
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases
 
-TRY_AGAIN_S = 1.0
+RETRY_DELAY_S = 1.0
 PLAIN = frozenset(
     {"application_name", "connect_timeout", "dbname", "host", "password", "port", "sslcert", "sslkey", "sslmode", "sslrootcert", "user"}
 )
 logger = logging.getLogger(__name__)
-FLEET_EVERY_S = 1.0
+FLEET_INTERVAL_S = 1.0
 RETRY_S = 0.5
-COUNTS_EVERY_S = 60.0
+COUNTS_INTERVAL_S = 60.0
 DESK_WITHIN_S = 5.0
 STOP_WITHIN_S = 4.0
 CANCEL_AGAIN_S = 0.5
@@ -61,7 +61,7 @@ async def listen(on_hint: Callable[[], None]) -> None:
                     on_hint()
         except psycopg.Error as error:
             logger.debug("no hints: %s", error)
-        await asyncio.sleep(TRY_AGAIN_S)
+        await asyncio.sleep(RETRY_DELAY_S)
 
 
 @dataclass
@@ -179,14 +179,14 @@ class Gateway:
 
     def _loops(self) -> dict[str, Coroutine[Any, Any, None]]:
         return {
-            "fleet": self._every(FLEET_EVERY_S, self._read_fleet),
+            "fleet": self._every(FLEET_INTERVAL_S, self._read_fleet),
             "leases": self.leasing.run(),
             "store": self._store_loop(),
             "commands": self.desk.run(),
             "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
-            "logs": self._every(SYNC_EVERY_S, self._sync_logs),
-            "counts": self._every(COUNTS_EVERY_S, self._tell_counts),
+            "logs": self._every(SYNC_INTERVAL_S, self._sync_logs),
+            "counts": self._every(COUNTS_INTERVAL_S, self._tell_counts),
             **{name: self._every(every_s, tell) for name, (every_s, tell) in self.telling.loops().items()},
         }
 

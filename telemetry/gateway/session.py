@@ -38,7 +38,7 @@ WINDOW_S = 10.0
 TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these
 QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
 logger = logging.getLogger(__name__)
-MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
+MAX_WAITING = 5_000  # frames of a vehicle that is not served yet
 HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
 GREET_AGAIN_S = 1.0
 LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
@@ -142,7 +142,7 @@ class Session:
     lists: ListWatch = field(default_factory=ListWatch)
     rate: LinkRate = field(default_factory=LinkRate)
     commanded_s: float | None = None  # monotonic: when a command was last under way
-    waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
+    waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MAX_WAITING))
     _writer: FrameWriter = field(init=False, repr=False)
     _reporter: Reporter = field(default_factory=Reporter)
     _collector: TextCollector = field(default_factory=TextCollector)

@@ -14,7 +14,7 @@ from telemetry.services.sightings import Sighting
 logger = logging.getLogger(__name__)
 
 RECORDS_AT_ONCE = 2_000
-MOST_TEXTS = 10_000
+MAX_TEXTS = 10_000
 
 
 @dataclass
@@ -27,7 +27,7 @@ class Store:
     links: Callable[[], list[LinkState]]
     unsaved: Callable[[Sequence[LinkState]], None]
     records: deque[NewRecord] = field(default_factory=deque)
-    texts: deque[HeardText] = field(default_factory=lambda: deque(maxlen=MOST_TEXTS))
+    texts: deque[HeardText] = field(default_factory=lambda: deque(maxlen=MAX_TEXTS))
     sightings: dict[int, Sighting] = field(default_factory=dict)
     stored: int = 0
     duplicates: int = 0
@@ -42,7 +42,7 @@ class Store:
         """Stores what there is, at most so much at once. Returns whether more waits; while the database is away, False."""
         self._drop_overflow()
         records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
-        texts, self.texts = self.texts, deque(maxlen=MOST_TEXTS)
+        texts, self.texts = self.texts, deque(maxlen=MAX_TEXTS)
         sightings, self.sightings = self.sightings, {}
         heard = Heard(records, self.links(), list(texts), list(sightings.values()))
         if not heard:

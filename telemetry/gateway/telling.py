@@ -18,10 +18,10 @@ from telemetry.services.loads import doubt_loaded
 logger = logging.getLogger(__name__)
 
 SECOND_SENDER_GONE_S = 60.0
-FLOWN_EVERY_S = 0.2
-KEYS_EVERY_S = 1.0
+FLOWN_INTERVAL_S = 0.2
+KEYS_INTERVAL_S = 1.0
 KEY_AGAIN_S = 30.0
-SENDERS_EVERY_S = 2.0
+SENDERS_INTERVAL_S = 2.0
 
 
 @dataclass
@@ -35,11 +35,11 @@ class Telling:
     def loops(self) -> dict[str, tuple[float, Callable[[], Coroutine[Any, Any, None]]]]:
         """By name: how often [s], and what."""
         return {
-            "senders": (SENDERS_EVERY_S, self.second_senders),
-            "flown": (FLOWN_EVERY_S, self.flown),
-            "returns": (FLOWN_EVERY_S, self.own_returns),
-            "doubts": (FLOWN_EVERY_S, self.doubts),
-            "keys": (KEYS_EVERY_S, self.keys),
+            "senders": (SENDERS_INTERVAL_S, self.second_senders),
+            "flown": (FLOWN_INTERVAL_S, self.flown),
+            "returns": (FLOWN_INTERVAL_S, self.own_returns),
+            "doubts": (FLOWN_INTERVAL_S, self.doubts),
+            "keys": (KEYS_INTERVAL_S, self.keys),
         }
 
     async def second_senders(self) -> None:

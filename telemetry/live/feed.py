@@ -15,7 +15,7 @@ from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
-LOOK_EVERY_S = 1.0  # whether a word has come or not
+POLL_INTERVAL_S = 1.0  # whether a word has come or not
 LOOK_PAUSE_S = 0.1  # between two looks, however many words come
 
 Looker = Callable[[int, Collection[UUID], Collection[str], Look], Awaitable[Look]]
@@ -60,7 +60,7 @@ class Feed:
             self._word.clear()
             await self._look_once()
             await asyncio.sleep(LOOK_PAUSE_S)
-            await wait_for_event(self._word, LOOK_EVERY_S - LOOK_PAUSE_S)
+            await wait_for_event(self._word, POLL_INTERVAL_S - LOOK_PAUSE_S)
 
     async def _look_once(self) -> None:
         newcomers, self._waiting = self._waiting, set()

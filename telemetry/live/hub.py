@@ -19,9 +19,9 @@ from workspace.live import live_channel
 
 logger = logging.getLogger(__name__)
 
-TRY_AGAIN_S = 1.0
+RETRY_DELAY_S = 1.0
 CONNECT_S = 1.0
-HEALTH_EVERY_S = 10.0
+HEALTH_INTERVAL_S = 10.0
 
 
 async def listen(on_hint: Callable[[int], None]) -> None:
@@ -30,14 +30,14 @@ async def listen(on_hint: Callable[[int], None]) -> None:
     prefix = every.removesuffix("*")
     while True:
         try:
-            redis = Redis.from_url(settings.REDIS_URL, socket_connect_timeout=CONNECT_S, health_check_interval=HEALTH_EVERY_S)
+            redis = Redis.from_url(settings.REDIS_URL, socket_connect_timeout=CONNECT_S, health_check_interval=HEALTH_INTERVAL_S)
             async with redis, redis.pubsub(ignore_subscribe_messages=True) as channels:
                 await channels.psubscribe(every)
                 async for word in channels.listen():
                     on_hint(int(word["channel"].decode().removeprefix(prefix)))
         except (RedisError, OSError, ValueError) as error:
             logger.debug("no hints: %r", error)
-        await asyncio.sleep(TRY_AGAIN_S)
+        await asyncio.sleep(RETRY_DELAY_S)
 
 
 class Hub:

@@ -9,8 +9,8 @@ from uuid import UUID
 from telemetry.selectors.live import Key
 from workspace.timed_waits import wait_for_event
 
-MOST_UNCONFIRMED = 2  # messages
-AGAIN_EVERY_S = 1.0  # a page is given everything, at most
+MAX_UNCONFIRMED = 2  # messages
+RETRY_INTERVAL_S = 1.0  # a page is given everything, at most
 
 
 class SaysNonsense(ValueError):
@@ -30,7 +30,7 @@ class Reader:
     is_ended: bool = False
     dirty: set[Key] = field(default_factory=set)
     wants_all: bool = True
-    given_all_s: float = -AGAIN_EVERY_S
+    given_all_s: float = -RETRY_INTERVAL_S
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def begin(self) -> None:
@@ -64,7 +64,7 @@ class Reader:
     @property
     def is_full(self) -> bool:
         """Nothing more is sent before it has confirmed some."""
-        return self.sequence - self.confirmed >= MOST_UNCONFIRMED
+        return self.sequence - self.confirmed >= MAX_UNCONFIRMED
 
     @property
     def is_due(self) -> bool:
@@ -74,7 +74,7 @@ class Reader:
     @property
     def waits_s(self) -> float:
         """Until it may be given everything again."""
-        return self.given_all_s + AGAIN_EVERY_S - time.monotonic() if self.wants_all else 0.0
+        return self.given_all_s + RETRY_INTERVAL_S - time.monotonic() if self.wants_all else 0.0
 
     async def due(self, within_s: float) -> bool:
         """Whether there is something to be told within that time."""

@@ -13,7 +13,7 @@ from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.mission_report.fix import Fix, airborne, own_span_s
 
 PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
-LONGEST_GAP_S = 60.0  # between two reports that are joined to a flown line
+MAX_GAP_S = 60.0  # between two reports that are joined to a flown line
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class FlownStage:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A time in the air without reports for longer than LONGEST_GAP_S; length_m: how much of the route lies between its ends."""
+    """A time in the air without reports for longer than MAX_GAP_S; length_m: how much of the route lies between its ends."""
 
     began_s: float
     ended_s: float
@@ -129,7 +129,7 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
 
 def _gaps(seen: Sequence[_Seen]) -> Iterator[Gap]:
     for one, after in pairwise(seen):
-        if after.fix.at_s - one.fix.at_s > LONGEST_GAP_S:
+        if after.fix.at_s - one.fix.at_s > MAX_GAP_S:
             yield Gap(one.fix.at_s, after.fix.at_s, max(after.place.along_m - one.place.along_m, 0.0))
 
 
@@ -157,7 +157,7 @@ def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
     before_s, is_old = math.inf, False
     old_sequence: int | None = None
     for fix in fixes:
-        if fix.at_s - before_s > LONGEST_GAP_S:
+        if fix.at_s - before_s > MAX_GAP_S:
             is_old = fix.waypoint_sequence == old_sequence
         is_old = is_old and fix.waypoint_sequence == old_sequence
         before_s, old_sequence = fix.at_s, fix.waypoint_sequence
@@ -211,11 +211,11 @@ def _rms(values: Sequence[float]) -> float | None:
 
 
 def track_of(fixes: Sequence[Fix]) -> list[list[LonLat]]:
-    """Lines of the flown track, broken where nothing was reported for longer than LONGEST_GAP_S."""
+    """Lines of the flown track, broken where nothing was reported for longer than MAX_GAP_S."""
     lines: list[list[LonLat]] = []
     before_s: float | None = None
     for fix in fixes:
-        if before_s is None or fix.at_s - before_s > LONGEST_GAP_S:
+        if before_s is None or fix.at_s - before_s > MAX_GAP_S:
             lines.append([])
         lines[-1].append(fix.position)
         before_s = fix.at_s

@@ -21,7 +21,7 @@ from telemetry.estimation.own_time import believed_rate
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alerts import BY_PERSON
 
-WARNING_SEVERITY, MOST_SAID = 4, 30  # MAV_SEVERITY_WARNING
+WARNING_SEVERITY, MAX_SAID = 4, 30  # MAV_SEVERITY_WARNING
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +64,7 @@ def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...
     found: dict[int, list[Said]] = defaultdict(list)
     for uav_id, received_at, text in rows.values_list("uav_id", "received_at", "text"):
         found[uav_id].append(Said(received_at.timestamp(), text))
-    return {uav_id: tuple(words[-MOST_SAID:]) for uav_id, words in found.items()}
+    return {uav_id: tuple(words[-MAX_SAID:]) for uav_id, words in found.items()}
 
 
 def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:

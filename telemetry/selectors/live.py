@@ -26,7 +26,7 @@ class Shown:
         return self.is_in_whole if mission is None else mission in self.missions
 
 
-MOST_CLOSED = 100
+MAX_CLOSED = 100
 # UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, the newest
 # critical ones that have ended and that nobody has acknowledged, and the newest that were closed within the hour, of the organisation and
 # of each mission asked for; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked
@@ -64,20 +64,20 @@ told AS (
             SELECT alert.id FROM telemetry_alert alert
             WHERE alert.organisation_id = asked.organisation_id AND alert.level = 'critical' AND alert.acknowledged_at IS NULL
                 AND alert.closed_at IS NOT NULL  -- by alert_waits_to_be_seen_idx
-            ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
+            ORDER BY alert.closed_at DESC LIMIT {MAX_CLOSED}
         ) waits
         UNION ALL
         SELECT newest.id, true FROM asked, LATERAL (
             SELECT alert.id FROM telemetry_alert alert
             WHERE alert.organisation_id = asked.organisation_id AND alert.closed_at > now() - interval '1 hour'
-            ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
+            ORDER BY alert.closed_at DESC LIMIT {MAX_CLOSED}
         ) newest
         UNION ALL
         SELECT newest.id, false FROM asked, unnest(asked.missions) AS mission(id), LATERAL (
             SELECT alert.id FROM telemetry_alert alert
             WHERE alert.organisation_id = asked.organisation_id AND alert.mission_id = mission.id
                 AND alert.closed_at > now() - interval '1 hour'
-            ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
+            ORDER BY alert.closed_at DESC LIMIT {MAX_CLOSED}
         ) newest
     ) found GROUP BY id
 )

@@ -9,9 +9,9 @@ from django.utils.translation import gettext_noop
 from inspection.geodesy import LonLat
 from inspection.selectors import asset_label, references_of
 from telemetry.exports.results import IncidentRow, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
-from telemetry.exports.thinning import EARLY, EVERY_S
+from telemetry.exports.thinning import EARLY, INTERVAL_S
 from telemetry.mission_report.fix import Fix
-from telemetry.mission_report.flown_route import LONGEST_GAP_S
+from telemetry.mission_report.flown_route import MAX_GAP_S
 from telemetry.mission_report.outcomes import Incident
 from telemetry.selectors.mission_record import RouteOnRecord, TargetOnRecord, WholeRecord, at, in_flown_order
 from telemetry.selectors.report_words import reason_words
@@ -89,11 +89,11 @@ def _runs(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
     """One fix a second, cut where nothing was heard for long; none of a single fix."""
     run: list[Fix] = []
     for fix in fixes:
-        if run and fix.at_s - run[-1].at_s > LONGEST_GAP_S:
+        if run and fix.at_s - run[-1].at_s > MAX_GAP_S:
             if len(run) > 1:
                 yield run
             run = []
-        if not run or fix.at_s - run[-1].at_s >= EVERY_S * (1.0 - EARLY):
+        if not run or fix.at_s - run[-1].at_s >= INTERVAL_S * (1.0 - EARLY):
             run.append(fix)
     if len(run) > 1:
         yield run

@@ -5,7 +5,7 @@ from typing import Any
 
 from rest_framework import serializers
 
-from mavlink.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
+from mavlink.decoding.companion_reports import FLAGS, INTEGERS, MAX_MODE_LENGTH, NUMBERS, instant
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,14 +13,14 @@ from missions.services.flying import FlightEnd
 from telemetry.services.results import NewResult
 from workspace.serializers import Declared
 
-MOST_RECORDS = 1_000
-MOST_ACKNOWLEDGEMENTS = 100
-MOST_RESULTS = 100
-MOST_FLIGHTS = 10_000
-LARGEST_PLACE = 2**31 - 1
-MOST_RESULT_BYTES = 64 * 1024
-LONGEST_STREAM = 64
-LARGEST_SEQUENCE = 2**63 - 1
+MAX_RECORDS = 1_000
+MAX_ACKNOWLEDGEMENTS = 100
+MAX_RESULTS = 100
+MAX_FLIGHTS = 10_000
+MAX_PLACE = 2**31 - 1
+MAX_RESULT_BYTES = 64 * 1024
+MAX_STREAM_LENGTH = 64
+MAX_SEQUENCE = 2**63 - 1
 
 
 class StreamField(serializers.RegexField):
@@ -28,17 +28,17 @@ class StreamField(serializers.RegexField):
 
     def __init__(self, **options: Any) -> None:
         words = "one run of the UAV's counter: a new one whenever its numbers begin anew"
-        super().__init__(r"^[A-Za-z0-9._:-]+$", max_length=LONGEST_STREAM, help_text=words, **options)
+        super().__init__(r"^[A-Za-z0-9._:-]+$", max_length=MAX_STREAM_LENGTH, help_text=words, **options)
 
 
 class ReportSerializer(serializers.Serializer):
     """One report. Heights name their reference, angles are degrees, speeds metres a second; what is not known is left out or null."""
 
-    sequence = serializers.IntegerField(min_value=0, max_value=LARGEST_SEQUENCE, help_text="grows within the stream")
+    sequence = serializers.IntegerField(min_value=0, max_value=MAX_SEQUENCE, help_text="grows within the stream")
     measured_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
     mission = serializers.UUIDField(required=False, allow_null=True, help_text="without it: the one that the UAV flies")
     position = PositionField(required=False, allow_null=True)
-    mode = serializers.CharField(required=False, allow_null=True, max_length=LONGEST_MODE)
+    mode = serializers.CharField(required=False, allow_null=True, max_length=MAX_MODE_LENGTH)
 
     def get_fields(self) -> dict[str, serializers.Field]:
         fields: dict[str, serializers.Field] = super().get_fields()
@@ -53,14 +53,14 @@ class ReportSerializer(serializers.Serializer):
 
 class ReportsSerializer(serializers.Serializer):
     stream = StreamField()
-    records: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ReportSerializer(), min_length=1, max_length=MOST_RECORDS)
+    records: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ReportSerializer(), min_length=1, max_length=MAX_RECORDS)
 
 
 class ReportsEnvelopeSerializer(KnownFieldsSerializer):
     """A batch whose records are read one by one later."""
 
     stream = StreamField()
-    records = serializers.ListField(min_length=1, max_length=MOST_RECORDS)
+    records = serializers.ListField(min_length=1, max_length=MAX_RECORDS)
 
 
 class RefusedSerializer(serializers.Serializer):
@@ -92,7 +92,7 @@ class AcknowledgementSerializer(KnownFieldsSerializer):
 
 class AcknowledgementsSerializer(KnownFieldsSerializer):
     acknowledgements: serializers.ListSerializer[Any] = serializers.ListSerializer(
-        child=AcknowledgementSerializer(), min_length=1, max_length=MOST_ACKNOWLEDGEMENTS
+        child=AcknowledgementSerializer(), min_length=1, max_length=MAX_ACKNOWLEDGEMENTS
     )
 
 
@@ -110,20 +110,20 @@ class NotedListSerializer(serializers.Serializer):
 class ResultSerializer(KnownFieldsSerializer):
     """What the UAV found at a target."""
 
-    sequence = serializers.IntegerField(min_value=0, max_value=LARGEST_SEQUENCE)
+    sequence = serializers.IntegerField(min_value=0, max_value=MAX_SEQUENCE)
     approval = serializers.UUIDField(help_text="of the route that was flown")
-    place = serializers.IntegerField(min_value=0, max_value=LARGEST_PLACE, help_text="of the target, as the route has it")
+    place = serializers.IntegerField(min_value=0, max_value=MAX_PLACE, help_text="of the target, as the route has it")
     outcome = serializers.ChoiceField(choices=["complete", "skipped", "failed"])
     measured_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
     note = serializers.CharField(required=False, allow_blank=True, max_length=2_000)
-    values = serializers.DictField(required=False, help_text=f"as the payload measured them; at most {MOST_RESULT_BYTES // 1024} kB")
+    values = serializers.DictField(required=False, help_text=f"as the payload measured them; at most {MAX_RESULT_BYTES // 1024} kB")
 
 
 class EndedFlightSerializer(KnownFieldsSerializer):
     """How a flight ended. May be sent again."""
 
     approval = serializers.UUIDField()
-    flight = serializers.IntegerField(min_value=1, max_value=MOST_FLIGHTS)
+    flight = serializers.IntegerField(min_value=1, max_value=MAX_FLIGHTS)
     outcome = serializers.ChoiceField(choices=[end.value for end in FlightEnd])
 
 
@@ -135,8 +135,8 @@ def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
     faults: dict[str, str] = {}
     values = sent.get("values") or {}
     try:
-        if len(json.dumps(values, allow_nan=False)) > MOST_RESULT_BYTES:
-            faults["values"] = f"At most {MOST_RESULT_BYTES // 1024} kB."
+        if len(json.dumps(values, allow_nan=False)) > MAX_RESULT_BYTES:
+            faults["values"] = f"At most {MAX_RESULT_BYTES // 1024} kB."
     except ValueError:
         faults["values"] = "NaN and infinities are no values: send null."
     try:
@@ -160,9 +160,9 @@ def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
 
 class ResultsSerializer(serializers.Serializer):
     stream = StreamField()
-    results: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ResultSerializer(), max_length=MOST_RESULTS)
+    results: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ResultSerializer(), max_length=MAX_RESULTS)
     flights: serializers.ListSerializer[Any] = serializers.ListSerializer(
-        child=EndedFlightSerializer(), required=False, max_length=MOST_RESULTS
+        child=EndedFlightSerializer(), required=False, max_length=MAX_RESULTS
     )
 
 
@@ -170,9 +170,9 @@ class ResultsEnvelopeSerializer(KnownFieldsSerializer):
     """A batch whose results are read one by one later."""
 
     stream = StreamField()
-    results = serializers.ListField(max_length=MOST_RESULTS)
+    results = serializers.ListField(max_length=MAX_RESULTS)
     flights: serializers.ListSerializer[Any] = serializers.ListSerializer(
-        child=EndedFlightSerializer(), required=False, max_length=MOST_RESULTS
+        child=EndedFlightSerializer(), required=False, max_length=MAX_RESULTS
     )
 
 

@@ -33,7 +33,7 @@ from telemetry.services.replan_hooks import suggest_for_findings, withdraw_for_c
 from telemetry.services.zones_about import ZonesAbout, zones_about
 from workspace.live import publish_live
 
-LEAST_REACH_M, FASTEST_MPS = 200.0, 40.0  # within which zones are looked at: as far as it comes in the time ahead
+MIN_REACH_M, MAX_SPEED_MPS = 200.0, 40.0  # within which zones are looked at: as far as it comes in the time ahead
 
 
 @dataclass
@@ -160,7 +160,7 @@ def _with_meetings(situations: list[Situation]) -> list[Situation]:
 
 def _zones(uav: WatchedUav, limits: Limits, zones: ZonesAbout) -> tuple[NearZone, ...]:
     position = None if uav.newest is None else position_of(uav.newest)
-    return () if position is None else zones.within(position, max(LEAST_REACH_M, FASTEST_MPS * limits.zone_ahead_s))
+    return () if position is None else zones.within(position, max(MIN_REACH_M, MAX_SPEED_MPS * limits.zone_ahead_s))
 
 
 def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:

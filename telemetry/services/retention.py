@@ -11,7 +11,7 @@ from django.utils import timezone
 from telemetry.models import FlightLog, VehicleText
 
 ROWS_AT_ONCE = 5_000
-LONGEST_S = 20.0
+MAX_DURATION_S = 20.0
 
 _FORGET_RECORDS = """
 DELETE FROM telemetry_telemetryrecord WHERE id = ANY(ARRAY(
@@ -38,7 +38,7 @@ def forget_old_telemetry() -> int:
     if settings.TELEMETRY_DAYS <= 0:
         return 0
     before = timezone.now() - timedelta(days=settings.TELEMETRY_DAYS)
-    forgotten, until_s = 0, time.monotonic() + LONGEST_S
+    forgotten, until_s = 0, time.monotonic() + MAX_DURATION_S
     with connection.cursor() as cursor:
         while time.monotonic() < until_s:
             cursor.execute(_FORGET_RECORDS, [before, ROWS_AT_ONCE])

@@ -18,7 +18,7 @@ from telemetry.services.alerts import close_alert, open_alert
 
 HOLDER = "http-link"  # all processes of the link are one: a UAV may ask any of them
 LEASE_S = 30.0
-MOST_AT_ONCE = 10
+MAX_CONCURRENT = 10
 OTHER_CONTENT = "other-content"
 REFUSED = "refused-by-uav"
 HOLDS_OTHER = "holds-other-content"  # an alert's code
@@ -50,7 +50,7 @@ def handed_to(uav_id: int, given: Given) -> Given:
     """The same after whatever waited has been handed over: from now on it has been sent."""
     if not given.has_unclaimed:
         return given
-    for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MOST_AT_ONCE, link=LinkKind.HTTP):
+    for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MAX_CONCURRENT, link=LinkKind.HTTP):
         holding: dict[str, Any] = {"attempt": command.attempts, "holder": HOLDER}
         to_wait = reasons_to_carry_later(command) if command.kind == CommandKind.START else []
         if to_wait:

@@ -25,7 +25,7 @@ from workspace.signed_in import SignedInRequest
 
 STATES = ("open", "closed")
 NEWEST_FIRST = ("-opened_at", "-pk")
-MOST_NOTES = 200
+MAX_NOTES = 200
 FILTERS = [
     OpenApiParameter("state", str, enum=STATES, description="open or closed ones; both without it"),
     OpenApiParameter("acknowledged", bool),
@@ -118,8 +118,8 @@ class AlertNotes(APIView):
         alert = _alert(request, alert_id)
         body = shapes.AlertNoteInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        if alert.notes.count() >= MOST_NOTES:
-            raise invalid("text", f"An alert takes {MOST_NOTES} notes.")
+        if alert.notes.count() >= MAX_NOTES:
+            raise invalid("text", f"An alert takes {MAX_NOTES} notes.")
         note = note_alert(alert=alert, actor=request.user, text=body.validated_data["text"])
         return Response(shapes.note_json(note), status=201)
 

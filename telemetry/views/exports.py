@@ -21,7 +21,7 @@ from telemetry.exports.geojson_file import geojson_pieces
 from telemetry.exports.gpx_file import gpx_pieces
 from telemetry.exports.kml_file import kml_pieces
 from telemetry.exports.logged_record import LoggedRecord
-from telemetry.exports.thinning import EVERY_S, for_files
+from telemetry.exports.thinning import INTERVAL_S, for_files
 from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, on_track, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
@@ -54,12 +54,12 @@ ABOUT = (
     "rounded to the resolution of their sensors. Each record has the times of measurement, receipt and storage, and in CSV and GeoJSON "
     "a flag where its time is wrong; the tracks of GPX and KML leave out those without a place and those from the future."
 )
-MOST_S = 3_600.0
+MAX_S = 3_600.0
 EVERY = OpenApiParameter(
     "every_s",
-    {"type": "number", "minimum": 0, "maximum": MOST_S},
+    {"type": "number", "minimum": 0, "maximum": MAX_S},
     description="of each UAV one record in so many seconds; 0 for all",
-    default=EVERY_S,
+    default=INTERVAL_S,
 )
 KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
 NOTHING = {409: OpenApiResponse(description="Nothing was recorded, or no position for GPX and KML: there is no file.")}
@@ -105,11 +105,11 @@ def file_stem(name: str) -> str:
 def _every_s(request: SignedInRequest) -> float:
     text = request.query_params.get("every_s", "")
     try:
-        value = float(text) if text else EVERY_S
+        value = float(text) if text else INTERVAL_S
     except ValueError:
         value = math.nan
-    if not 0.0 <= value <= MOST_S:
-        raise invalid("every_s", _("A number of seconds from 0 to %(most)s is needed.") % {"most": f"{MOST_S:.0f}"})
+    if not 0.0 <= value <= MAX_S:
+        raise invalid("every_s", _("A number of seconds from 0 to %(most)s is needed.") % {"most": f"{MAX_S:.0f}"})
     return value
 
 

@@ -28,7 +28,7 @@ from workspace.schema import PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
 from workspace.whole_numbers import WholeNumber
 
-SHORTEST_S, LONGEST_S = 1e-3, 366 * 86_400.0  # between chosen rows
+MIN_DURATION_S, MAX_DURATION_S = 1e-3, 366 * 86_400.0  # between chosen rows
 USUAL_SPAN = timedelta(days=1)
 UAV = WholeNumber("uav", "id of a UAV")
 MOST = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
@@ -39,7 +39,7 @@ TIMES = [
 THINNED = [
     OpenApiParameter(
         "every_s",
-        {"type": "number", "minimum": SHORTEST_S, "maximum": LONGEST_S},
+        {"type": "number", "minimum": MIN_DURATION_S, "maximum": MAX_DURATION_S},
         description="of each UAV the first record in so many seconds, and none from the future",
     ),
     MOST.documented,
@@ -69,7 +69,7 @@ def spacing_for(rows: QuerySet[Any], most: int, *, time: str = "measured_at") ->
     uavs = unordered.values("uav_id").distinct().count()
     span: timedelta = facts["last"] - facts["first"]
     stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
-    return min(max(span.total_seconds() / stretches, SHORTEST_S), LONGEST_S)
+    return min(max(span.total_seconds() / stretches, MIN_DURATION_S), MAX_DURATION_S)
 
 
 @dataclass(frozen=True)
@@ -125,8 +125,8 @@ def _seconds(text: str) -> float:
         value = float(text)
     except ValueError:
         value = math.nan
-    if not SHORTEST_S <= value <= LONGEST_S:
-        raise invalid("every_s", f"A number of seconds from {SHORTEST_S:g} to {LONGEST_S:g} is needed.")
+    if not MIN_DURATION_S <= value <= MAX_DURATION_S:
+        raise invalid("every_s", f"A number of seconds from {MIN_DURATION_S:g} to {MAX_DURATION_S:g} is needed.")
     return value
 
 

@@ -13,7 +13,7 @@ from rest_framework.request import Request
 
 from missions.models import CredentialKind, UavState
 from missions.services.credentials import note_link_token_use
-from workspace.authentication import LONGEST_TOKEN
+from workspace.authentication import MAX_TOKEN_LENGTH
 from workspace.errors import ApiProblem
 from workspace.prepared import prepared_rows
 from workspace.services import hash_token
@@ -86,7 +86,7 @@ _ACCESS = f"""
 
 
 def _access_of(token: bytes) -> UavAccess | None:
-    if not token.isascii() or len(token) > LONGEST_TOKEN:
+    if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
         return None
     rows = prepared_rows(_ACCESS, [hash_token(token.decode("ascii"))])
     if not rows:

@@ -28,4 +28,4 @@ class Options:
 def options_of_settings(*, name: str | None = None, most_uavs: int | None = None) -> Options:
     """Without a name, of this process alone: two watches on a machine are two."""
     named = name or settings.ESTIMATOR_NAME or f"{socket.gethostname()}-{os.getpid()}"
-    return Options(re.sub(r"[^\w.-]", "-", named)[:80], settings.ESTIMATOR_MOST_UAVS if most_uavs is None else most_uavs)
+    return Options(re.sub(r"[^\w.-]", "-", named)[:80], settings.ESTIMATOR_MAX_UAVS if most_uavs is None else most_uavs)

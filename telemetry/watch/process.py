@@ -45,14 +45,14 @@ from telemetry.services.watches import (
     take_watches,
 )
 from telemetry.watch.options import Options
-from workspace.errors import DATABASE_AWAY
+from workspace.errors import DATABASE_UNAVAILABLE
 from workspace.live import publish_live
 
 OPEN_FOR_S = 30.0  # a store that took its ids earlier than others may end later than them, by so much
-JUDGED_EVERY_S = 10.0  # of a UAV, or where its reports are farther apart at each
+CHECK_INTERVAL_S = 10.0  # of a UAV, or where its reports are farther apart at each
 logger = logging.getLogger(__name__)
-EVERY_S = 1.0
-AWAY_EVERY_S = 60.0  # one line of log
+INTERVAL_S = 1.0
+UNAVAILABLE_INTERVAL_S = 60.0  # one line of log
 LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 READ_BACK = 60  # reports of a UAV, to know again what was known of it
 FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
@@ -92,7 +92,7 @@ class Judged(Protocol):
 def judge(watched: Judged, report: Report) -> None:
     """Before the estimator takes the report: what did it think of this moment? One in a while tells enough, and costs nothing."""
     told, newest = report.measurement, watched.tracker.newest
-    if newest is None or report.measured_s <= newest.measured_s or report.measured_s < watched.judged_s + JUDGED_EVERY_S:
+    if newest is None or report.measured_s <= newest.measured_s or report.measured_s < watched.judged_s + CHECK_INTERVAL_S:
         return
     if told.longitude_deg is None or told.latitude_deg is None:
         return
@@ -147,8 +147,8 @@ class Watch:
     _targets: TargetChecks = field(default_factory=TargetChecks)
     _held_at_s: dict[int, float] = field(default_factory=dict)
     _replaced: set[tuple[int, datetime]] = field(default_factory=set)  # UAVs, and seconds that were measured
-    _quiet_until_s: float = -AWAY_EVERY_S
-    _quiet_about_faults_until_s: float = -AWAY_EVERY_S
+    _quiet_until_s: float = -UNAVAILABLE_INTERVAL_S
+    _quiet_about_faults_until_s: float = -UNAVAILABLE_INTERVAL_S
 
     def run(self) -> None:
         logger.info("watch %s has begun", self.options.holder)
@@ -158,7 +158,7 @@ class Watch:
             try:
                 close_old_connections()
                 self.round(time.time())
-            except DATABASE_AWAY as error:
+            except DATABASE_UNAVAILABLE as error:
                 self._go_on_without_database(error)
             wait_s = _until_next(time.time())
         pulse.rest(LOOP)
@@ -259,7 +259,7 @@ class Watch:
 
     def _tell_fault(self, watched: Watched) -> None:
         if time.monotonic() >= self._quiet_about_faults_until_s:
-            self._quiet_about_faults_until_s = time.monotonic() + AWAY_EVERY_S
+            self._quiet_about_faults_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
             about = {"uav": watched.flight.uav_id, "mission": watched.flight.mission_id}
             logger.exception("%s cannot be estimated", watched.flight.name, extra=about)
 
@@ -286,13 +286,13 @@ class Watch:
     def _go_on_without_database(self, error: Exception) -> None:
         connection.close()
         if time.monotonic() >= self._quiet_until_s:
-            self._quiet_until_s = time.monotonic() + AWAY_EVERY_S
+            self._quiet_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
             logger.warning("the database is away, nothing is estimated: %s", type(error).__name__)
 
     def _give_back(self) -> None:
         try:
             release_watches(holder=self.options.holder)
-        except DATABASE_AWAY:
+        except DATABASE_UNAVAILABLE:
             logger.warning("the database is away: leases run out by themselves")
 
 
@@ -341,4 +341,4 @@ def _end_of_second(at: datetime) -> datetime:
 
 def _until_next(now_s: float) -> float:
     """Seconds to the next whole one of the server's clock."""
-    return EVERY_S - now_s % EVERY_S
+    return INTERVAL_S - now_s % INTERVAL_S

@@ -31,8 +31,8 @@ CHROMIUM_FLAGS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
     "--disable-sync",
 ]  # fmt: skip
-PATIENCE_MS = 45_000  # ./check runs other tests beside these
-expect.set_options(timeout=PATIENCE_MS)
+TIMEOUT_MS = 45_000  # ./check runs other tests beside these
+expect.set_options(timeout=TIMEOUT_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
 COARSE_CANVASES = "Object.defineProperty(window, 'devicePixelRatio', { get: () => 0.25 });"
 # No test but those with `draws` looks at what WebGL draws: shaders are compiled and buffers filled, the triangles are left out.
@@ -252,7 +252,7 @@ class Visitor:
         page = context.new_page()
         page.set_viewport_size({"width": size[0], "height": size[1]})
         page.emulate_media(color_scheme=theme)  # type: ignore[arg-type]
-        page.set_default_timeout(PATIENCE_MS)
+        page.set_default_timeout(TIMEOUT_MS)
         page.on("console", self._heard)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self._asked(request.url))

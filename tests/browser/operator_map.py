@@ -8,7 +8,7 @@ from playwright.sync_api import Page, TimeoutError, expect
 from tests.browser.regions import region
 
 CLOSE_ZOOM = 16
-MOST_MOVES, MOVE_TIMEOUT_MS = 4, 15_000
+MAX_MOVES, MOVE_TIMEOUT_MS = 4, 15_000
 A_HAIR = 1e-5  # of a level: another address for the same place
 STANDS_STILL_AT = """(position) => {
     const map = document.getElementById("map");
@@ -46,7 +46,7 @@ def asks(page: Page, path: str) -> Any:
 
 def look_at(page: Page, position: list[float], zoom: float = CLOSE_ZOOM) -> dict[str, float]:
     """Moves the map there by its address; the place on the screen. A panel that is still growing moves the map away: then once more."""
-    for number in range(MOST_MOVES):
+    for number in range(MAX_MOVES):
         page.evaluate(
             """async ([longitude, latitude, zoom]) => {
                 const map = document.getElementById("map");

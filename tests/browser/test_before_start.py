@@ -20,7 +20,7 @@ from tests.browser.uav_over_http import Flyer
 pytestmark = pytest.mark.browser
 
 
-MOST_REPORTS = 45
+MAX_REPORTS = 45
 Approved = tuple[str, list[tuple[Flyer, list[float]]]]
 
 
@@ -60,7 +60,7 @@ def uploads(page: Page, standing: list[tuple[Flyer, list[float]]], heard: int) -
     upload = panel.get_by_role("button", name="Upload to 2 UAVs")
     is_uploading = panel.get_by_role("button", name="Uploading")
     for button in (upload, is_uploading):
-        for _ in range(MOST_REPORTS):
+        for _ in range(MAX_REPORTS):
             switched_on(standing[:heard])
             if button.count():
                 break

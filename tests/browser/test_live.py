@@ -21,7 +21,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
 STARTS = {"Kite": region.east, "Tern": [region.east[0] + 0.015, region.east[1] - 0.005]}
 STEP_M = 9.0
-MOST_STEPS = 30
+MAX_STEPS = 30
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
         writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 
-def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MOST_STEPS) -> float:
+def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MAX_STEPS) -> float:
     """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
     for step in range(most):
         if fact():

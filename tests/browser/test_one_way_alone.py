@@ -14,7 +14,7 @@ pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
 PHONE = {"size": (390, 844), "touch": True}
-MOST_TABS = 120
+MAX_TABS = 120
 FOCUSED = """() => {
     const at = document.activeElement;
     const words = at.getAttribute("aria-label") ?? (at.labels?.[0] ?? at).textContent;
@@ -32,7 +32,7 @@ HAS_RING = """() => {
 
 def tabs_to(page: Page, words: str) -> None:
     """Goes on with Tab until what has the focus is called so; everything on the way shows that it has it."""
-    for _ in range(MOST_TABS):
+    for _ in range(MAX_TABS):
         page.keyboard.press("Tab")
         if page.evaluate("document.activeElement === document.body"):
             continue

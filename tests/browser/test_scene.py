@@ -18,7 +18,7 @@ from tests.browser.test_report import posts
 pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
-PATIENCE_MS = 60_000  # pictures are drawn by the processor here
+TIMEOUT_MS = 60_000  # pictures are drawn by the processor here
 FLIGHT_S = 120
 DEPARTS_AT = (datetime.now(UTC) + timedelta(days=20)).replace(hour=15, minute=0, second=0, microsecond=0)
 NO_WEBGL = """
@@ -59,8 +59,8 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
 
 def seen(page: Page, address: str) -> Page:
     page.goto(address)
-    page.locator("html[data-loaded]").wait_for(state="attached", timeout=PATIENCE_MS)
-    expect(page.locator(".scene-canvas")).to_have_attribute("aria-label", re.compile("UAV"), timeout=PATIENCE_MS)
+    page.locator("html[data-loaded]").wait_for(state="attached", timeout=TIMEOUT_MS)
+    expect(page.locator(".scene-canvas")).to_have_attribute("aria-label", re.compile("UAV"), timeout=TIMEOUT_MS)
     return page
 
 
@@ -69,19 +69,19 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     page = seen(visitor.signs_in("vera", draws=True), f"/missions/{mission}/3d")  # without a flight on record: the newest rehearsal
     canvas = page.get_by_role("img", name=re.compile("^3D view: 1 UAV"))
     instruments = page.get_by_role("region", name="Instruments")
-    expect(instruments).to_contain_text("Eider", timeout=PATIENCE_MS)
+    expect(instruments).to_contain_text("Eider", timeout=TIMEOUT_MS)
     expect(page.get_by_text("Simulated", exact=True)).to_be_visible()
     page.keyboard.press(".")  # from the take-off on: its target is reached
-    expect(instruments.locator("[data-reading=task]")).to_contain_text("A1", timeout=PATIENCE_MS)
-    expect(instruments.locator("[data-reading=wire]")).to_contain_text("m", timeout=PATIENCE_MS)
+    expect(instruments.locator("[data-reading=task]")).to_contain_text("A1", timeout=TIMEOUT_MS)
+    expect(instruments.locator("[data-reading=wire]")).to_contain_text("m", timeout=TIMEOUT_MS)
     page.keyboard.press("o")
     expect(page.get_by_role("radio", name="Target")).to_be_checked()
-    expect(canvas).to_have_attribute("aria-label", re.compile("Round a target A1"), timeout=PATIENCE_MS)
-    with page.expect_download(timeout=PATIENCE_MS) as kept:
+    expect(canvas).to_have_attribute("aria-label", re.compile("Round a target A1"), timeout=TIMEOUT_MS)
+    with page.expect_download(timeout=TIMEOUT_MS) as kept:
         page.keyboard.press("p")
     assert kept.value.suggested_filename.startswith(f"one-tower-{DEPARTS_AT:%Y-%m-%d}-15")
     assert colours_of(page, kept.value.path().read_bytes()) > 100
-    expect(page).to_have_url(re.compile(rf"source=rehearsal:{rehearsal}:0&t={DEPARTS_AT:%Y-%m-%d}T15.*camera=orbit"), timeout=PATIENCE_MS)
+    expect(page).to_have_url(re.compile(rf"source=rehearsal:{rehearsal}:0&t={DEPARTS_AT:%Y-%m-%d}T15.*camera=orbit"), timeout=TIMEOUT_MS)
     clock = page.locator(".scene-clock").text_content()
     assert faults(page) == []
     other = seen(visitor.signs_in("opal"), page.url)
@@ -96,9 +96,9 @@ def test_over_the_map_of_a_mission(visitor: Visitor, rehearsed: tuple[str, str])
     wait_for_map(page)
     page.get_by_role("button", name="3D view").click()
     panel = page.get_by_role("region", name="3D view")
-    expect(panel.get_by_role("img", name=re.compile("^3D view"))).to_be_focused(timeout=PATIENCE_MS)
+    expect(panel.get_by_role("img", name=re.compile("^3D view"))).to_be_focused(timeout=TIMEOUT_MS)
     page.keyboard.press("t")
-    expect(panel.get_by_role("radio", name="Top")).to_be_checked(timeout=PATIENCE_MS)
+    expect(panel.get_by_role("radio", name="Top")).to_be_checked(timeout=TIMEOUT_MS)
     page.keyboard.press("Escape")
     expect(panel).to_have_count(0)
 

@@ -11,7 +11,7 @@ from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.test_fleet import writes
 from tests.browser.test_live import STEP_M, flies_until, flight
-from tests.browser.test_scene import PATIENCE_MS
+from tests.browser.test_scene import TIMEOUT_MS
 from tests.browser.uav_over_http import Flyer
 
 __all__ = ["flight"]
@@ -101,7 +101,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     line = Line(page)
     starts(page, mission)
     page.goto(f"/missions/{mission}/3d?source=live")
-    page.locator("html[data-loaded]").wait_for(state="attached", timeout=PATIENCE_MS)
+    page.locator("html[data-loaded]").wait_for(state="attached", timeout=TIMEOUT_MS)
     certainty = page.locator(".scene-certainty")
     along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, BEGINS_M)
     cut_off = page.get_by_role("status").filter(has_text="everything here is as of then. Connecting again.")
@@ -128,7 +128,7 @@ def test_the_view_over_a_record_goes_with_a_flight_that_is_under_way(visitor: Vi
     page.goto(f"/missions/{mission}/report")
     wait_for_map(page)
     page.get_by_role("button", name="3D view").click()
-    expect(page.locator(".scene-certainty")).to_have_text("measured", timeout=PATIENCE_MS)
+    expect(page.locator(".scene-certainty")).to_have_text("measured", timeout=TIMEOUT_MS)
     page.locator("#replay-slider").press("End")
     at_the_end = reading(page, "tower")
     flies_until(page, lambda: reading(page, "tower") != at_the_end, flyers, along_m, most=AGAIN_S + 30)

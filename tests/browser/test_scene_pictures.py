@@ -13,7 +13,7 @@ from tests.browser.operator_map import asks
 from tests.browser.regions import region
 from tests.browser.test_fleet import writes
 from tests.browser.test_report import VIEWS, flown, posts
-from tests.browser.test_scene import PATIENCE_MS, seen
+from tests.browser.test_scene import TIMEOUT_MS, seen
 
 __all__ = ["flown"]
 pytestmark = [pytest.mark.browser, pytest.mark.long]
@@ -136,7 +136,7 @@ def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, 
         looks(page, picture, f"{night_at}&camera=orbit&view=215,14,110", f"scene-night-{theme}")
         day_at = f"/missions/{day}/3d?source=rehearsal&t={at(DAYTIME, between)}"
         looks(page, picture, f"{day_at}&camera=chase&view=40,28,330", f"scene-zone-{theme}")
-    expect(page.locator("[data-reading=zone]")).to_contain_text(zone, timeout=PATIENCE_MS)
+    expect(page.locator("[data-reading=zone]")).to_contain_text(zone, timeout=TIMEOUT_MS)
 
 
 def test_a_record_with_an_estimate(visitor: Visitor, flown: str, picture: Picture) -> None:
@@ -149,4 +149,4 @@ def test_a_record_with_an_estimate(visitor: Visitor, flown: str, picture: Pictur
             f"{address}?source=record&t=2026-09-10T09:14:40.000Z&uav=0&camera=chase&view=30,24,70",
             f"scene-estimated-{theme}",
         )
-    expect(page.locator(".scene-certainty")).to_contain_text("estimated", timeout=PATIENCE_MS)
+    expect(page.locator(".scene-certainty")).to_contain_text("estimated", timeout=TIMEOUT_MS)

@@ -11,7 +11,7 @@ from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.vehicles.px4 import LAND, MISSION, RETURN, Px4
 
 METRES_A_DEGREE = 111_195.0
-CLIMB_MPS, SINK_MPS, NEAR_M, TELLS_EVERY_S = 12.0, 2.0, 1.0, 1.0
+CLIMB_MPS, SINK_MPS, NEAR_M, REPORT_INTERVAL_S = 12.0, 2.0, 1.0, 1.0
 STAYS = (mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_TIME)
 HOME_AMSL_M = 220.0
 BATTERY_PERCENT_S = 0.02
@@ -54,7 +54,7 @@ class Autopilot(Flyer):
         home.longitude, home.latitude, home.altitude = round(self._home[0] * 1e7), round(self._home[1] * 1e7), round(HOME_AMSL_M * 1000)
         reached = [mavlink.MAVLink_mission_item_reached_message(item) for item in self._reached]
         self._reached.clear()
-        if now_s < self._told_s + TELLS_EVERY_S:
+        if now_s < self._told_s + REPORT_INTERVAL_S:
             return [told, home, *reached]
         self._told_s = now_s
         return [told, home, *reached, *self._of_the_second(round((now_s - self.booted_s) * 1e6))]

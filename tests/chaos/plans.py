@@ -11,7 +11,7 @@ from tests.chaos.asking import Client
 from tests.chaos.site import Site
 
 TARGETS, UAVS = 4, 2
-SAVED_AS, MOST_TRIES = "Chaos", 40
+SAVED_AS, MAX_TRIES = "Chaos", 40
 
 
 def plan_body(site: Site, chance: random.Random) -> dict[str, Any]:
@@ -51,7 +51,7 @@ class Saver:
 
     def __call__(self) -> str:
         key, body = str(uuid4()), plan_body(self.site, self._chance) | {"name": SAVED_AS}
-        for _ in range(MOST_TRIES):
+        for _ in range(MAX_TRIES):
             answer = self.client.ask("POST", "/api/v1/missions", body, **{"Idempotency-Key": key})
             if answer.status != 503:
                 break

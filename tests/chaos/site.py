@@ -27,7 +27,7 @@ DEMO = (
     ["load_demo"],
     ["build_graph"],
 )
-PATIENCE_S = 300.0
+TIMEOUT_S = 300.0
 ONLY_WEB = dict.fromkeys(
     ("worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0
 )
@@ -103,7 +103,7 @@ def _forget(place: Path) -> None:
         shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()
 
 
-def wait_until(is_so: Callable[[], bool], what: str, patience_s: float = PATIENCE_S) -> float:
+def wait_until(is_so: Callable[[], bool], what: str, patience_s: float = TIMEOUT_S) -> float:
     """Seconds until it is so."""
     began_s = time.monotonic()
     while not is_so():

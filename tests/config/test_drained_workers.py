@@ -15,7 +15,7 @@ from celery import Celery
 from django.conf import settings
 from redis import Redis
 
-PATIENCE_S = 180.0
+TIMEOUT_S = 180.0
 
 
 class Queue:
@@ -51,7 +51,7 @@ class Queue:
         finally:
             if process.poll() is None:
                 os.killpg(process.pid, signal.SIGKILL)
-            process.wait(PATIENCE_S)
+            process.wait(TIMEOUT_S)
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def queue(tmp_path: Path) -> Iterator[Queue]:
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
+    deadline_s = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < deadline_s, "it never came"
         time.sleep(0.05)
@@ -79,7 +79,7 @@ def test_of_what_a_worker_has_under_way_nothing_is_lost_when_it_is_told_to_stop(
         queue.send(3_600.0, "take_and_hear_nothing")
         wait_for(lambda: queue.notes().count("began") == 3)
         process.terminate()
-        assert process.wait(PATIENCE_S) >= 0, "it had to be killed"
+        assert process.wait(TIMEOUT_S) >= 0, "it had to be killed"
     with queue.worker():
         wait_for(lambda: queue.notes().count("began") >= 5 and "done" in queue.notes())
 
@@ -91,7 +91,7 @@ def test_a_process_that_still_warms_up_holds_up_no_end(queue: Queue) -> None:
         wait_for(lambda: "warms up" in queue.notes())
         queue.send(0.0)
         process.terminate()
-        assert process.wait(PATIENCE_S) >= 0, "it had to be killed"
+        assert process.wait(TIMEOUT_S) >= 0, "it had to be killed"
     with queue.worker():
         wait_for(lambda: "done" in queue.notes())
     assert queue.notes().count("began") == 1

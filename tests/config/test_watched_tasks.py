@@ -13,7 +13,7 @@ from prometheus_client import REGISTRY
 from config.celery import app, warm_up_process
 from operation.log_context import about, facts
 
-PATIENCE_S = 120
+TIMEOUT_S = 120
 
 _heard: list[dict[str, str]] = []
 _is_done = threading.Event()
@@ -42,13 +42,13 @@ def queue() -> Iterator[str]:
     """A real worker of Spanwise's own application, in a thread, at a queue of its own."""
     name = f"watched-{uuid4().hex[:8]}"
     worker_process_init.disconnect(warm_up_process)  # nothing is planned here
-    with start_worker(app, pool="solo", perform_ping_check=False, queues=[name], shutdown_timeout=PATIENCE_S):
+    with start_worker(app, pool="solo", perform_ping_check=False, queues=[name], shutdown_timeout=TIMEOUT_S):
         yield name
     worker_process_init.connect(warm_up_process)
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
+    deadline_s = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < deadline_s, "it never came"
         time.sleep(0.02)
@@ -62,7 +62,7 @@ def test_what_the_work_is_about_goes_with_a_task(queue: str) -> None:
     before = counted(note_what_it_is_about.name, "done")
     with about(request="request-of-today", mission="m-7", uav="3", job="another"):
         note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
-    assert _is_done.wait(PATIENCE_S)
+    assert _is_done.wait(TIMEOUT_S)
     assert _heard == [{"request": "request-of-today", "mission": "m-7", "uav": "3", "job": "job-9"}]
     wait_for(lambda: counted(note_what_it_is_about.name, "done") == before + 1)
 
@@ -70,10 +70,10 @@ def test_what_the_work_is_about_goes_with_a_task(queue: str) -> None:
 def test_a_task_of_nobodys_request_is_about_its_job_alone_and_a_failed_one_is_counted_so(queue: str) -> None:
     before = counted(fall.name, "failed")
     note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
-    assert _is_done.wait(PATIENCE_S)
+    assert _is_done.wait(TIMEOUT_S)
     assert _heard == [{"job": "job-9"}]
     _is_done.clear()
     fall.apply_async(queue=queue)
-    assert _is_done.wait(PATIENCE_S)
+    assert _is_done.wait(TIMEOUT_S)
     wait_for(lambda: counted(fall.name, "failed") == before + 1)
     assert facts() == {}

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-MOST_SELECT_KNOWS = 1_024
+MAX_SELECT_KNOWS = 1_024
 NO_LOCUST = "Locust is not installed: requirements-benchmarks.txt has it"
 
 
@@ -15,9 +15,9 @@ NO_LOCUST = "Locust is not installed: requirements-benchmarks.txt has it"
 def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
     """Two ends, the first with a file descriptor that select(2) does not know."""
     before = resource.getrlimit(resource.RLIMIT_NOFILE)
-    resource.setrlimit(resource.RLIMIT_NOFILE, (max(before[0], 2 * MOST_SELECT_KNOWS), before[1]))
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(before[0], 2 * MAX_SELECT_KNOWS), before[1]))
     here, there = socket.socketpair()
-    high = socket.socket(fileno=os.dup2(here.detach(), MOST_SELECT_KNOWS + 100))
+    high = socket.socket(fileno=os.dup2(here.detach(), MAX_SELECT_KNOWS + 100))
     with high, there:
         yield high, there
     resource.setrlimit(resource.RLIMIT_NOFILE, before)

@@ -16,7 +16,7 @@ from deploy.load.installation import Installation
 
 pytestmark = pytest.mark.long
 
-PATIENCE_S = 300.0
+TIMEOUT_S = 300.0
 WITHOUT = dict.fromkeys(
     ("live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0
 )
@@ -49,7 +49,7 @@ class Visitors:
             thread.join()
 
     def wait_for_more(self, answers: int) -> None:
-        wanted, end_s = self.answers + answers, time.monotonic() + PATIENCE_S
+        wanted, end_s = self.answers + answers, time.monotonic() + TIMEOUT_S
         while self.answers < wanted and time.monotonic() < end_s:
             time.sleep(0.05)
         assert self.answers >= wanted

@@ -21,7 +21,7 @@ from tests.workspace.front_door import environment_of
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
-PATIENCE_S = 600.0  # where the planners' core has to be compiled first
+TIMEOUT_S = 600.0  # where the planners' core has to be compiled first
 ENDS_WITHIN_S = 10.0  # the promise
 PROGRAMS = sorted({*container.PROGRAMS} - {"migrate"})
 
@@ -66,7 +66,7 @@ def is_ready(port: int) -> bool:
 
 
 def wait_until_ready(process: subprocess.Popen[bytes], port: int) -> None:
-    end_s = time.monotonic() + PATIENCE_S
+    end_s = time.monotonic() + TIMEOUT_S
     while not is_ready(port):
         assert process.poll() is None, "it has ended by itself"
         assert time.monotonic() < end_s, "it was never ready"
@@ -77,7 +77,7 @@ def end(process: subprocess.Popen[bytes]) -> float:
     """How long it took, in seconds."""
     began_s = time.monotonic()
     process.terminate()
-    process.wait(PATIENCE_S)
+    process.wait(TIMEOUT_S)
     return time.monotonic() - began_s
 
 
@@ -97,7 +97,7 @@ def test_a_program_that_is_ready_ends_in_time_and_writes_json(name: str, tmp_pat
 def test_a_program_that_has_hardly_begun_ends_in_time(name: str, tmp_path: Path) -> None:
     """While it imports what it needs, or warms up."""
     with started(name, tmp_path) as (process, _):
-        end_s = time.monotonic() + PATIENCE_S
+        end_s = time.monotonic() + TIMEOUT_S
         while b"-m\0scripts.container" in Path(f"/proc/{process.pid}/cmdline").read_bytes():
             assert time.monotonic() < end_s
             time.sleep(0.02)

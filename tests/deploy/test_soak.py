@@ -9,8 +9,8 @@ from deploy.load.day.sampling import files_of, memory_of
 from deploy.load.day.slopes import FLAT, GROWS, NOT_DECIDED, slope
 from deploy.load.usage import families
 
-EVERY_S, SAMPLES = 10.0, 180  # half an hour
-AT_S = np.arange(SAMPLES) * EVERY_S
+INTERVAL_S, SAMPLES = 10.0, 180  # half an hour
+AT_S = np.arange(SAMPLES) * INTERVAL_S
 MIB_400 = 400.0 * 2**20
 
 

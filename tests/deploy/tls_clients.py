@@ -21,7 +21,7 @@ from django.db import connection  # noqa: E402
 from config.celery import app  # noqa: E402
 from scripts.backups import database_at  # noqa: E402
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 def database() -> str:
@@ -45,7 +45,7 @@ def cached() -> str:
 
 def queue() -> str:
     with app.connection_for_write() as broker:
-        broker.ensure_connection(max_retries=1, interval_start=0, timeout=PATIENCE_S)
+        broker.ensure_connection(max_retries=1, interval_start=0, timeout=TIMEOUT_S)
         broker.default_channel.client.ping()
     return "there"
 
@@ -55,10 +55,10 @@ def pages() -> str:
         layer = get_channel_layer()
         channel = await layer.new_channel()
         await layer.send(channel, {"type": "there"})
-        async with asyncio.timeout(PATIENCE_S):
+        async with asyncio.timeout(TIMEOUT_S):
             return str((await layer.receive(channel))["type"])
 
-    end_s = time.monotonic() + PATIENCE_S
+    end_s = time.monotonic() + TIMEOUT_S
     while True:
         try:
             return async_to_sync(there)()

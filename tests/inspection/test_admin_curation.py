@@ -7,7 +7,7 @@ from django.test import Client
 from django.urls import reverse
 from django.utils import timezone
 
-from inspection.admin.curated import MOST_AT_ONCE
+from inspection.admin.curated import MAX_CONCURRENT
 from inspection.models import Asset, AssetSet, DataGap, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services import StaleRevision, save_asset, save_zone
 from tests.inspection.ground import line, tower, zone
@@ -126,10 +126,10 @@ def test_several_assets_are_marked_as_not_flyable_each_in_the_history(client: Cl
 
 def test_more_than_a_request_can_change_is_refused_whole(client: Client) -> None:
     row = tower()
-    copies = [Asset(kind="tower", geometry=row.geometry, centre=row.centre) for _ in range(MOST_AT_ONCE)]
+    copies = [Asset(kind="tower", geometry=row.geometry, centre=row.centre) for _ in range(MAX_CONCURRENT)]
     Asset.objects.bulk_create(copies)
     answer = act(client, "powertower", "mark_not_flyable", [row], select_across="1")
-    assert f"{MOST_AT_ONCE + 1} rows are chosen; at most {MOST_AT_ONCE} are changed at once" in answer.content.decode()
+    assert f"{MAX_CONCURRENT + 1} rows are chosen; at most {MAX_CONCURRENT} are changed at once" in answer.content.decode()
     assert not Asset.objects.filter(is_flyable=False).exists()
 
 

@@ -29,7 +29,7 @@ from workspace.services import cancel_job, requeue_lost_jobs
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 RING = b"[[9,47],[9.1,47],[9.1,47.1],[9,47]]"
 ZONE = b'{"type":"Feature","id":"A","properties":{"name":"A"},"geometry":{"type":"Polygon","coordinates":[' + RING + b"]}}"
 
@@ -85,7 +85,7 @@ def table_held(model: type) -> Iterator[None]:
 
 
 def wait_until(is_so: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < end, "it never came"
         time.sleep(0.1)

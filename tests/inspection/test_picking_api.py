@@ -185,7 +185,7 @@ def test_an_area_that_encloses_nothing_on_the_globe_is_refused(client: Client, r
 
 
 def test_an_area_says_how_many_stand_there_beyond_what_it_lists(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("inspection.selectors.picking.MOST_IN_AN_AREA", 2)
+    monkeypatch.setattr("inspection.selectors.picking.MAX_IN_AN_AREA", 2)
     masts = row_of_towers(10.0, 10.01, 10.02)
     answer = within(client, [[9.9, 55.9], [10.1, 55.9], [10.1, 56.1], [9.9, 56.1]]).json()
     assert (answer["count"], ids(answer["assets"])) == (3, [masts[0].pk, masts[1].pk])

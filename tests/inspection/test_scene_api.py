@@ -199,7 +199,7 @@ def test_a_zone_with_very_many_corners_comes_with_bounded_ones_and_hardly_anothe
     (zone,) = scene(client)["zones"]
     corners = sum(len(one) for polygon in zone["polygons"] for one in polygon)
     drawn = shapely.MultiPolygon([(polygon[0], polygon[1:]) for polygon in zone["polygons"]])
-    assert corners <= selector.MOST_CORNERS
+    assert corners <= selector.MAX_CORNERS
     assert drawn.is_valid
     assert drawn.symmetric_difference(area).area < 0.005 * area.area
 
@@ -209,8 +209,8 @@ def test_what_goes_beyond_a_limit_is_left_out_from_the_edge_and_counted(client: 
     for step in range(3):
         ground.tower((9.981 + 0.001 * step, 55.991))
     ground.zone(), ground.zone((10.028, 56.018), half_deg=0.0005)
-    monkeypatch.setattr(selector, "MOST_SUPPORTS", 1)
-    monkeypatch.setattr(selector, "MOST_ZONES", 1)
+    monkeypatch.setattr(selector, "MAX_SUPPORTS", 1)
+    monkeypatch.setattr(selector, "MAX_ZONES", 1)
     shown = scene(client)
     assert [support["id"] for support in shown["supports"]] == [near.pk]
     assert (shown["left_out"]["supports"], shown["left_out"]["zones"]) == (3, 1)

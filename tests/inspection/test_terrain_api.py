@@ -17,7 +17,7 @@ from inspection.services import import_terrain
 from inspection.services.proposals import terrain
 from inspection.services.proposals.reading import FileRefused, Provenance, Reading
 from inspection.terrain.heights import REFERENCES, UnknownReference, amsl_m, counted_from
-from inspection.terrain.profile import MOST_SAMPLES, samples_along
+from inspection.terrain.profile import MAX_SAMPLES, samples_along
 from tests.inspection.importers.terrain.tiffs import write_hgt
 from tests.inspection.test_terrain_import import geotiff, plane, post
 from tests.workspace.people import client_of, somebody
@@ -153,7 +153,7 @@ def test_a_line_that_is_none_has_no_profile(client: Client, line: Any) -> None:
 
 def test_a_very_long_line_is_looked_at_in_bounded_steps() -> None:
     found = samples_along(np.array([[0.0, 0.0], [90.0, 10.0], [179.0, -10.0]]), 1.0)
-    assert len(found.positions) <= MOST_SAMPLES
+    assert len(found.positions) <= MAX_SAMPLES
     assert any((position == [90.0, 10.0]).all() for position in found.positions)
 
 

@@ -89,7 +89,7 @@ def test_a_part_that_is_too_large_is_refused(client: Client) -> None:
 
 
 def test_a_file_over_the_limit_is_refused_before_a_byte_is_sent(client: Client, settings: Any) -> None:
-    settings.LARGEST_FILE_BYTES = dict.fromkeys(settings.LARGEST_FILE_BYTES, 1024 * 1024)
+    settings.MAX_UPLOAD_BYTES = dict.fromkeys(settings.MAX_UPLOAD_BYTES, 1024 * 1024)
     answer = begin(client, 1024 * 1024 + 1)
     assert answer.status_code == 413
     assert "at most 1 MiB" in answer.json()["error"]["message"]
@@ -132,7 +132,7 @@ def test_what_nobody_went_on_with_is_forgotten_after_a_day() -> None:
 
 
 def test_each_kind_has_its_own_limit(client: Client, settings: Any) -> None:
-    settings.LARGEST_FILE_BYTES = settings.LARGEST_FILE_BYTES | {"zones": 4}
+    settings.MAX_UPLOAD_BYTES = settings.MAX_UPLOAD_BYTES | {"zones": 4}
     upload = store_upload(file_name="zones.json", chunks=[b"01234"], created_by=None)
     answer = client.post("/api/v1/imports", {"kind": "zones", "upload": str(upload.pk)}, content_type="application/json")
     assert answer.status_code == 413

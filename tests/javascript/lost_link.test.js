@@ -55,8 +55,8 @@ test("rally points stay while UAVs go on, and seconds of holding go with holding
 
 test("a mission takes no more rally points than the server does", () => {
   let many = back;
-  for (let number = 0; number < link.MOST_RALLY_POINTS + 2; number += 1) many = link.withRallyPoint(many, [number, 1]);
-  assert.equal(many.rally_points.length, link.MOST_RALLY_POINTS);
+  for (let number = 0; number < link.MAX_RALLY_POINTS + 2; number += 1) many = link.withRallyPoint(many, [number, 1]);
+  assert.equal(many.rally_points.length, link.MAX_RALLY_POINTS);
 });
 
 test("another wish is another mission to store, and the same routes", () => {

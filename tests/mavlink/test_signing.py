@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from mavlink.frames import Frame, frames_of_datagram
-from mavlink.signing import MOST_STREAMS, FrameWriter, Refusal, SignatureCheck, timestamp_at
+from mavlink.signing import MAX_STREAMS, FrameWriter, Refusal, SignatureCheck, timestamp_at
 
 KEY, OTHER_KEY = b"k" * 32, b"o" * 32
 NOW_S = 1_800_000_000.0
@@ -100,8 +100,8 @@ def test_our_times_go_forward_whatever_the_clock_does():
 
 def test_streams_are_bounded():
     check = SignatureCheck(KEY)
-    refusals = [check.refusal(frame(link_id=n % 256, component=n // 256), NOW_S) for n in range(MOST_STREAMS + 1)]
-    assert refusals == [None] * MOST_STREAMS + [Refusal.TOO_MANY_STREAMS]
+    refusals = [check.refusal(frame(link_id=n % 256, component=n // 256), NOW_S) for n in range(MAX_STREAMS + 1)]
+    assert refusals == [None] * MAX_STREAMS + [Refusal.TOO_MANY_STREAMS]
 
 
 def test_a_key_shows_in_no_words():

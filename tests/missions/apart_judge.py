@@ -19,7 +19,7 @@ from tests.missions.plane import east_north
 
 LATERAL_M, VERTICAL_M, TIME_S = 28.0, 13.5, 57.0  # of 30 m, 15 m and 60 s, less what lies between samples
 OUTER_M, OUTER_HEIGHT_M, OUTER_S = 34.0, 16.5, 64.0  # and more
-LONGEST_S = 4 * 3_600.0  # who hovers without a battery of known energy does so for that long
+MAX_DURATION_S = 4 * 3_600.0  # who hovers without a battery of known energy does so for that long
 FLYING = ("approved", "dispatched", "active")
 
 
@@ -94,7 +94,7 @@ def _approved(request: PlanRequest, ends_s: float) -> Iterator[Flown]:
             route = stored_route(row)
             route["departs_s"] += later_s
             route["arrival_s"] = [arrival_s + later_s for arrival_s in route["arrival_s"]]
-            stays_s = LONGEST_S if route["end_action"] == "hover" and route["energy_wh"] is None else route["duration_s"]
+            stays_s = MAX_DURATION_S if route["end_action"] == "hover" and route["energy_wh"] is None else route["duration_s"]
             yield Flown(route, str(mission.pk), route["departs_s"] + max(stays_s, route["duration_s"]))
 
 

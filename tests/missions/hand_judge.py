@@ -28,10 +28,10 @@ from tests.missions.wire_judge import BESIDE_M
 from tests.missions.zone_judge import legs_of
 from workspace.models import User
 
-TRANSIT_M, HIGHEST_M = 60.0, 120.0
+TRANSIT_M, MAX_HEIGHT_M = 60.0, 120.0
 ROUNDING_M = 0.06
 SHORT_M = 2.2
-LEAST_MPS, HAIR_MPS, SAME_PLACE_M = 0.5, 0.02, 0.01
+MIN_MPS, HAIR_MPS, SAME_PLACE_M = 0.5, 0.02, 0.01
 TAKEN_BACK_SHARE = 0.5
 UNTAGGED_M = {"tower": 45.0, "line": 60.0, "bridge": 30.0, "railway": 8.0}  # at most
 _LACKS = re.compile(r"lacks ([\d.]+) Wh")
@@ -226,7 +226,7 @@ def _is_at_wrong_height(point: dict[str, Any]) -> bool:
     if point["asset"] is not None:
         kind, height_m = Asset.objects.values_list("kind", "height_m").get(pk=point["asset"])
         least_m = max(least_m, (UNTAGGED_M.get(kind, 0.0) if height_m is None else height_m) + CLEARANCE_M)
-    return bool(agl_m > HIGHEST_M + ROUNDING_M or agl_m < least_m - 0.04)
+    return bool(agl_m > MAX_HEIGHT_M + ROUNDING_M or agl_m < least_m - 0.04)
 
 
 def _is_no_speed(asked: PlanRequest, uav: Any, wished: list[dict[str, Any]], place: int) -> bool:
@@ -243,12 +243,12 @@ def _is_out_of_range(uav: Any, speed_mps: float, way: tuple[float, float], wind:
     """Over ground less than a headway, or through the air more than its limit; without a way it stands in the wind."""
     length_m = math.hypot(*way)
     if length_m < SAME_PLACE_M:
-        return speed_mps > limit_mps(uav) + give_mps or speed_mps < LEAST_MPS - give_mps
+        return speed_mps > limit_mps(uav) + give_mps or speed_mps < MIN_MPS - give_mps
     along = [speed_mps * part / length_m for part in way]
     through_air_mps = math.hypot(along[0] - wind[0], along[1] - wind[1])
     is_known = uav.performance.max_airspeed_mps is not None
     return (
-        speed_mps < LEAST_MPS - give_mps
+        speed_mps < MIN_MPS - give_mps
         or through_air_mps > limit_mps(uav) + give_mps
         or (not is_known and speed_mps > limit_mps(uav) + give_mps)
     )

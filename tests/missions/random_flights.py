@@ -28,7 +28,7 @@ from workspace.models import User
 HILLY = ("quillmoor.osm.pbf", "columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf")
 ASSETS = 300  # of each region
 ZONES = 12
-FEWEST_NODES = 100  # that zones leave of a network
+MIN_NODES = 100  # that zones leave of a network
 TALL_SHARE = 0.06  # of its towers stick out above what is cleared between targets
 APPROVED = 2  # missions of each departure
 AIRS = 8  # conditions that are drawn from: what they make of a network is worked out once
@@ -70,7 +70,7 @@ def put_zones(seed: int, draw: random.Random) -> None:
     for number in count():
         put_random_zones(seed + 1_000 * number)
         _give_heights_and_times(draw)
-        if len(current_graph().position) >= FEWEST_NODES:
+        if len(current_graph().position) >= MIN_NODES:
             return
 
 

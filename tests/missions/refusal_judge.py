@@ -25,8 +25,8 @@ from tests.missions.zone_judge import WIDER, ZoneJudge
 DIRECT_M = 4_900.0  # of the 5 km that a UAV may fly straight
 ACCESS_M = 9_800.0  # of the 10 km that it may fly to the network
 OFF_NETWORK_FACTOR = 2.0  # what a metre away from infrastructure costs
-LONGEST_FLIGHT_S = 4 * 3_600.0
-HIGHEST_AGL_M = 120.0
+MAX_FLIGHT_S = 4 * 3_600.0
+MAX_AGL_M = 120.0
 STAYS_S = 100.0  # more than any task of these missions takes, with taking off, stopping and landing
 REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path", "wind"}
 OF_WAYS = {"no_path", "wind", "beyond_range", "beyond_energy", "too_far_from_network"}
@@ -75,9 +75,9 @@ class RefusalJudge:
         """Whether a zone that a flight could meet there lies within its clearance, at some time of the flight."""
         begin = request.departs_at
         is_alone = len(request.uavs) == 1 and request.organisation is None
-        longest_s = LONGEST_FLIGHT_S if is_alone else 2.0 * LONGEST_FLIGHT_S  # who is put off until others have landed comes so late
+        longest_s = MAX_FLIGHT_S if is_alone else 2.0 * MAX_FLIGHT_S  # who is put off until others have landed comes so late
         return any(
-            self.zones.is_at_height(self.zones.zones[zone], (0.0, HIGHEST_AGL_M), None, WIDER)
+            self.zones.is_at_height(self.zones.zones[zone], (0.0, MAX_AGL_M), None, WIDER)
             and (begin is None or self.zones.applies_between(zone, begin, begin + timedelta(seconds=longest_s), WIDER))
             for zone in self.zones.lie_near(course, WIDER.lateral_m)
         )
@@ -136,7 +136,7 @@ class RefusalJudge:
     def _most_wh(self, request: PlanRequest, uav: Any, start: Any, place: Any, needed_m: float) -> float | None:
         """What such a flight takes at most, whatever its course and height; None where the wind may be too strong for one of them."""
         limit_mps = uav.performance.max_airspeed_mps or uav.cruise_speed_mps
-        winds = [wind_mps(request, height_m) for height_m in np.linspace(0.0, HIGHEST_AGL_M, 13)]
+        winds = [wind_mps(request, height_m) for height_m in np.linspace(0.0, MAX_AGL_M, 13)]
         if max(math.hypot(*wind) for wind in winds) > limit_mps - 1.0:
             return None
         if uav.performance.battery_wh is None:
@@ -152,7 +152,7 @@ class RefusalJudge:
             worst_w = max(worst_w, *(watts(uav.performance, math.hypot(*wind), climb, air) for climb in (0.0, CLIMB_MPS) for air in airs))
         reach_m = OFF_NETWORK_FACTOR * needed_m
         near = np.hypot(*(self.tall.metres(self.tall.places) - self.tall.metres(start)).T) < reach_m if len(self.tall.heights) else []
-        up_and_down_m = 6 * HIGHEST_AGL_M + self.steepest * reach_m + 2 * 60.0 * int(np.sum(near))
+        up_and_down_m = 6 * MAX_AGL_M + self.steepest * reach_m + 2 * 60.0 * int(np.sum(near))
         return (1.05 * worst_j_per_m * reach_m + worst_w * (STAYS_S + up_and_down_m / CLIMB_MPS)) / 3_600.0
 
 

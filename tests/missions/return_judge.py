@@ -18,7 +18,7 @@ from tests.missions.plane import apart_m, east_north
 from tests.missions.wire_judge import WireJudge
 from tests.missions.zone_judge import Leg, Margins, ZoneJudge
 
-TRANSIT_M, HIGHEST_M = 60.0, 120.0
+TRANSIT_M, MAX_HEIGHT_M = 60.0, 120.0
 CLEARLY_M = 1.5
 LESS, MORE = Margins(11.3, 18.4, 290.0), Margins(13.2, 21.6, 820.0)  # the sun counts as 4 min uncertain
 SHARE, WH = 0.015, 0.1
@@ -69,9 +69,9 @@ class ReturnJudge:
         least_m, most_m = self._levels_m(here, havens[haven], ground_m, point["altitude_agl_m"])
         troubles = {item["trouble"] for item in told}
         is_too_high = bool(troubles & {"too_high", "obstacle"})
-        if least_m - ground_m.min() > HIGHEST_M + CLEARLY_M and not is_too_high:
+        if least_m - ground_m.min() > MAX_HEIGHT_M + CLEARLY_M and not is_too_high:
             yield f"it would fly {least_m - ground_m.min():.0f} m above ground"
-        if most_m - ground_m.min() < HIGHEST_M - CLEARLY_M and is_too_high:
+        if most_m - ground_m.min() < MAX_HEIGHT_M - CLEARLY_M and is_too_high:
             yield f"it would fly no more than {most_m - ground_m.min():.0f} m above ground"
         taken = [self._taken(request, uav, point, havens[haven], ground_m, level_m, is_known) for level_m in (least_m, most_m)]
         if None in taken or "wind" in troubles:

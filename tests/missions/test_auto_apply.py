@@ -156,7 +156,7 @@ def test_a_file_that_removes_more_than_the_bound_is_held_back(client: Client) ->
 
 
 def test_the_bound_counts_all_rows_and_not_the_stored_changes(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pipeline, "MOST_CHANGES_KEPT", 1)
+    monkeypatch.setattr(pipeline, "MAX_CHANGES_KEPT", 1)
     masts(client, *row_of_masts(20))
     held = masts(client, *row_of_masts(15))
     assert held["held_back"][0]["message"].startswith("It removes 5 of 20 rows")
@@ -248,7 +248,7 @@ def test_an_openstreetmap_file_that_changes_what_is_flown_is_held_back(client: C
 
 
 def test_changes_after_the_first_that_are_stored_are_looked_at(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pipeline, "MOST_CHANGES_KEPT", 1)
+    monkeypatch.setattr(pipeline, "MAX_CHANGES_KEPT", 1)
     flown_mission(world())
     assert codes(masts(client, *row_of_masts(50), ("Last", *FLOWN))) == ["flown_missions"]
 

@@ -15,7 +15,7 @@ from tests.missions.outbox import a_uav
 from tests.missions.worlds import world
 
 pytestmark = pytest.mark.django_db(transaction=True)
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 def beside(do) -> None:
@@ -34,7 +34,7 @@ def beside(do) -> None:
 
     thread = threading.Thread(target=inside)
     thread.start()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
     if raised:
         raise raised[0]

@@ -33,7 +33,7 @@ from workspace.services import LEASE_S, create_job
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
-PATIENCE_S = 420.0
+TIMEOUT_S = 420.0
 LARGE = 14
 KILLS = 20
 JOBS = 100
@@ -97,7 +97,7 @@ def own_queue() -> Iterator[str]:
         yield queue
 
 
-def wait_until(is_so: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
+def wait_until(is_so: Callable[[], bool], patience_s: float = TIMEOUT_S) -> None:
     end_s = time.monotonic() + patience_s
     while not is_so():
         assert time.monotonic() < end_s, "it never came"

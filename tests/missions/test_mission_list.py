@@ -10,7 +10,7 @@ from django.utils import timezone
 
 from inspection.services import mark_ground_changed
 from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
-from missions.presence import MOST_PAGES
+from missions.presence import MAX_PAGES
 from missions.selectors import mission_of_organisation
 from missions.services import duplicate_mission
 from tests.inspection.ground import line
@@ -321,11 +321,11 @@ def test_the_history_names_what_came_and_went(here: World, client: Client) -> No
 
 def test_one_user_with_ever_new_pages_fills_no_memory(here: World, client: Client) -> None:
     mission = created(client, here, "Shared", plan=False)["id"]
-    for number in range(MOST_PAGES + 3):
+    for number in range(MAX_PAGES + 3):
         post(client, f"missions/{mission}/presence", {"editor": f"page-{number}"})
     kept = cache.get(f"mission-open:{mission}")
-    assert len(kept) == MOST_PAGES
-    assert any(page.endswith(f"page-{MOST_PAGES + 2}") for page in kept)
+    assert len(kept) == MAX_PAGES
+    assert any(page.endswith(f"page-{MAX_PAGES + 2}") for page in kept)
 
 
 def test_without_the_cache_missions_are_listed_and_nobody_is_seen(here: World, client: Client, settings: Any) -> None:

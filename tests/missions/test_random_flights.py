@@ -22,7 +22,7 @@ REAL_REGIONS = ["columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "ne
 ZONE_SETS = 2
 SLICE, SLICES, FIRST_LONG_SEED = 477, 14, 2  # missions of a long slice, slices of a region
 DEPARTURES = 2  # for each set of zones
-ALMOST, MORE, LEAST_WH = 0.9, 1.01, 0.1  # of what is missing, with which it is not done, and is; what is told is rounded
+ALMOST, MORE, MIN_WH = 0.9, 1.01, 0.1  # of what is missing, with which it is not done, and is; what is told is rounded
 OUT_OF_REACH = {"beyond_range", "beyond_energy"}
 SEEN = (
     "inside_zone", "beyond_range", "beyond_energy", "put off or higher", "several flights", "charges", "returns that fail",
@@ -147,8 +147,8 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
     if "charges on the way" in said:  # by way of others there may be more towers to charge at
         asked, target = only, 0
     seen["refusals flown"] += 1
-    half = make_plan(request=first_of_all(asked, target, lacks[0] * ALMOST, lacks[1] * ALMOST - LEAST_WH))
-    whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + LEAST_WH))
+    half = make_plan(request=first_of_all(asked, target, lacks[0] * ALMOST, lacks[1] * ALMOST - MIN_WH))
+    whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + MIN_WH))
     faults = []
     if target not in _left_out(half) and "up to" not in said:
         faults.append(f"target {target} is flown with less than what is missing: {said}")

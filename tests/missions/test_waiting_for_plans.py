@@ -92,7 +92,7 @@ def test_a_plan_that_takes_longer_is_a_job(here: World, client: Client) -> None:
 
 
 def test_nobody_waits_longer_than_the_settings_allow(here: World, client: Client, settings: Any) -> None:
-    settings.LONGEST_WAIT_S = 1.0
+    settings.MAX_WAIT_S = 1.0
     assert wait_with(client, here, nothing, "wait=600")["Preference-Applied"] == "wait=1"
 
 
@@ -112,7 +112,7 @@ def test_when_enough_requests_wait_the_next_is_answered_at_once(here: World, cli
 
 
 def test_a_plan_that_fails_meanwhile_is_answered_as_an_error(here: World, client: Client) -> None:
-    with mock.patch("missions.services.planning.MOST_GROUNDS", 0):
+    with mock.patch("missions.services.planning.MAX_GROUNDS", 0):
         response = wait_with(client, here, tasks.solve_plan, "wait=15")
     assert (response.status_code, response.json()["error"]["code"]) == (503, "graph_outdated")
     assert int(response["Retry-After"]) > 0
@@ -128,7 +128,7 @@ def test_the_same_key_waits_for_the_same_job(here: World, client: Client) -> Non
 
 
 def test_who_has_enough_large_plans_is_told_before_any_work(here: World, client: Client, settings: Any) -> None:
-    settings.MOST_OPEN_PLANS = 2
+    settings.MAX_OPEN_PLANS = 2
     with mock.patch("workspace.tasks.current_app.send_task"):
         assert [post(client, "plans", body(here)).status_code for _ in range(2)] == [202, 202]
         with mock.patch("missions.views.plans.PlanInputSerializer", side_effect=AssertionError("worked on")):
@@ -143,7 +143,7 @@ def test_who_has_enough_large_plans_is_told_before_any_work(here: World, client:
 
 
 def test_a_plan_that_is_made_is_stored_however_many_others_are_open(here: World, client: Client, settings: Any) -> None:
-    settings.MOST_OPEN_PLANS = 2
+    settings.MAX_OPEN_PLANS = 2
     heron = post(client, "uavs", {"name": "Heron", "position": list(UAV_AT)}).json()
     asked = body(here) | {"uavs": [{"id": heron["id"]}]}
     made = post(client, "missions", mission_body(*asked["targets"], uavs=asked["uavs"])).json()
@@ -159,7 +159,7 @@ def test_a_plan_that_is_made_is_stored_however_many_others_are_open(here: World,
 
 
 def test_of_requests_at_the_same_moment_none_gets_past_the_limit(here: World, settings: Any) -> None:
-    settings.MOST_OPEN_PLANS = 1
+    settings.MAX_OPEN_PLANS = 1
     user, statuses = somebody(Role.OPERATOR), []
 
     def ask(client: Client) -> None:

@@ -17,7 +17,7 @@ from tests.missions.worlds import request, uav, world
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
-PLANNERS, LASTS_S, EVERY_S = 4, 20.0, 1.0
+PLANNERS, LASTS_S, INTERVAL_S = 4, 20.0, 1.0
 ON_ITS_WAY_S = 0.05  # an answer that has passed its last look before the save may arrive so much later
 PLACES = ((10.006, 56.0), (10.010, 56.0), (10.014, 56.0), (10.018, 56.0))
 
@@ -50,7 +50,7 @@ def test_no_answer_after_a_save_crosses_the_zone() -> None:
                     saved[-1] = (saved[-1][0], time.monotonic(), saved[-1][2])
                 saved.append((time.monotonic(), float("inf"), zone))
                 number += 1
-                time.sleep(EVERY_S)
+                time.sleep(INTERVAL_S)
         finally:
             over.set()
         for one in running:

@@ -122,7 +122,7 @@ class Answer:
 
 gc.disable()
 left = weakref.ref(Answer())
-garbage.EVERY_S = 0.2
+garbage.INTERVAL_S = 0.2
 held = [bytes(1_000) for _ in range(60_000)]
 last = bytes(1_000)
 most_mib = own_mib()

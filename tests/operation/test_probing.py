@@ -16,7 +16,7 @@ from operation.exposition import Exposition
 from operation.readiness import Readiness
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
-PATIENCE_S = 60
+TIMEOUT_S = 60
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ def told_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -
     assert address is not None
     exposition = Exposition(address, Readiness(lambda: list(faults)))
     exposition.start()
-    assert exposition.listening.wait(PATIENCE_S)
+    assert exposition.listening.wait(TIMEOUT_S)
     yield f"127.0.0.1:{exposition.port}" if request.param == "tcp" else place
     exposition.close()
 
@@ -46,7 +46,7 @@ def told_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -
 def probe(*arguments: str, told_at: str = "") -> tuple[int, str, str]:
     environment = {**os.environ, "SPANWISE_METRICS": told_at}
     command = [sys.executable, "-m", "operation.probe", *arguments]
-    answer = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+    answer = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
     return answer.returncode, answer.stdout.strip(), answer.stderr.strip()
 
 
@@ -97,12 +97,12 @@ def test_an_address_that_somebody_else_holds_is_waited_for() -> None:
         exposition = Exposition(address, Readiness(list))
         exposition.start()
         assert not exposition.listening.wait(0.2)
-    assert exposition.listening.wait(PATIENCE_S)
+    assert exposition.listening.wait(TIMEOUT_S)
     exposition.close()
 
 
 def _get(told_at: str, path: str) -> tuple[int, bytes]:
-    connection = http.client.HTTPConnection("localhost", timeout=PATIENCE_S)
+    connection = http.client.HTTPConnection("localhost", timeout=TIMEOUT_S)
     if told_at.startswith("unix:"):
         connection.sock = socket.socket(socket.AF_UNIX)
         connection.sock.connect(told_at.removeprefix("unix:"))

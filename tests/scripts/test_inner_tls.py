@@ -21,7 +21,7 @@ from scripts.inner_tls import CERTIFICATE, KEY, InnerCertificate, inner_certific
 from scripts.proxy import site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
-from tests.scripts.test_over_http import PATIENCE_S, free_port
+from tests.scripts.test_over_http import TIMEOUT_S, free_port
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 
@@ -60,7 +60,7 @@ def running(*command: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 def wait_until(is_so: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + PATIENCE_S
+    end_s = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < end_s, "it never came"
         time.sleep(0.05)
@@ -76,7 +76,7 @@ def serial_at(port: int) -> int | None:
     context = ssl.create_default_context()
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     try:
-        with socket.create_connection(("127.0.0.1", port), PATIENCE_S) as plain, context.wrap_socket(plain) as shown:
+        with socket.create_connection(("127.0.0.1", port), TIMEOUT_S) as plain, context.wrap_socket(plain) as shown:
             found = shown.getpeercert(binary_form=True)
     except OSError:
         return None
@@ -87,7 +87,7 @@ def serial_at(port: int) -> int | None:
 
 
 def answer(port: int) -> tuple[int, bytes]:
-    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=PATIENCE_S)
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=TIMEOUT_S)
     connection.request("GET", "/")
     told = connection.getresponse()
     return told.status, told.read()

@@ -18,7 +18,7 @@ from scripts.proxy import site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
 
-PATIENCE_S = 60
+TIMEOUT_S = 60
 
 
 def free_port() -> int:
@@ -52,7 +52,7 @@ def port(request: pytest.FixtureRequest) -> Iterator[int]:
     with (folder / "log").open("wb") as log:
         process = subprocess.Popen([nginx, "-e", "stderr", "-c", str(folder / "nginx.conf")], stdout=log, stderr=log)
     try:
-        end_s = time.monotonic() + PATIENCE_S
+        end_s = time.monotonic() + TIMEOUT_S
         while socket.socket().connect_ex(("127.0.0.1", at)) != 0:
             assert process.poll() is None, (folder / "log").read_text()
             assert time.monotonic() < end_s
@@ -73,7 +73,7 @@ def asked(port: int, path: str, *, body: bytes | None = None) -> tuple[int, Mess
     headers = {"Host": "spanwise.example.org", "X-Forwarded-Proto": "http", "Authorization": "Bearer spw_of_somebody"}
     request = urllib.request.Request(f"http://127.0.0.1:{port}{path}", data=body, headers=headers)
     try:
-        with urllib.request.build_opener(_Stays).open(request, timeout=PATIENCE_S) as answer:
+        with urllib.request.build_opener(_Stays).open(request, timeout=TIMEOUT_S) as answer:
             return answer.status, answer.headers, answer.read()
     except urllib.error.HTTPError as error:
         return error.code, error.headers, error.read()

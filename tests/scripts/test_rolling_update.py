@@ -18,7 +18,7 @@ from scripts.proxy import configuration
 from scripts.system_packages import find_program
 from tests.scripts.ports import free_port
 
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 CLIENTS = 4
 
 
@@ -49,10 +49,10 @@ class Site:
         """As the supervisor does, and Kubernetes. Returns how it ended."""
         process = self._processes.pop(name)
         process.terminate()
-        return process.wait(PATIENCE_S)
+        return process.wait(TIMEOUT_S)
 
     def ask(self, path: str, method: str = "GET") -> tuple[int, str]:
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE_S)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=TIMEOUT_S)
         try:
             connection.request(method, path, body=b"{}" if method == "POST" else None)
             answer = connection.getresponse()
@@ -64,7 +64,7 @@ class Site:
         for process in [*self._processes.values(), self._proxy]:
             process.terminate()
         for process in [*self._processes.values(), self._proxy]:
-            process.wait(PATIENCE_S)
+            process.wait(TIMEOUT_S)
 
 
 @pytest.fixture
@@ -80,7 +80,7 @@ def site() -> Iterator[Site]:
 
 
 def wait_for(is_so: Callable[[], bool]) -> None:
-    deadline_s = time.monotonic() + PATIENCE_S
+    deadline_s = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < deadline_s, "it never came"
         time.sleep(0.05)
@@ -120,7 +120,7 @@ def test_no_request_is_lost_while_each_program_is_stopped_and_started_again(site
         wait_for(lambda before=before: answers.total() > before + 20)  # type: ignore[misc]
     is_over.set()
     for thread in threads:
-        thread.join(PATIENCE_S)
+        thread.join(TIMEOUT_S)
     assert ended == [0, 0]
     assert under_way == [(200, "slow"), (200, "slow")]
     assert {key: number for key, number in answers.items() if key[1] != 200} == {}

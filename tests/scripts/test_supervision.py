@@ -107,7 +107,7 @@ def test_a_supervisor_that_was_killed_can_be_started_again(places: Places, super
 
 def test_a_supervisor_that_hangs_is_ended_with_all_it_runs(places: Places, supervisor: Supervisor, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(supervision, "CALL_TIMEOUT_S", 0.5)
-    monkeypatch.setattr(supervision, "PATIENCE_WITH_SUPERVISOR_S", 0.5)
+    monkeypatch.setattr(supervision, "TIMEOUT_WITH_SUPERVISOR_S", 0.5)
     program = _server_with_worker(places)
     supervisor.start([program])
     _wait_until(lambda: len(processes_in([program.folder])) == 2)

@@ -12,7 +12,7 @@ from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch, fleet_of
 
 AT = LonLat(10.4, 55.4)
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 def free_port() -> int:
@@ -30,12 +30,12 @@ def flying(launches: Sequence[Launch], *, speed: float) -> Iterator[Fleet]:
         yield fleet
     finally:
         fleet.end()
-        thread.join(PATIENCE_S)
+        thread.join(TIMEOUT_S)
         fleet.close()
         assert not thread.is_alive(), "the fleet does not end"
 
 
-def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = PATIENCE_S) -> Any:
+def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = TIMEOUT_S) -> Any:
     """What `fact` tells as soon as it is true."""
     until_s = time.monotonic() + patience_s
     while time.monotonic() < until_s:

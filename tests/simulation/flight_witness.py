@@ -13,7 +13,7 @@ from tests.missions.plane import east_north
 PASSED_M = 2.0
 HIT_M = 1.0
 OFF_GROUND_M = 3.0  # higher than that it is not just taking off or landing
-LEAST_TOWER_M = 20.0  # of one whose height nobody has written down
+MIN_TOWER_M = 20.0  # of one whose height nobody has written down
 
 
 def _plane(places: Any, origin: Any) -> Any:
@@ -82,7 +82,7 @@ def _standing(places: Any, hills: Hills) -> list[tuple[Any, Any, Any, str]]:
     """Each tower as a line to itself, and the wires between the towers of a line, with their tops above the sea."""
     (west, south), (east, north) = places.min(axis=0) - 0.01, places.max(axis=0) + 0.01
     towers = {
-        asset.osm_id: (asset.centre.coords, asset.height_m or LEAST_TOWER_M)
+        asset.osm_id: (asset.centre.coords, asset.height_m or MIN_TOWER_M)
         for asset in Asset.objects.filter(kind="tower", vanished_at=None)
         if west <= asset.centre.x <= east and south <= asset.centre.y <= north
     }

@@ -18,7 +18,7 @@ from simulation.flight.ground import FlatGround
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
-from tests.simulation.fleets import AT, PATIENCE_S, flying, free_port, wait_for
+from tests.simulation.fleets import AT, TIMEOUT_S, flying, free_port, wait_for
 
 SPEED = 20.0
 GROUND_M = 40.0
@@ -57,7 +57,7 @@ def station(request) -> Iterator[Station]:
         mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
         try:
             mavsdk.add_any_connection(f"udpin://127.0.0.1:{port}")
-            system = mavsdk.first_autopilot(PATIENCE_S)
+            system = mavsdk.first_autopilot(TIMEOUT_S)
             assert system is not None
             plugins = (plugin(system) for plugin in (Action, Telemetry, Mission, MissionRaw, Param, Info))
             found = Station(fleet, request.param, *plugins)

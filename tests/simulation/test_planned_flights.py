@@ -11,7 +11,7 @@ from tests.telemetry.estimation.routes import lines_of
 
 MOST_TIME, MOST_ENERGY = 0.15, 0.15  # of a flight, either way
 MOST_MEAN = 0.10
-LEAST_BY_TURNS, MOST_BY_TURNS = 0.95, 1.10
+MIN_BY_TURNS, MAX_BY_TURNS = 0.95, 1.10
 SPEEDS_MPS = {"iris": 5.0, "inspector": 10.0}
 
 
@@ -32,7 +32,7 @@ def test_sharp_turns_take_what_was_planned(code: str, speed_mps: float, leg_m: f
     """Right angle after right angle: no more than 5 % too little, by the Iris, and 10 % too much, by the Inspector, which turns faster."""
     found = compared(zigzag(12, leg_m, speed_mps), code, air_of(1, code, CALM), 1, physics_hz=100)
     for ratio in (found.time_ratio, found.energy_ratio):
-        assert LEAST_BY_TURNS <= ratio <= MOST_BY_TURNS
+        assert MIN_BY_TURNS <= ratio <= MAX_BY_TURNS
 
 
 def test_climbs_take_what_was_planned() -> None:

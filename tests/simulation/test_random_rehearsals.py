@@ -10,7 +10,7 @@ from tests.simulation.random_rehearsals import Rehearsed, bring_in_demo_region, 
 
 pytestmark = pytest.mark.django_db
 
-MOST_OFF = 0.05
+MAX_OFF = 0.05
 OPERATORS_CHOICE = "obstacle-column"  # how near to something it takes off: the random places do not look for room
 
 
@@ -19,7 +19,7 @@ def faults_of(found: Rehearsed) -> list[str]:
         f"{finding.level} {finding.code} {dict(finding.facts)}" for finding in found.verdict.findings if finding.code != OPERATORS_CHOICE
     ]
     for kind, ratios in (("time", found.time), ("energy", found.energy)):
-        faults += [f"{kind} planned for flown {ratio:.3f}" for ratio in ratios if abs(ratio - 1.0) > MOST_OFF]
+        faults += [f"{kind} planned for flown {ratio:.3f}" for ratio in ratios if abs(ratio - 1.0) > MAX_OFF]
     return faults
 
 

@@ -129,7 +129,7 @@ def test_one_that_waits_is_cancelled_at_once(mission: Mission, person: User) -> 
 
 
 def test_nobody_has_more_open_than_allowed(mission: Mission, person: User, settings) -> None:
-    settings.MOST_OPEN_REHEARSALS = 1
+    settings.MAX_OPEN_REHEARSALS = 1
     client = client_of(person)
     assert post(client, path(mission)).status_code == 202
     assert post(client, path(mission)).status_code == 429

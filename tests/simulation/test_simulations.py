@@ -98,7 +98,7 @@ def test_a_uav_is_stood_in_for_by_one_at_a_time(person, mission):
 
 
 def test_an_organisation_has_so_many_at_once(settings, person):
-    settings.MOST_SIMULATED_UAVS = 3
+    settings.MAX_SIMULATED_UAVS = 3
     first = pool(person, 2)
     with pytest.raises(QuotaReached) as reached:
         pool(person, 2)
@@ -109,7 +109,7 @@ def test_an_organisation_has_so_many_at_once(settings, person):
 
 
 def test_what_has_outlived_its_time_counts_no_more(settings, person):
-    settings.MOST_SIMULATED_UAVS = 2
+    settings.MAX_SIMULATED_UAVS = 2
     first = pool(person, 2)
     type(first).objects.update(lifetime_ends_at=LONG_AGO)
     assert pool(person, 2)
@@ -127,7 +127,7 @@ def test_each_has_a_port_of_its_own_that_is_free_again_afterwards(settings, pers
 
 
 def test_no_simulation_lasts_longer_than_the_setting_says(settings, person):
-    settings.LONGEST_SIMULATION_H = 0.5
+    settings.MAX_SIMULATION_H = 0.5
     simulation = pool(person, lifetime_s=86_400.0)
     assert (simulation.lifetime_ends_at - fresh(simulation).created_at).total_seconds() == pytest.approx(1_800, abs=5)
 

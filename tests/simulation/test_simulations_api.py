@@ -102,7 +102,7 @@ def test_a_uav_of_the_fleet_is_not_of_the_pool_and_the_way_is_told(client):
 
 
 def test_the_quota_is_told(settings, client):
-    settings.MOST_SIMULATED_UAVS = 1
+    settings.MAX_SIMULATED_UAVS = 1
     told = error(post(client, "simulations", {"uavs": [{"position": HERE}] * 2}), 429)
     assert told["code"] == "too_many_simulated_uavs"
     assert "1" in told["message"]

@@ -20,7 +20,7 @@ from tests.missions.flights import approved, fleet, ground
 from tests.missions.worlds import world
 from tests.simulation.simulations import fresh, pool, stand_ins
 from tests.telemetry.gateway.program import PROJECT_DIR, environment, free_port, gateway_program
-from tests.telemetry.gateway.station import PATIENCE_S, wait_for
+from tests.telemetry.gateway.station import TIMEOUT_S, wait_for
 from tests.telemetry.watch.program import watch_program
 from tests.workspace.people import somebody
 
@@ -36,7 +36,7 @@ def simulator_program(gateway_port: int, log_dir: Path, *, name: str = "test") -
         process = subprocess.Popen(  # noqa: S603
             command, cwd=PROJECT_DIR, env=environment(log_dir), stdout=subprocess.PIPE, stderr=log, text=True
         )
-        timer = threading.Timer(3 * PATIENCE_S, process.kill)
+        timer = threading.Timer(3 * TIMEOUT_S, process.kill)
         timer.start()
         try:
             assert process.stdout is not None

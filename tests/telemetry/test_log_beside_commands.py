@@ -14,7 +14,7 @@ from telemetry.services import store_records
 from tests.telemetry.flown_missions import flies_route
 from tests.telemetry.records import record
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 @pytest.mark.django_db(transaction=True)
@@ -31,8 +31,8 @@ def test_a_report_is_stored_while_its_mission_is_held():
         held_mission(mission.pk, None)
         thread = threading.Thread(target=report)
         thread.start()
-        thread.join(PATIENCE_S)
+        thread.join(TIMEOUT_S)
         is_stored = not thread.is_alive()
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert is_stored
     assert TelemetryRecord.objects.get().mission == mission

@@ -14,7 +14,7 @@ from tests.missions.outbox import a_uav
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 WAITS = "SELECT EXISTS (SELECT FROM pg_locks WHERE NOT granted AND locktype IN ('transactionid', 'tuple'))"
 
 
@@ -25,7 +25,7 @@ def somebody_waits_for_a_row() -> bool:
 
 
 def until(fact: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + PATIENCE_S
+    end_s = time.monotonic() + TIMEOUT_S
     while not fact():
         assert time.monotonic() < end_s
         time.sleep(0.01)
@@ -52,9 +52,9 @@ def test_a_name_is_changed_between_a_report_that_points_at_the_uav_and_its_new_p
 
     thread = threading.Thread(target=stores)
     thread.start()
-    assert has_pointed.wait(PATIENCE_S)
+    assert has_pointed.wait(TIMEOUT_S)
     change_uav(uav=uav, actor=actor, position=None, values={"name": "Kite 2", "mavlink_system_id": 77})
-    thread.join(PATIENCE_S)
+    thread.join(TIMEOUT_S)
     assert faults == []
     found = Uav.objects.get(pk=uav.pk)
     assert (found.name, found.location.x) == ("Kite 2", 11.0)

@@ -10,7 +10,7 @@ from typing import Any
 from urllib.parse import quote, urlencode
 from uuid import UUID
 
-MOST_DEPTH = 6
+MAX_DEPTH = 6
 BROKEN_SHARE = 0.15  # of values, by something that is not described
 LEFT_OUT_SHARE = 0.5  # of what may be left out
 ODD: tuple[Any, ...] = (
@@ -112,7 +112,7 @@ class Maker:
             case "object":
                 return self._object(schema, depth)
             case "array":
-                most = min(schema.get("maxItems", 4), 4) if depth < MOST_DEPTH else 0
+                most = min(schema.get("maxItems", 4), 4) if depth < MAX_DEPTH else 0
                 count = chance.randint(min(schema.get("minItems", 0), 4), max(most, schema.get("minItems", 0)))
                 return [self._value(schema.get("items", {}), depth + 1) for _ in range(min(count, 6))]
             case "integer":
@@ -132,7 +132,7 @@ class Maker:
         required = set(schema.get("required", []))
         made = {}
         for name, inner in schema.get("properties", {}).items():
-            if name in required or (depth < MOST_DEPTH and self._chance.random() > LEFT_OUT_SHARE):
+            if name in required or (depth < MAX_DEPTH and self._chance.random() > LEFT_OUT_SHARE):
                 known = self._known(name) if self._chance.random() < 0.3 else None
                 made[name] = self._value(inner, depth + 1) if known is None else known
         if self._chance.random() < BROKEN_SHARE / 3:

@@ -28,7 +28,7 @@ from scripts.system_packages import find_program
 from tests.workspace.people import client_of
 from workspace.models import User
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Door:
             headers.append(f"Authorization: Bearer {token}")
         return create_connection(
             f"ws://127.0.0.1:{self.port}{path}",
-            timeout=PATIENCE_S,
+            timeout=TIMEOUT_S,
             header=headers,
             origin=f"http://127.0.0.1:{self.port}" if origin == "" else origin,
             suppress_origin=origin is None,
@@ -60,7 +60,7 @@ class Door:
     def is_open(self) -> bool:
         """Whether the program behind it answers."""
         try:
-            with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/ws/jobs/{uuid4()}", timeout=PATIENCE_S):
+            with urllib.request.urlopen(f"http://127.0.0.1:{self.port}/ws/jobs/{uuid4()}", timeout=TIMEOUT_S):
                 return False
         except urllib.error.HTTPError as error:
             return error.code == 426
@@ -88,7 +88,7 @@ def redis_at(path: Path) -> list[str]:
     return [program, "--port", "0", "--unixsocket", str(path), "--save", "", "--logfile", "/dev/null"]
 
 
-def wait_until(is_so: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
+def wait_until(is_so: Callable[[], bool], patience_s: float = TIMEOUT_S) -> None:
     end_s = time.monotonic() + patience_s
     while not is_so():
         assert time.monotonic() < end_s, "it never came"

@@ -10,7 +10,7 @@ from django.test import Client
 from django.utils import timezone
 
 from tests.workspace.people import client_of, somebody
-from workspace.accounts import MOST_TOKENS, make_token
+from workspace.accounts import MAX_TOKENS, make_token
 from workspace.models import ApiToken, AuditEntry, Role, SignInEntry, User
 from workspace.services import create_api_token
 
@@ -177,7 +177,7 @@ def test_a_token_without_a_name_or_an_end_is_refused(client: Client, body: dict[
 
 
 def test_there_is_an_end_to_tokens(client: Client, user: User) -> None:
-    for number in range(MOST_TOKENS):
+    for number in range(MAX_TOKENS):
         make_token(user=user, name=f"{number}", days=1)
     assert post(client, "tokens", name="one more").status_code == 409
     client.delete(f"/api/v1/account/tokens/{ApiToken.objects.earliest('pk').pk}")

@@ -17,7 +17,7 @@ from workspace.services import LEASE_S, JobCancelled, cancel_job, create_job, fi
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 OFTEN_S = 0.02
 Found = TypeVar("Found")
 
@@ -32,7 +32,7 @@ def job() -> Job:
 
 
 def wait_until(is_so: Callable[[], bool]) -> None:
-    end = time.monotonic() + PATIENCE_S
+    end = time.monotonic() + TIMEOUT_S
     while not is_so():
         assert time.monotonic() < end, "it never came"
         time.sleep(OFTEN_S)
@@ -92,7 +92,7 @@ def test_a_wish_to_stop_reaches_the_work_at_its_next_look_and_nothing_is_written
     with pytest.raises(JobCancelled), JobWatch(job, interval_s=OFTEN_S) as watch, transaction.atomic():
         somebody()  # a row of the work
         elsewhere(lambda: cancel_job(job=job))
-        end = time.monotonic() + PATIENCE_S
+        end = time.monotonic() + TIMEOUT_S
         while time.monotonic() < end:
             watch.progress("writing", 0.5)
             time.sleep(OFTEN_S)
@@ -103,7 +103,7 @@ def test_a_wish_to_stop_reaches_the_work_at_its_next_look_and_nothing_is_written
 def test_a_job_that_another_worker_took_over_is_stopped(job: Job) -> None:
     with pytest.raises(JobCancelled), JobWatch(job, interval_s=OFTEN_S) as watch:
         Job.objects.update(attempts=2)
-        end = time.monotonic() + PATIENCE_S
+        end = time.monotonic() + TIMEOUT_S
         while time.monotonic() < end:
             watch.check()
             time.sleep(OFTEN_S)

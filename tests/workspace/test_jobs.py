@@ -17,7 +17,7 @@ from workspace.models import Job, JobState, Organisation, Role, User
 from workspace.services import (
     LEASE_S,
     MAX_ATTEMPTS,
-    QUEUE_PATIENCE_S,
+    QUEUE_TIMEOUT_S,
     JobCancelled,
     JobLost,
     cancel_is_requested,
@@ -51,7 +51,7 @@ def lose(job: Job) -> None:
 
 
 def grow_old(job: Job) -> None:
-    Job.objects.filter(pk=job.pk).update(created_at=timezone.now() - timedelta(seconds=QUEUE_PATIENCE_S + 1))
+    Job.objects.filter(pk=job.pk).update(created_at=timezone.now() - timedelta(seconds=QUEUE_TIMEOUT_S + 1))
 
 
 def state(job: Job) -> str:

@@ -18,7 +18,7 @@ from asgiref.sync import async_to_sync
 from django.utils import timezone
 from websocket import WebSocket, WebSocketBadStatusException
 
-from tests.workspace.front_door import PATIENCE_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
+from tests.workspace.front_door import TIMEOUT_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
 from tests.workspace.people import somebody
 from workspace import live as words
 from workspace.browser_sessions import end_session
@@ -186,14 +186,14 @@ def test_nobody_waits_for_a_redis_that_does_not_answer(
         settings.CHANNEL_LAYERS = {"default": layer | {"CONFIG": layer["CONFIG"] | {"hosts": [{"address": address}]}}}
         saying = threading.Thread(target=words.publish_job, args=[uuid4()], daemon=True)
         saying.start()
-        saying.join(PATIENCE_S)
+        saying.join(TIMEOUT_S)
         assert not saying.is_alive()
     assert "Redis is away" in caplog.text
 
 
 def test_plain_http_is_told_to_upgrade(here: Door) -> None:
     with pytest.raises(urllib.error.HTTPError) as caught:
-        urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=PATIENCE_S)
+        urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=TIMEOUT_S)
     assert caught.value.code == 426
     assert json.loads(caught.value.read())["error"]["code"] == "upgrade_required"
 
@@ -202,7 +202,7 @@ def test_without_the_program_the_door_says_try_again(here: Door) -> None:
     (here.folder / "live.sock").rename(here.folder / "away.sock")
     try:
         with pytest.raises(urllib.error.HTTPError) as caught:
-            urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=PATIENCE_S)
+            urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=TIMEOUT_S)
         assert (caught.value.code, int(caught.value.headers["Retry-After"]) > 0) == (503, True)
     finally:
         (here.folder / "away.sock").rename(here.folder / "live.sock")

@@ -27,7 +27,7 @@ from workspace.models import Role, User
 from workspace.services import create_api_token
 
 PASSWORD = "inspect-the-lines-8"
-PATIENCE_S = 60
+TIMEOUT_S = 60
 
 
 @pytest.fixture
@@ -105,7 +105,7 @@ def _a_day() -> dict[str, str]:
     Client(enforce_csrf_checks=True).post(f"/invitation/{secrets['invitation']}", {"username": "x"})
 
     Client().post("/lost-password", {"email": "vera@example.org"})
-    deadline_s = time.monotonic() + PATIENCE_S  # mails go out beside the answer
+    deadline_s = time.monotonic() + TIMEOUT_S  # mails go out beside the answer
     while not mail.outbox and time.monotonic() < deadline_s:
         time.sleep(0.01)
     link = re.search(r"/new-password/(\S+)", mail.outbox[-1].body)

@@ -23,8 +23,8 @@ from deploy.load.kept_connections import keep_all_connections
 from deploy.load.trust import trusting
 
 LATER = {0, 408, 425, 429, 502, 503, 504}
-PATIENCE_S = 60.0
-FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 5.0
+TIMEOUT_S = 60.0
+FIRST_PAUSE_S, MAX_PAUSE_S = 0.5, 5.0
 FORM_TOKEN = re.compile(rb'name="csrfmiddlewaretoken" value="([^"]+)"')
 UNSAFE = {"POST", "PATCH", "PUT", "DELETE"}
 trusted = trusting(os.environ.get("SPANWISE_DAY_AUTHORITY") or None)
@@ -58,7 +58,7 @@ class Client(FastHttpUser):
         *,
         ok: Collection[int] = (200,),
         key: str = "",
-        patience_s: float = PATIENCE_S,
+        patience_s: float = TIMEOUT_S,
         **headers: str,
     ) -> Any:
         """`ok` are statuses that are right here. A POST is given a key of its own, if it has none."""
@@ -86,7 +86,7 @@ class Client(FastHttpUser):
                 self.book.note(kinds.RETRIED, name=name, why=why)
                 asked_s = float(answer.headers.get("Retry-After", "0") or 0) if answer.headers else 0.0
             gevent.sleep(min(max(asked_s, pause_s), 30.0))
-            pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
+            pause_s = min(2 * pause_s, MAX_PAUSE_S)
 
     def headers_for(self, method: str) -> dict[str, str]:
         return {}
@@ -125,8 +125,8 @@ class Browser(Client):
     def sign_in(self) -> None:
         """With the page and its form, from the beginning where the site says that it cannot just now."""
         began_s = time.monotonic()
-        while not self._is_let_in(time.monotonic() - began_s < PATIENCE_S):
-            gevent.sleep(LONGEST_PAUSE_S)
+        while not self._is_let_in(time.monotonic() - began_s < TIMEOUT_S):
+            gevent.sleep(MAX_PAUSE_S)
 
     def _is_let_in(self, may_try_again: bool) -> bool:
         page = self.ask("GET", "/sign-in", "sign in: page")

@@ -18,10 +18,10 @@ from deploy.load.day.client import Bearer, GaveUp
 from deploy.load.day.site import Desk
 from examples.companion.content import content_sha256
 
-RECORD_EVERY_S, REPORT_EVERY_S, POLL_EVERY_S = 1.0, 10.0, 5.0
+RECORD_INTERVAL_S, REPORT_INTERVAL_S, POLL_INTERVAL_S = 1.0, 10.0, 5.0
 FLIGHT_S = 40.0
 TWICE, LATE = 0.03, 0.03  # of batches
-MOST_AT_ONCE = 500
+MAX_CONCURRENT = 500
 _numbers = count()
 
 
@@ -43,22 +43,22 @@ class Companion(Bearer):
         self.lands_at_s = 0.0
         self.flying: dict[str, Any] | None = None
         self.record_at_s = self.poll_at_s = time.monotonic()
-        self.report_at_s = self.record_at_s + self.draw.uniform(0.0, REPORT_EVERY_S)
+        self.report_at_s = self.record_at_s + self.draw.uniform(0.0, REPORT_INTERVAL_S)
 
     def step(self) -> None:
         """What is due now, and a short sleep."""
         now_s = time.monotonic()
         while self.record_at_s <= now_s:
-            self.record_at_s += RECORD_EVERY_S
+            self.record_at_s += RECORD_INTERVAL_S
             self.measure()
         try:
             if now_s >= self.poll_at_s:
-                self.poll_at_s = now_s + POLL_EVERY_S
+                self.poll_at_s = now_s + POLL_INTERVAL_S
                 self.poll()
             if self.flying is not None and now_s >= self.lands_at_s:
                 self.tell_results()
             if now_s >= self.report_at_s:
-                self.report_at_s = now_s + REPORT_EVERY_S
+                self.report_at_s = now_s + REPORT_INTERVAL_S
                 self.report()
         except GaveUp:
             pass  # it is counted; everything is kept and sent again
@@ -75,7 +75,7 @@ class Companion(Bearer):
         })  # fmt: skip
 
     def report(self) -> None:
-        sent = self.journal[:MOST_AT_ONCE]
+        sent = self.journal[:MAX_CONCURRENT]
         chance = self.draw.random()
         if chance < LATE and not self.held_back:
             self.held_back, self.journal = sent, self.journal[len(sent) :]

@@ -25,7 +25,7 @@ from deploy.load.day.site import InAir, Site
 from mavlink.signing import FrameWriter
 
 IN_MISSION, BY_HAND = 4 << 16 | 4 << 24, 3 << 16  # PX4's custom modes: automatic, mission; position
-BY_HAND_EVERY_S, BY_HAND_FOR_S = 900, 12
+BY_HAND_INTERVAL_S, BY_HAND_FOR_S = 900, 12
 PER_DEGREE = 1e7
 M_PER_DEG = 111_195.0
 ARMED_IN_AUTO = 209  # base mode
@@ -64,7 +64,7 @@ class Flying:
     def frames(self, boot_ms: int) -> list[bytes]:
         lon, lat, height_m = self.at()
         seconds = boot_ms // 1000 + self.number * 7
-        mode = BY_HAND if seconds % BY_HAND_EVERY_S < BY_HAND_FOR_S else IN_MISSION
+        mode = BY_HAND if seconds % BY_HAND_INTERVAL_S < BY_HAND_FOR_S else IN_MISSION
         position = mavlink.MAVLink_global_position_int_message(
             boot_ms, round(lat * PER_DEGREE), round(lon * PER_DEGREE), round((self.uav.ground_amsl_m + height_m) * 1000),
             round(height_m * 1000), 0, round(self.speed_mps * 100), 0, 9_000,

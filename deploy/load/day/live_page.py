@@ -14,7 +14,7 @@ from deploy.load.day import book as kinds
 from deploy.load.day.book import Book
 
 SILENT_S = 45.0  # the server says every 20 s that it is still there
-FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.25, 5.0
+FIRST_PAUSE_S, MAX_PAUSE_S = 0.25, 5.0
 TABLES = ("uavs", "missions", "alerts", "commands", "offers")
 
 
@@ -45,7 +45,7 @@ class LivePage:
                     pause_s = FIRST_PAUSE_S
                 except (OSError, WebSocketException):
                     gevent.sleep(pause_s)
-                    pause_s = min(2 * pause_s, LONGEST_PAUSE_S)
+                    pause_s = min(2 * pause_s, MAX_PAUSE_S)
         finally:
             self.book.note(kinds.WATCHED, by=self.by, path=self.path, messages=self.messages, gaps=self.gaps, opened=self.opened)
 

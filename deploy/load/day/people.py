@@ -12,7 +12,7 @@ from deploy.load.day import book as kinds
 from deploy.load.day.client import Bearer, Browser, GaveUp, trusted
 from deploy.load.day.live_page import LivePage
 
-JOB_EVERY_S, JOB_WITHIN_S = 1.0, 180.0
+JOB_INTERVAL_S, JOB_WITHIN_S = 1.0, 180.0
 LARGE_PLAN = 16  # targets: above 12 a worker plans
 _turns = count()
 
@@ -91,8 +91,8 @@ class PlansMissions(Person):
         self.book.note(kinds.JOB, id=job)
         waited_s = 0.0
         while waited_s < JOB_WITHIN_S:
-            gevent.sleep(JOB_EVERY_S)
-            waited_s += JOB_EVERY_S
+            gevent.sleep(JOB_INTERVAL_S)
+            waited_s += JOB_INTERVAL_S
             told = self.get(f"jobs/{job}", "plan: job")
             if told["state"] in {"done", "failed", "cancelled"}:
                 break

@@ -9,7 +9,7 @@ from scipy.stats import t as student
 S_PER_H = 3_600.0
 GROWS, FLAT, NOT_DECIDED = "grows", "flat", "not decided"
 SURE = 0.95
-MOST_HANGING = 0.98
+MAX_HANGING = 0.98
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def slope(at_s: NDArray[np.float64], values: NDArray[np.float64]) -> Slope:
     rest = values - mean - steepness * hours
     power = float((rest**2).sum())
     hanging = float((rest[1:] * rest[:-1]).sum()) / power if power > 0 else 0.0
-    hanging = min(max(hanging, 0.0), MOST_HANGING)
+    hanging = min(max(hanging, 0.0), MAX_HANGING)
     independent = max(len(values) * (1.0 - hanging) / (1.0 + hanging), 3.0)
     error = float(np.sqrt(power / (independent - 2.0) / spread))
     errors = float(student.ppf(0.5 + SURE / 2.0, independent - 2.0))

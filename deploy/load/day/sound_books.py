@@ -9,7 +9,7 @@ from missions.services.approval_document import content_sha256
 
 STUCK_AFTER_S = 90.0  # the sweep comes each second or so, leases are 15 to 30 s, and a new try may need a worker that starts
 MOST = 20  # violations of one kind that are told
-MOST_APPROVALS = 2_000
+MAX_APPROVALS = 2_000
 
 Check = Callable[[], list[str]]
 
@@ -75,7 +75,7 @@ def no_mission_of_two_plans() -> list[str]:
 
 def approvals_are_what_their_hashes_say() -> list[str]:
     """The newest ones: each document anew."""
-    newest = Approval.objects.order_by("-approved_at")[:MOST_APPROVALS]
+    newest = Approval.objects.order_by("-approved_at")[:MAX_APPROVALS]
     return [f"approval {one.pk} has another hash than its document" for one in newest if content_sha256(one.document) != one.content_sha256]
 
 

@@ -28,7 +28,7 @@ _SAMPLE_ROWS = 20
 _DELIMITERS = ";,\t|"
 _NUMBER = re.compile(r"[+-]?\d{1,12}(?:\.\d{0,20})?(?:[eE][+-]?\d{1,2})?", re.ASCII)
 _WKT = re.compile(r"\s*(?:SRID=\d{1,6};)?\s*((MULTI)?(POINT|LINESTRING|POLYGON))(\s+Z?M?)?\s*\(", re.IGNORECASE)
-_DEEPEST_WKT = 3
+_MAX_WKT_DEPTH = 3
 _LON = ("lon", "lng", "long", "longitude", "longitud", "lon_wgs84", "laenge", "länge", "x", "x_coord", "easting", "ost", "rechtswert", "e")
 _LAT = ("lat", "latitude", "latitud", "lat_wgs84", "breite", "y", "y_coord", "northing", "nord", "hochwert", "n")
 _WKT_NAMES = ("wkt", "geom", "geometry", "the_geom", "geometrie", "shape", "wkt_geom")
@@ -189,7 +189,7 @@ def _geometry_of_wkt(text: str, place: str) -> dict[str, Any] | GeometryFault:
     for character in re.sub(r"[^()]", "", text):
         depth += 1 if character == "(" else -1
         deepest = max(deepest, depth)
-    if match is None or depth != 0 or deepest > _DEEPEST_WKT:
+    if match is None or depth != 0 or deepest > _MAX_WKT_DEPTH:
         return GeometryFault(place, f"{text[: min(40, MAX_TEXT)]!r} is no point, line or area as WKT")
     try:
         geometry = shapely.from_wkt(text[match.start(1) :])

@@ -10,9 +10,9 @@ from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.rows import MAX_ROW_CHARACTERS, AssetFileError, Columns, RawRow, Source, plain_cell, refused
 
 _CHUNK = 64 * 1024
-_LONGEST_TOKEN = 256 * 1024  # bytes of one tag or comment
+_MAX_TOKEN_LENGTH = 256 * 1024  # bytes of one tag or comment
 _DEEPEST = 64
-_MOST_GEOMETRIES = 10_000  # of one placemark
+_MAX_GEOMETRIES = 10_000  # of one placemark
 _SHAPES = {"Point", "LineString", "LinearRing", "Polygon", "Model", "Track"}
 _FACTS = {"name", "description", "address", "phoneNumber"}
 _BLANK = re.compile(r"\s+")
@@ -32,7 +32,7 @@ def _rows(opened: Opener) -> Iterator[RawRow]:
         while chunk := file.read(_CHUNK):
             reader.feed(chunk)
             fed += len(chunk)
-            if fed - reader.parser.CurrentByteIndex > _LONGEST_TOKEN:
+            if fed - reader.parser.CurrentByteIndex > _MAX_TOKEN_LENGTH:
                 raise refused(reader.here(), "a tag or comment does not end")
             yield from reader.take()
         reader.feed(b"", is_last=True)
@@ -157,8 +157,8 @@ class _Reader:
         return positions
 
     def _finish_shape(self, name: str, parent: str) -> None:
-        if len(self._shapes) >= _MOST_GEOMETRIES or len(self._rings) >= _MOST_GEOMETRIES:
-            raise refused(self._place, f"the placemark has more than {_MOST_GEOMETRIES} geometries")
+        if len(self._shapes) >= _MAX_GEOMETRIES or len(self._rings) >= _MAX_GEOMETRIES:
+            raise refused(self._place, f"the placemark has more than {_MAX_GEOMETRIES} geometries")
         if name == "LinearRing" and parent in {"outerBoundaryIs", "innerBoundaryIs"}:
             if parent == "outerBoundaryIs":
                 self._rings.insert(0, self._coordinates)

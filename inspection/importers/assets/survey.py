@@ -13,8 +13,8 @@ from inspection.importers.assets.asset_file import Row, Shape
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.rows import Cell
 
-MOST_SAMPLES = 5
-MOST_VALUES = 50  # different values that are counted of a column; one with more tells no kinds apart
+MAX_SAMPLES = 5
+MAX_VALUES = 50  # different values that are counted of a column; one with more tells no kinds apart
 PREVIEW_ROWS = 500
 PREVIEW_VERTICES = 20_000
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}([T ].*)?|\d{1,2}\.\d{1,2}\.\d{4}")
@@ -34,11 +34,11 @@ class ColumnSurvey:
             return
         self.filled += 1
         self.types[_type_of(value)] += 1
-        if len(self.samples) < MOST_SAMPLES and value not in self.samples:
+        if len(self.samples) < MAX_SAMPLES and value not in self.samples:
             self.samples.append(value)
         if self.values is not None:
             self.values[str(value)] += 1
-            if len(self.values) > MOST_VALUES:
+            if len(self.values) > MAX_VALUES:
                 self.values = None
 
     @property

@@ -15,9 +15,9 @@ from inspection.importers.terrain.tiff_directory import TiffDirectory
 from inspection.importers.terrain.tiff_unpacking import NAMES, NONE, READ, unpacked_part, without_predictor
 from inspection.importers.terrain.vertical_datum import datum_of_codes, metres_of_unit, refuse_if_ellipsoidal
 
-MOST_POSTS = 200_000_000
-MOST_PARTS = 1_000_000
-MOST_PART_BYTES = 16 * 1024 * 1024  # unpacked
+MAX_POSTS = 200_000_000
+MAX_PARTS = 1_000_000
+MAX_PART_BYTES = 16 * 1024 * 1024  # unpacked
 KEPT_BYTES = 48 * 1024 * 1024  # of unpacked parts
 _WIDTH, _LENGTH, _BITS, _COMPRESSION, _OFFSETS, _SAMPLES, _ROWS_PER_STRIP, _COUNTS = 256, 257, 258, 259, 273, 277, 278, 279
 _PREDICTOR, _TILE_WIDTH, _TILE_LENGTH, _TILE_OFFSETS, _TILE_COUNTS, _FORMAT = 317, 322, 323, 324, 325, 339
@@ -114,10 +114,8 @@ class GeoTiff:
     def _check_size(self) -> None:
         if self.width < 2 or self.height < 2:
             raise TerrainFileError("The GeoTIFF has fewer than two rows or columns.")
-        if self.width * self.height > MOST_POSTS:
-            raise TerrainFileError(
-                f"The GeoTIFF has {self.width} × {self.height} posts; at most {MOST_POSTS} are taken. Cut it into parts."
-            )
+        if self.width * self.height > MAX_POSTS:
+            raise TerrainFileError(f"The GeoTIFF has {self.width} × {self.height} posts; at most {MAX_POSTS} are taken. Cut it into parts.")
         bands = self._tags.number(_SAMPLES, 1)
         if bands != 1:
             raise TerrainFileError(f"A terrain model has one band; this file has {bands}.")
@@ -159,17 +157,17 @@ class GeoTiff:
         row_bytes = self._part_columns * self._dtype.itemsize
         self._parts_across = -(-self.width // self._part_columns)
         number = self._parts_across * -(-self.height // self._part_rows)
-        if number > MOST_PARTS:
-            raise TerrainFileError(f"The GeoTIFF is cut into {number} parts; at most {MOST_PARTS} are read.")
-        self._offsets = tags.numbers(_TILE_OFFSETS if self._is_tiled else _OFFSETS, MOST_PARTS).astype(np.int64)
-        self._counts = tags.numbers(_TILE_COUNTS if self._is_tiled else _COUNTS, MOST_PARTS).astype(np.int64)
+        if number > MAX_PARTS:
+            raise TerrainFileError(f"The GeoTIFF is cut into {number} parts; at most {MAX_PARTS} are read.")
+        self._offsets = tags.numbers(_TILE_OFFSETS if self._is_tiled else _OFFSETS, MAX_PARTS).astype(np.int64)
+        self._counts = tags.numbers(_TILE_COUNTS if self._is_tiled else _COUNTS, MAX_PARTS).astype(np.int64)
         if len(self._offsets) != number or len(self._counts) != number:
             raise TerrainFileError(f"The GeoTIFF should have {number} parts and lists {min(len(self._offsets), len(self._counts))}.")
-        if row_bytes * self._part_rows > MOST_PART_BYTES:
-            if self._is_tiled or self._compression != NONE or row_bytes > MOST_PART_BYTES:
+        if row_bytes * self._part_rows > MAX_PART_BYTES:
+            if self._is_tiled or self._compression != NONE or row_bytes > MAX_PART_BYTES:
                 size_mib = row_bytes * self._part_rows / 2**20
                 raise TerrainFileError(
-                    f"The GeoTIFF is packed in parts of {size_mib:.0f} MiB; at most {MOST_PART_BYTES // 2**20} MiB are unpacked at once. "
+                    f"The GeoTIFF is packed in parts of {size_mib:.0f} MiB; at most {MAX_PART_BYTES // 2**20} MiB are unpacked at once. "
                     "Write it in tiles first: gdal_translate -co TILED=YES"
                 )
             self._cut_strips(row_bytes)

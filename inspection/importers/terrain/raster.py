@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.terrain.height_grid import BLOCK_SIZE, HIGHEST_M, LOWEST_M, HeightGrid
+from inspection.terrain.height_grid import BLOCK_SIZE, MAX_HEIGHT_M, MIN_HEIGHT_M, HeightGrid
 
 
 class Kind(IntEnum):
@@ -67,7 +67,7 @@ def window_of(raw: NDArray[np.generic], declared_void: float | None, *, scale: f
         if declared_void is not None:
             declared = np.isnan(values) if np.isnan(declared_void) else _is_void(raw, values, declared_void)
         heights = values * scale + offset_m
-        undeclared = ~((heights >= LOWEST_M) & (heights <= HIGHEST_M)) & ~declared
+        undeclared = ~((heights >= MIN_HEIGHT_M) & (heights <= MAX_HEIGHT_M)) & ~declared
         kinds = np.where(declared, Kind.DECLARED_VOID, np.where(undeclared, Kind.UNDECLARED_VOID, Kind.HEIGHT)).astype(np.uint8)
         metres = heights.astype(np.float32)
     metres[kinds != Kind.HEIGHT] = np.nan

@@ -10,13 +10,13 @@ from pyproj.transformer import TransformerGroup
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
 from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.geotiff import MOST_POSTS, GeoTiff
+from inspection.importers.terrain.geotiff import MAX_POSTS, GeoTiff
 from inspection.importers.terrain.raster import Kind, Raster, Window
 from inspection.terrain.height_grid import HeightGrid
 
 SAME_DEG = 2e-5  # some 2 m: ETRS89 and its like are taken for WGS 84
 DEGREE_M = 111_320.0  # of latitude
-MOST_AT_ONCE = 4_000_000  # posts of the file under one block
+MAX_CONCURRENT = 4_000_000  # posts of the file under one block
 _EDGE_PLACES = 41
 _NEXT_TO_POLE = 0.05  # cosine of the latitude at which steps in longitude stop growing
 _WGS84 = CRS.from_epsg(4326)
@@ -50,7 +50,7 @@ class SampledAnew:
         self.west_deg, self.north_deg = float(west), float(north)
         self.width = int((east - west) / self.step_lon_deg) + 2
         self.height = int((north - south) / self.step_lat_deg) + 2
-        if self.width * self.height > 2 * MOST_POSTS:
+        if self.width * self.height > 2 * MAX_POSTS:
             raise TerrainFileError("In longitude and latitude the GeoTIFF would have too many posts. Cut it into parts.")
 
     def window(self, row: int, column: int, rows: int, columns: int) -> Window:
@@ -75,7 +75,7 @@ class SampledAnew:
         left, top = np.clip(np.floor(at.min(axis=0)), 0, None).astype(int).tolist()
         right, bottom = np.minimum(np.floor(at.max(axis=0)).astype(int) + 1, [self._tiff.width - 1, self._tiff.height - 1]).tolist()
         rows, columns = bottom - top + 1, right - left + 1
-        if rows * columns > MOST_AT_ONCE:
+        if rows * columns > MAX_CONCURRENT:
             raise TerrainFileError("The GeoTIFF's system is too distorted here. Convert it first: gdalwarp -t_srs EPSG:4326")
         window = self._tiff.window(top, left, rows, columns)
         heights = HeightGrid(left, -top, 1.0, 1.0, window.heights_m).sample(at * [1.0, -1.0])

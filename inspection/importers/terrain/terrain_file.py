@@ -25,10 +25,10 @@ VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
 VOID = -32768
 SIZES = {1201 * 1201 * 2: 1201, 3601 * 3601 * 2: 3601}  # 3 and 1 arc seconds
 _NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})", re.IGNORECASE)
-MOST_MEMBERS = 100
-MOST_UNPACKED_BYTES = 512 * 1024 * 1024
+MAX_MEMBERS = 100
+MAX_UNPACKED_BYTES = 512 * 1024 * 1024
 DEFLATE_LIMIT = 1_032  # an HGT file of open sea packs as well as that; what counts is how much comes out
-MOST_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
+MAX_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
 NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
 _ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
 _TIFF_ENDINGS, _HGT_ENDING, _TABLES = (".tif", ".tiff"), ".hgt", (".txt", ".xml", ".prj", ".tfw", ".md", ".html", ".pdf", ".png", ".jpg")
@@ -146,13 +146,13 @@ def _members(archive: Archive) -> list[str]:
     if not names:
         found = f", but {strange[0][:60]}" if strange else ""
         raise TerrainFileError(f"There is no GeoTIFF or HGT file in the zip{found}.")
-    if len(names) > MOST_MEMBERS:
-        raise TerrainFileError(f"The zip has {len(names)} terrain files; at most {MOST_MEMBERS} are taken at once.")
-    if sum(map(archive.size_of, names)) > MOST_UNPACKED_BYTES:
-        raise TerrainFileError(f"The zip unpacks to more than {MOST_UNPACKED_BYTES // 2**20} MiB. Send its files in several.")
+    if len(names) > MAX_MEMBERS:
+        raise TerrainFileError(f"The zip has {len(names)} terrain files; at most {MAX_MEMBERS} are taken at once.")
+    if sum(map(archive.size_of, names)) > MAX_UNPACKED_BYTES:
+        raise TerrainFileError(f"The zip unpacks to more than {MAX_UNPACKED_BYTES // 2**20} MiB. Send its files in several.")
     tiff_bytes = sum(archive.size_of(name) for name in names if not name.lower().endswith(_HGT_ENDING))
-    if tiff_bytes > max(FREE_TIFF_BYTES, MOST_TIFF_RATIO * archive.packed_bytes):
-        raise TerrainFileError(f"The zip unpacks to more than {MOST_TIFF_RATIO} times its size; refused as a decompression bomb.")
+    if tiff_bytes > max(FREE_TIFF_BYTES, MAX_TIFF_RATIO * archive.packed_bytes):
+        raise TerrainFileError(f"The zip unpacks to more than {MAX_TIFF_RATIO} times its size; refused as a decompression bomb.")
     for name in names:
         if name.lower().endswith(_HGT_ENDING) and archive.size_of(name) not in SIZES:
             raise TerrainFileError(f"{name[:100]} has not 1201 or 3601 posts a side.")

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from inspection.importers.terrain.errors import TerrainFileError
 
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")  # classic and BigTIFF
-MOST_ENTRIES = 1_000
-MOST_DIRECTORIES = 64
-MOST_TEXT = 64 * 1024
+MAX_ENTRIES = 1_000
+MAX_DIRECTORIES = 64
+MAX_TEXT = 64 * 1024
 SUBFILE_TYPE = 254
 _MASK = 4  # bit of SUBFILE_TYPE
 _TYPES = {
@@ -68,7 +68,7 @@ class TiffDirectory:
     def text(self, tag: int) -> str:
         if tag not in self._entries or self._entries[tag][0] not in (1, 2, 7):
             return ""
-        values = self._values(self._entries, tag, MOST_TEXT)
+        values = self._values(self._entries, tag, MAX_TEXT)
         return values.tobytes().split(b"\0")[0].decode("latin-1").strip()
 
     def _values(self, entries: dict[int, tuple[int, int, int]], tag: int, most: int) -> NDArray[Any]:
@@ -95,7 +95,7 @@ class TiffDirectory:
         """Tag → (type, count, where the value or its offset stands), and where the next directory begins; 0 for none."""
         count_size, entry_size, value_size = (8, 20, 8) if self._is_big else (2, 12, 4)
         number = self._short(self.read(offset, count_size))
-        if not 0 < number <= MOST_ENTRIES:
+        if not 0 < number <= MAX_ENTRIES:
             raise TerrainFileError("The TIFF's own directory is damaged.")
         first = offset + count_size
         data = self.read(first, number * entry_size)
@@ -111,11 +111,11 @@ class TiffDirectory:
 
     def _has_mask(self, offset: int) -> bool:
         """Whether a later directory is a mask, which would tell voids in a way that is not read."""
-        for _ in range(MOST_DIRECTORIES):
+        for _ in range(MAX_DIRECTORIES):
             if offset == 0:
                 return False
             entries, offset = self._read_directory(offset)
             kinds = self._values(entries, SUBFILE_TYPE, 1)
             if len(kinds) and int(kinds[0]) & _MASK:
                 return True
-        raise TerrainFileError(f"The TIFF has more than {MOST_DIRECTORIES} images.")
+        raise TerrainFileError(f"The TIFF has more than {MAX_DIRECTORIES} images.")

@@ -5,7 +5,7 @@ from pyproj.exceptions import CRSError
 
 from inspection.importers.terrain.errors import TerrainFileError
 
-LONGEST_NAME = 50
+MAX_NAME_LENGTH = 50
 _NAMES = {5773: "EGM96", 5798: "EGM84", 3855: "EGM2008", 5703: "NAVD88", 6360: "NAVD88", 5621: "EVRF2007", 7837: "DHHN2016"}
 _NAMES_OF_DATUMS = {5171: "EGM96", 1027: "EGM2008", 5203: "EGM84", 5103: "NAVD88", 5215: "EVRF2007"}
 _GEOTIFF_ELLIPSOIDS = range(5001, 5034)  # GeoTIFF 1.0, 6.3.4.1: "VertCS_..._ellipsoid"
@@ -23,8 +23,8 @@ class DatumFault(TerrainFileError):
 def datum_named(name: str) -> str:
     """The name as it is stored. Raises DatumFault."""
     name = " ".join(name.split())
-    if not name or len(name) > LONGEST_NAME or not name.isprintable():
-        raise DatumFault(f"A vertical datum is a name of 1 to {LONGEST_NAME} characters, such as EGM96.")
+    if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
+        raise DatumFault(f"A vertical datum is a name of 1 to {MAX_NAME_LENGTH} characters, such as EGM96.")
     if any(words in name.lower() for words in _ELLIPSOIDAL_WORDS):
         raise DatumFault(ELLIPSOIDAL)
     return next((known for known in _NAMES.values() if known.lower() == name.lower()), name)
@@ -40,8 +40,8 @@ def datum_of_codes(system_code: int, datum_code: int, citation: str) -> str | No
         return _NAMES_OF_DATUMS[datum_code]
     system = _vertical_system(system_code)
     if system is not None:
-        return datum_named(system.name.removesuffix(" height")[:LONGEST_NAME])
-    return datum_named(citation[:LONGEST_NAME]) if citation else None
+        return datum_named(system.name.removesuffix(" height")[:MAX_NAME_LENGTH])
+    return datum_named(citation[:MAX_NAME_LENGTH]) if citation else None
 
 
 def metres_of_unit(code: int, system_code: int) -> float:

@@ -31,18 +31,18 @@ from inspection.importers.zones.openair_values import has_sixty, height_of, leng
 from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
 from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
 
-MOST_CROSSINGS = 8
+MAX_CROSSINGS = 8
 _CHUNK = 256
-FARTHEST_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
-MOST_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
-_LEAST_SIDES = 8
+MAX_DISTANCE_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
+MAX_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
+_MIN_SIDES = 8
 CLASSES = {
     "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",
     "F": "Class F", "G": "Class G", "CTR": "Control zone", "GP": "Gliders prohibited", "GS": "Glider sector", "W": "Wave window",
     "RMZ": "Radio mandatory zone", "TMZ": "Transponder mandatory zone", "UNC": "Unclassified", "UNCLASSIFIED": "Unclassified",
 }  # fmt: skip
 MAX_LINE_CHARACTERS = 2_000
-MOST_LISTED = 20  # in a note
+MAX_LISTED = 20  # in a note
 HALF_ROUND_DEG = 180.0
 _LOOKS = re.compile(rb"^\s*AC\s+\S", re.MULTILINE)
 _COMMENT = re.compile(r"(^|\s)\*.*$")
@@ -53,7 +53,7 @@ _FACTS = {"AY": "type", "AF": "frequency", "AG": "station", "AX": "transponder",
 def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
     """The polygons that the closed ring of shape (n, 2) encloses with any of its loops; None if it crosses itself too often."""
     segments = shapely.get_parts(MultiLineString(list(np.stack([ring[:-1], ring[1:]], axis=1))))
-    if _crossings(segments) > MOST_CROSSINGS:
+    if _crossings(segments) > MAX_CROSSINGS:
         return None
     faces = shapely.get_parts(shapely.polygonize([shapely.unary_union(segments)]))
     if not len(faces):
@@ -64,14 +64,14 @@ def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
 
 
 def _crossings(segments: NDArray[np.object_]) -> int:
-    """How many pairs of sides meet that are not neighbours; counting stops above MOST_CROSSINGS."""
+    """How many pairs of sides meet that are not neighbours; counting stops above MAX_CROSSINGS."""
     tree = shapely.STRtree(segments)
     count, last = 0, len(segments) - 1
     for first in range(0, len(segments), _CHUNK):
         one, other = tree.query(segments[first : first + _CHUNK], predicate="intersects")
         gap = other - (one + first)
         count += int(((gap > 1) & (gap < last)).sum())
-        if count > MOST_CROSSINGS:
+        if count > MAX_CROSSINGS:
             break
     return count
 
@@ -85,9 +85,9 @@ def arc_between(centre: LonLat, start: LonLat, end: LonLat, is_clockwise: bool, 
     """From one position to another; where they are not equally far from the centre, the radius goes over from one to the other."""
     start_deg, _, start_m = WGS84.inv(centre.lon, centre.lat, start.lon, start.lat)
     end_deg, _, end_m = WGS84.inv(centre.lon, centre.lat, end.lon, end.lat)
-    if min(start_m, end_m) < FARTHEST_M:
+    if min(start_m, end_m) < MAX_DISTANCE_M:
         raise GeometryFault(place, "an end of the arc lies in its centre", start)
-    if abs(start_m - end_m) > MOST_DIFFERENT_RADII * max(start_m, end_m):
+    if abs(start_m - end_m) > MAX_DIFFERENT_RADII * max(start_m, end_m):
         raise GeometryFault(
             place, f"the ends of the arc are {start_m:.0f} m and {end_m:.0f} m from its centre: another centre is meant", start
         )
@@ -97,7 +97,7 @@ def arc_between(centre: LonLat, start: LonLat, end: LonLat, is_clockwise: bool, 
 
 
 def circle_ring(centre: LonLat, radius_m: float, place: str) -> FloatArray:
-    """A closed ring around the circle: it holds all of it, and is nowhere farther than FARTHEST_M outside."""
+    """A closed ring around the circle: it holds all of it, and is nowhere farther than MAX_DISTANCE_M outside."""
     sides = _sides(radius_m, 2 * pi)
     _check_not_at_a_pole(centre, radius_m, place)
     bearings = np.arange(sides, dtype=np.float64) * (360.0 / sides)
@@ -120,9 +120,9 @@ def _path(centre: LonLat, start_m: float, end_m: float, start_deg: float, turn_d
 
 
 def _sides(radius_m: float, angle_rad: float) -> int:
-    """How many sides keep within FARTHEST_M of the curve."""
-    step = 2.0 * acos(max(1.0 - FARTHEST_M / radius_m, 0.0))
-    return max(ceil(angle_rad / step), ceil(_LEAST_SIDES * angle_rad / (2 * pi)), 1)
+    """How many sides keep within MAX_DISTANCE_M of the curve."""
+    step = 2.0 * acos(max(1.0 - MAX_DISTANCE_M / radius_m, 0.0))
+    return max(ceil(angle_rad / step), ceil(_MIN_SIDES * angle_rad / (2 * pi)), 1)
 
 
 def _at(centre: LonLat, distances_m: FloatArray, bearings_deg: FloatArray) -> FloatArray:
@@ -168,10 +168,10 @@ def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -
         reader.finish()
     notes = [f"{reader.pens} records only set pen and brush; they draw nothing."] if reader.pens else []
     if names := reader.crossing_names:
-        notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:MOST_LISTED])}.")
+        notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:MAX_LISTED])}.")
     if carried := reader.carried_over:
-        more = f" and {len(carried) - MOST_LISTED} more" if len(carried) > MOST_LISTED else ""
-        notes.append(f"Minutes or seconds of 60 were read as the next degree or minute: {', '.join(carried[:MOST_LISTED])}{more}.")
+        more = f" and {len(carried) - MAX_LISTED} more" if len(carried) > MAX_LISTED else ""
+        notes.append(f"Minutes or seconds of 60 were read as the next degree or minute: {', '.join(carried[:MAX_LISTED])}{more}.")
     unread += reader.unread
     return reader.zones, notes
 

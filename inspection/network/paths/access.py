@@ -17,7 +17,7 @@ from inspection.network.route_index import node_tree, route_index
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
 
-MOST_ROUND = 8  # nearest nodes behind zones that are offered legs round them
+MAX_ROUND = 8  # nearest nodes behind zones that are offered legs round them
 ROUND_ELSEWHERE = 2  # nearest nodes of each component that no straight leg reaches
 
 
@@ -65,7 +65,7 @@ def clear_legs(
         if found < asked:
             break
         tried, asked = asked, 2 * asked
-    wanted = [np.concatenate(behind)[:MOST_ROUND]] if behind else []
+    wanted = [np.concatenate(behind)[:MAX_ROUND]] if behind else []
     if index.component_count >= 2:
         served = joined(legs).node
         node, length_m, component = _legs_elsewhere(*reach, served, index.component_count, *index.component_arrays, graph.position, *tree)
@@ -87,7 +87,7 @@ def _nearest_of_each(node: NumberArray, component: IntArray, served: IntArray) -
     _, first = np.unique(component[order], return_index=True)
     rank = np.arange(len(order)) - np.repeat(first, np.diff(np.append(first, len(order))))
     some = order[(rank < ROUND_ELSEWHERE) & ~np.isin(component[order], served)]
-    return node[np.sort(some)][:MOST_ROUND]
+    return node[np.sort(some)][:MAX_ROUND]
 
 
 def band_of_legs(

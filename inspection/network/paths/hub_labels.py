@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
 
 SAMPLED_TREES = 48
-MOST_SAMPLED_NODES = 4_000_000  # in all trees together
-FEWEST_TREES = 4
+MAX_SAMPLED_NODES = 4_000_000  # in all trees together
+MIN_TREES = 4
 BLOCK = 16  # entries that a node gets room for at a time
 FIRST_BLOCKS = 5  # for each node, before the pool grows
 SEED = 20_130_622  # of the sample; the same graph always gives the same labels
@@ -48,7 +48,7 @@ def label(condensed: CondensedGraph) -> HubLabels:
     """Labels of the core's nodes by the cost of the chains."""
     tail, head, cost, length_m = condensed.chain_tail, condensed.chain_head, condensed.chain_cost, condensed.chain_m
     first, chain_at = _chains_of_nodes(condensed.core_count, tail, head)
-    trees = max(FEWEST_TREES, min(SAMPLED_TREES, MOST_SAMPLED_NODES // max(1, condensed.core_count)))
+    trees = max(MIN_TREES, min(SAMPLED_TREES, MAX_SAMPLED_NODES // max(1, condensed.core_count)))
     draw = np.random.default_rng(SEED)
     roots = np.empty((trees, condensed.core_count), dtype=np.int32)
     for tree in range(trees):

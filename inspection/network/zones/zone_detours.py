@@ -29,10 +29,10 @@ OUTLINE_GAP_M = 0.05  # of an outline from the zone as ZoneIndex widens it
 CORNER_GAP_M = 0.25  # of a corner from its outline
 CORNER_EXCESS = 1.007  # of an outline's clearance over that of ZoneIndex, whose round corners excel by 1.005
 MITRE = 2.0  # how many clearances a corner may stand out; sharper ones are cut off there
-MOST_CORNERS = 64  # of one outline: rounder ones are drawn coarser, always on the outer side
+MAX_CORNERS = 64  # of one outline: rounder ones are drawn coarser, always on the outer side
 COARSER = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05)  # of the outline's breadth
-MOST_CORNERS_OF_ALL = 480  # of all outlines of one errand
-MOST_ROUNDS = 12
+MAX_CORNERS_OF_ALL = 480  # of all outlines of one errand
+MAX_ROUNDS = 12
 REACH = 0.52  # of the longest way; more than half of it for what a plane does to metres
 OUTSIDE = -1  # in place of an outline's number
 
@@ -81,7 +81,7 @@ class _Outlines:
         """Of the whole part; of one with many corners, what lies in reach, so that it is drawn no coarser than it has to be."""
         whole = self._parts[part]
         scale = plane_scale(shapely.bounds(whole)[None])[0]  # in which ZoneIndex widens it
-        if shapely.get_num_coordinates(whole) > MOST_CORNERS and not reach.contains(shapely.box(*whole.bounds)):
+        if shapely.get_num_coordinates(whole) > MAX_CORNERS and not reach.contains(shapely.box(*whole.bounds)):
             pieces = shapely.get_parts(shapely.intersection(Polygon(whole.exterior), reach))
             return [_outline(piece, clearance_m, scale) for piece in pieces if isinstance(piece, Polygon) and piece.area > 0]
         with self._one_thread:
@@ -97,13 +97,13 @@ def ways_round(zones: ZoneIndex, errands: Sequence[Errand], clearance_m: float, 
     """For each pair of each errand the shortest way that keeps the clearance from every zone; None where none is short enough.
 
     Nor is one found where a place is in a zone, between zones that leave a gap of no more than some clearances, inside of a zone that
-    curls round it in more corners than MOST_CORNERS, across the antimeridian, or among more than MOST_CORNERS_OF_ALL corners.
+    curls round it in more corners than MAX_CORNERS, across the antimeridian, or among more than MAX_CORNERS_OF_ALL corners.
     """
     tasks = [_Task(errand, longest_m) for errand in errands]
     found: list[list[WayRound | None]] = [[None] * len(errand.pair) for errand in errands]
     outlines = _outlines_of.setdefault(zones, _Outlines(zones))
     asked = [(number, task) for number, task in enumerate(tasks) if len(errands[number].pair)]
-    for _ in range(MOST_ROUNDS):
+    for _ in range(MAX_ROUNDS):
         asked = [(number, task) for number, task in asked if task.is_open]
         if not asked:
             break
@@ -188,7 +188,7 @@ class _Task:
         for number, outline in enumerate(outlines):
             buried = shapely.intersects_xy(outline.shape, corner[:, 0], corner[:, 1]) & (owner != number)
             corner, owner = corner[~buried], owner[~buried]
-        if len(corner) > MOST_CORNERS_OF_ALL:
+        if len(corner) > MAX_CORNERS_OF_ALL:
             self._way, self.is_open = [None] * len(self._way), False
             return
         self._point = np.concatenate([np.asarray(self.errand.place, dtype=np.float64), corner])
@@ -251,11 +251,11 @@ def _outline(part: Polygon, clearance_m: float, scale: FloatArray) -> _Outline:
     wide = _widened(in_metres, clearance_m * CORNER_EXCESS + OUTLINE_GAP_M)
     breadth_m = max(wide.bounds[2] - wide.bounds[0], wide.bounds[3] - wide.bounds[1])
     for share in COARSER:
-        if len(wide.exterior.coords) - 1 <= MOST_CORNERS:
+        if len(wide.exterior.coords) - 1 <= MAX_CORNERS:
             break
         give_m = share * breadth_m
         wide = _filled(_widened(wide, give_m).simplify(give_m * 0.99))
-    if len(wide.exterior.coords) - 1 > MOST_CORNERS:
+    if len(wide.exterior.coords) - 1 > MAX_CORNERS:
         wide = _filled(shapely.convex_hull(wide))
     ring = shapely.get_coordinates(wide.exterior) / scale
     corners = shapely.get_coordinates(shapely.orient_polygons(_widened(wide, CORNER_GAP_M)).exterior)[:-1]

@@ -19,7 +19,7 @@ CELLS = 512  # along each side
 # The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
 METRES_PER_DEGREE_LAT = 110_574.0
 METRES_PER_DEGREE_LON = 111_319.0
-NEAREST_POLE_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
+MAX_SHRINKING_LAT_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
 CORNER_SEGMENTS = 8  # per quarter circle of a widened corner
 CORNER_EXCESS = 1.005  # makes the chords of such a quarter circle clear the true one: 1 / cos(90 deg / 16) = 1.0048
 
@@ -297,7 +297,7 @@ def _of_some(limit_m: ArrayLike | None, some: NDArray[np.intp] | slice, count: i
 
 def plane_scale(bounds: FloatArray) -> FloatArray:
     """The fewest metres in a degree of longitude and of latitude within each box, west, south, east, north: (n, 2)."""
-    farthest_lat = np.minimum(np.maximum(np.abs(bounds[:, 1]), np.abs(bounds[:, 3])), NEAREST_POLE_DEG)
+    farthest_lat = np.minimum(np.maximum(np.abs(bounds[:, 1]), np.abs(bounds[:, 3])), MAX_SHRINKING_LAT_DEG)
     return np.column_stack([METRES_PER_DEGREE_LON * np.cos(np.radians(farthest_lat)), np.full(len(bounds), METRES_PER_DEGREE_LAT)])
 
 

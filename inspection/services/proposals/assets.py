@@ -33,7 +33,7 @@ from inspection.services.imported_ids import count_of_ids
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 
-MOST_CHANGES = 2_000  # of each action
+MAX_CHANGES = 2_000  # of each action
 NOTHING = dict.fromkeys((*ROW_ACTIONS, UNCHANGED), 0)
 
 
@@ -131,7 +131,7 @@ def _first_cell(file: AssetFile, name: str) -> list[str]:
 
 def _changes(found: Difference) -> Iterator[Change]:
     for action in ROW_ACTIONS:
-        for asset, stated in found.pairs(action, MOST_CHANGES):
+        for asset, stated in found.pairs(action, MAX_CHANGES):
             before, after = differing(_shown(asset) if asset else None, _shown(stated) if stated else None)
             one = stated or asset
             if one is not None:

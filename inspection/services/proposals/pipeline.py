@@ -38,8 +38,8 @@ from workspace.services import cancel_job, create_job, finish_job
 FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets, ImportKind.TERRAIN: terrain}
 READ_TASK = "inspection.tasks.read_proposal"
 APPLY_TASK = "inspection.tasks.apply_proposal"
-MOST_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
-MOST_FAULTS_KEPT = 50
+MAX_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
+MAX_FAULTS_KEPT = 50
 DECISIONS = {"replace_edited", "seen"}  # parameters of the one who applies: the difference is the same with them
 _BATCH = 500
 
@@ -228,7 +228,7 @@ def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job:
     """The file has faults, or could not be read: nothing of it counts."""
     listed = [
         {"place": fault.place, "message": fault.message, "position": list(fault.position) if fault.position else None}
-        for fault in faults[:MOST_FAULTS_KEPT]
+        for fault in faults[:MAX_FAULTS_KEPT]
     ]
     with transaction.atomic():
         if job is not None and not finish_job(job=job, message="Refused"):
@@ -359,7 +359,7 @@ def _store_reading(proposal: ImportProposal, job: Job, reading: Reading, revisio
 
 def _first_of_each(changes: tuple[Change, ...]) -> list[Change]:
     ordered = sorted(changes, key=lambda change: change.action)
-    return [change for _, group in groupby(ordered, key=lambda change: change.action) for change in list(group)[:MOST_CHANGES_KEPT]]
+    return [change for _, group in groupby(ordered, key=lambda change: change.action) for change in list(group)[:MAX_CHANGES_KEPT]]
 
 
 def _row(proposal: ImportProposal | None, change: Change) -> ProposedChange:

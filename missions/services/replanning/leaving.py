@@ -19,7 +19,7 @@ from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 LEAD_S = 60.0  # from working out to flying: a person decides, the UAV is held, and is given its route
 WAIT_S = 90.0  # for which it hovers meanwhile at most, by the reckoning with its battery
-MOST_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
+MAX_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
 
 
 class CannotLeave(Exception):
@@ -125,7 +125,7 @@ def _with_less(rest: Rest, performance: Performance, percent: float) -> Performa
     if performance.battery_wh is None:
         return performance
     reserve_percent = performance.reserve_percent + percent
-    if reserve_percent > MOST_RESERVE_PERCENT:
+    if reserve_percent > MAX_RESERVE_PERCENT:
         raise CannotLeave(_("%(uav)s has too little battery left.") % {"uav": rest.name})
     return replace(performance, reserve_percent=max(reserve_percent, 0.0))
 

@@ -21,7 +21,7 @@ from planning.energy.conditions import conditions_from_json
 from planning.problem import Objective, Priority
 from planning.solver.solver import Stop, never
 
-MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
+MAX_ALONE = 4  # UAVs of which it is tried that one of them takes all
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,7 @@ def _ways(field: Field) -> Iterator[_Way]:
     yield _Way(able, forced)
     others = [place for place in able if place not in forced]
     if len(others) > 1:
-        for place in others[:MOST_ALONE]:
+        for place in others[:MAX_ALONE]:
             yield _Way(tuple(sorted({place, *forced})), forced)
     yield _Way(able, frozenset(able))
 

@@ -7,7 +7,7 @@ from typing import Any
 from django.db import transaction
 
 from missions.models import Mission, MissionUav, Route
-from missions.models.missions import LONGEST_NAME
+from missions.models.missions import MAX_NAME_LENGTH
 from missions.selectors import mission_of_organisation
 from missions.services.approval_checks import reasons_against
 from missions.services.mission_plans import store_plan
@@ -64,7 +64,7 @@ def _store(proposal: Proposal) -> Mission:
         conditions=conditions_from_json(flying.conditions),
         lost_link=lost_link_from_json(flying.lost_link),
     )
-    name = f"{flying.name[: LONGEST_NAME - 20]}, continued"
+    name = f"{flying.name[: MAX_NAME_LENGTH - 20]}, continued"
     draft = create_mission(
         organisation=flying.organisation,
         author=flying.author,

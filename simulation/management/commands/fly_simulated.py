@@ -16,12 +16,12 @@ from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.ground import FlatGround
 from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, WrongPace
-from simulation.vehicle_endpoint.launch import HIGHEST_SYSTEM, Launch, fleet_of, in_a_row
+from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.radio import WrongAddress, address_of
 from simulation.vehicle_protocol.flavour import Flavour
 
-MOST_UAVS = 200
+MAX_UAVS = 200
 KEY_LENGTH = 32
 
 
@@ -99,8 +99,8 @@ def _launches(options: dict[str, Any]) -> list[Launch]:
             raise ValueError("--count goes with one --at.")
         places = in_a_row(places[0], options["count"], options["spacing"])
     first = options["first_system"]
-    if not 1 <= len(places) <= MOST_UAVS or first < 1 or first + len(places) - 1 > HIGHEST_SYSTEM:
-        raise ValueError(f"1 to {MOST_UAVS} UAVs with system ids from 1 to {HIGHEST_SYSTEM} can be flown.")
+    if not 1 <= len(places) <= MAX_UAVS or first < 1 or first + len(places) - 1 > MAX_SYSTEM_ID:
+        raise ValueError(f"1 to {MAX_UAVS} UAVs with system ids from 1 to {MAX_SYSTEM_ID} can be flown.")
     keys = _keys(options["keys"])
     wind = [float(part) for part in options["wind"].split(",")]
     weather = weather_of({"wind": wind, "gusts_mps": options["gusts"], "turbulence_mps": options["turbulence"]})

@@ -28,7 +28,7 @@ class Command(BaseCommand):
 
     def add_arguments(self, parser: ArgumentParser) -> None:
         parser.add_argument("--name", help="the same at each start, and no other simulator's (SPANWISE_SIMULATOR_NAME)")
-        parser.add_argument("--most-uavs", type=int, help="that it flies, each as often as its speed (SPANWISE_SIMULATOR_MOST_UAVS)")
+        parser.add_argument("--most-uavs", type=int, help="that it flies, each as often as its speed (SPANWISE_SIMULATOR_MAX_UAVS)")
         parser.add_argument("--gateway", metavar="HOST:PORT", help="where missions' UAVs connect (SPANWISE_SIMULATOR_GATEWAY)")
 
     def handle(self, *_: Any, name: str | None, most_uavs: int | None, gateway: str | None, **__: Any) -> None:

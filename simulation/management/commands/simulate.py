@@ -14,7 +14,7 @@ from simulation.flight.route_flight import fly_route
 from simulation.flight.weather import ImpossibleWeather, Weather
 
 WIND_AGL_M = 10.0  # one layer is the wind at all heights
-MOST_BYTES = 10_000_000
+MAX_BYTES = 10_000_000
 
 
 class Command(BaseCommand):
@@ -56,9 +56,9 @@ class Command(BaseCommand):
 
 def _read(path: Path) -> Any:
     with path.open("rb") as file:
-        content = file.read(MOST_BYTES + 1)
-    if len(content) > MOST_BYTES:
-        raise InvalidRoute(f"The file has more than {MOST_BYTES // 1_000_000} MB.")
+        content = file.read(MAX_BYTES + 1)
+    if len(content) > MAX_BYTES:
+        raise InvalidRoute(f"The file has more than {MAX_BYTES // 1_000_000} MB.")
     try:
         return json.loads(content)
     except (ValueError, RecursionError) as error:

@@ -2,7 +2,7 @@
 
 import { h } from "../dom.js";
 import { t } from "../text.js";
-import { HIGHEST_KV, voltsOf } from "./voltages.js";
+import { MAX_KV, voltsOf } from "./voltages.js";
 
 /** @import { AssetDetailFeature, AssetDetailProperties } from "../api_types.d.ts" */
 /** @import { Facts, RecordForm } from "../ground/types.d.ts" */
@@ -78,7 +78,7 @@ export function assetForm(feature, kind, kept) {
   const voltages = text("asset-voltages", (facts.voltages_v ?? []).map((volts) => volts / 1000).join(", "), 60);
   const checkVoltages = () =>
     voltages.setCustomValidity(
-      voltsOf(voltages.value) ? "" : t("Write kilovolts up to {most}, such as 110, 20.", { most: HIGHEST_KV }),
+      voltsOf(voltages.value) ? "" : t("Write kilovolts up to {most}, such as 110, 20.", { most: MAX_KV }),
     );
   voltages.addEventListener("input", checkVoltages);
   const circuits = number("asset-circuits", facts.circuits, { min: 1, max: 100, step: 1 });

@@ -10,7 +10,7 @@ import { createVertexTable } from "./vertex_table.js";
 /** @import { Editor } from "./editor.js" */
 /** @import { EditorState, Fault, Shape, ShapeKind } from "./types.d.ts" */
 
-const MOST_FAULTS = 5;
+const MAX_FAULTS = 5;
 /** @type {Record<ShapeKind, string>} */
 const ASK = {
   point: t("Click where it stands."),
@@ -122,7 +122,7 @@ class DrawPanel {
     if (document.activeElement !== this.#radius) this.#radius.value = String(shape.radius_m ?? "");
     this.#faults.replaceChildren(
       ...this.#wrong(state)
-        .slice(0, MOST_FAULTS)
+        .slice(0, MAX_FAULTS)
         .map((fault) => this.#faultLine(fault)),
     );
     this.#vertices.update(state);

@@ -8,7 +8,7 @@ import { circleOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
 /** @import { MapLibreMap } from "../map/types.d.ts" */
 /** @import { Fault, Handle, Shape, VertexPath } from "./types.d.ts" */
 
-const MOST_MIDDLES = 400; // of a large ring, only vertices
+const MAX_MIDDLES = 400; // of a large ring, only vertices
 
 /** @param {string} role */
 const isRole = (role) => ["==", ["get", "role"], role];
@@ -193,7 +193,7 @@ export function handlesOf(shape) {
   const radius = radiusHandle(shape);
   /** @type {Handle[]} */
   const middles =
-    vertices.length <= MOST_MIDDLES
+    vertices.length <= MAX_MIDDLES
       ? middlesOf(shape).map(({ after, position }) => ({ role: "middle", at: after, position }))
       : [];
   /** @type {Handle[]} */

@@ -6,14 +6,14 @@ import { isInside, leastOf } from "./shape.js";
 
 /** @import { Fault, Shape, VertexPath } from "./types.d.ts" */
 
-export const MOST_CHECKED = 2_000; // vertices; of more the server says whether they cross
+export const MAX_CHECKED = 2_000; // vertices; of more the server says whether they cross
 /** @typedef {{ from: number[], to: number[] }} Ends */
 /**
  * @typedef {Ends & { part: number, ring: string, index: number, size: number, low: number, high: number }} Side
  *   low and high are its longitudes, size the number of sides of its ring
  */
 
-const MOST_FAULTS = 20;
+const MAX_FAULTS = 20;
 const WORDS = {
   point: t("Click where it stands."),
   line: t("A line needs two points."),
@@ -46,7 +46,7 @@ function found(shape, growing) {
   const faults = [...repeated(shape), ...overTheDateLine(shape)];
   if (shape.kind !== "area" || faults.length) return faults;
   const sides = sidesOf(shape, growing);
-  if (sides.length > MOST_CHECKED) return [];
+  if (sides.length > MAX_CHECKED) return [];
   faults.push(...crossings(sides));
   if (!faults.length && !growing) faults.push(...strayRings(shape));
   return faults;
@@ -132,7 +132,7 @@ function crossings(sides) {
           [other.from, other.to],
         ],
       });
-      if (faults.length >= MOST_FAULTS) return faults;
+      if (faults.length >= MAX_FAULTS) return faults;
     }
     alive.push(side);
   }

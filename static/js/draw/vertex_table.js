@@ -8,7 +8,7 @@ import { positionAt, verticesOf } from "./shape.js";
 /** @import { Editor } from "./editor.js" */
 /** @import { EditorState, Shape, VertexPath } from "./types.d.ts" */
 
-const MOST_ROWS = 200;
+const MAX_ROWS = 200;
 
 /** @param {Editor} editor @param {ShowPlace} show */
 export const createVertexTable = (editor, show) => new VertexTable(editor, show);
@@ -63,7 +63,7 @@ class VertexTable {
   #fill() {
     if (!this.#shape || !this.element.open) return;
     const vertices = verticesOf(this.#shape);
-    const listed = vertices.slice(0, MOST_ROWS);
+    const listed = vertices.slice(0, MAX_ROWS);
     while (this.#rows.rows.length > listed.length) this.#rows.lastElementChild?.remove();
     while (this.#rows.rows.length < listed.length) this.#rows.append(this.#rowOf(this.#rows.rows.length));
     for (const [index, { at, position }] of listed.entries()) {
@@ -73,7 +73,7 @@ class VertexTable {
       find(row, "button").setAttribute("aria-pressed", String(isChosen));
       for (const [axis, input] of row.querySelectorAll("input").entries()) input.value = String(position[axis]);
     }
-    const more = vertices.length - MOST_ROWS;
+    const more = vertices.length - MAX_ROWS;
     this.#rest.hidden = more <= 0;
     this.#rest.textContent = tn(more, "{count} more is on the map.", "{count} more are on the map.");
   }

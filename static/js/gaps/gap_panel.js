@@ -7,7 +7,7 @@ import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 
 /** @import { Collection, Gap, GapOffer } from "./types.d.ts" */
 
-const LONGEST_NOTE = 500;
+const MAX_NOTE_LENGTH = 500;
 
 /**
  * What the acts of the panel do; curators are offered them.
@@ -178,7 +178,7 @@ class GapPanel {
     const note = h("input", {
       class: "input",
       id: "gap-note",
-      maxlength: LONGEST_NOTE,
+      maxlength: MAX_NOTE_LENGTH,
       placeholder: t("Why it is right"),
       "aria-label": t("Note"),
       autocomplete: "off",

@@ -26,7 +26,7 @@ import {
 /** @import { Store } from "../store.js" */
 /** @import { ImportsState, Proposal, ProposalActs } from "./types.d.ts" */
 
-const MOST_LISTED = 2_000; // of each action; the numbers are of all
+const MAX_LISTED = 2_000; // of each action; the numbers are of all
 
 /** @param {Store<ImportsState>} store @param {ProposalActs} acts */
 export const mountProposal = (store, acts) => new ProposalPanel(store, acts);
@@ -120,8 +120,8 @@ class ProposalPanel {
       this.#notRead(proposal),
       facts(proposal),
       kind === "zones" && state === "applied" && summary.set && versions(summary.set, this.#acts),
-      Object.values(difference).some((count) => count > MOST_LISTED) &&
-        h("p", { class: "caption" }, t("Showing the first {count} per group.", { count: numberText(MOST_LISTED) })),
+      Object.values(difference).some((count) => count > MAX_LISTED) &&
+        h("p", { class: "caption" }, t("Showing the first {count} per group.", { count: numberText(MAX_LISTED) })),
     ];
   }
 

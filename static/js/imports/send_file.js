@@ -6,7 +6,7 @@ import { ApiError, get, post, putBytes } from "../api.js";
 /** @import { Upload } from "../api_types.d.ts" */
 /** @import { SendHints } from "./types.d.ts" */
 
-const LONGEST_WAIT_S = 15;
+const MAX_WAIT_S = 15;
 const WORTH_ANOTHER_TRY = new Set([0, 408, 429, 500, 502, 503, 504]);
 
 /**
@@ -40,7 +40,7 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
       if (error.code === "gap") continue; // asked again how much is there
       if (!WORTH_ANOTHER_TRY.has(error.status)) throw error;
       await pause(wait_s, { tell, nudge, signal });
-      wait_s = Math.min(wait_s * 2, LONGEST_WAIT_S);
+      wait_s = Math.min(wait_s * 2, MAX_WAIT_S);
     }
   }
 }
@@ -53,7 +53,7 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
  * @param {SendHints} hints
  */
 export async function untilAnswered(act, hints) {
-  for (let wait_s = 1; ; wait_s = Math.min(wait_s * 2, LONGEST_WAIT_S)) {
+  for (let wait_s = 1; ; wait_s = Math.min(wait_s * 2, MAX_WAIT_S)) {
     try {
       return await act();
     } catch (error) {

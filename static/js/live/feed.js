@@ -24,7 +24,7 @@ const FIRST_WORD_MS = 3_000; // after which the page asks, while it goes on wait
 const ASK_EVERY_MS = 2_000;
 const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
-const LONGEST_PAUSE_MS = 5_000;
+const MAX_PAUSE_MS = 5_000;
 const RESTARTS = 1012; // the code of a websocket whose program is being stopped
 const TOO_MANY = 4429; // of one that is refused because too many are open
 const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have been closed
@@ -52,7 +52,7 @@ const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have b
  * @param {() => number} [random]
  */
 export function pauseBefore_ms(failures, random = Math.random) {
-  return Math.min(FIRST_PAUSE_MS * 2 ** Math.min(failures, 10), LONGEST_PAUSE_MS) * (0.5 + random() / 2);
+  return Math.min(FIRST_PAUSE_MS * 2 ** Math.min(failures, 10), MAX_PAUSE_MS) * (0.5 + random() / 2);
 }
 
 /** @param {string | null} mission */

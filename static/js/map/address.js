@@ -3,7 +3,7 @@
 /** @import { Box, Position } from "./types.d.ts" */
 
 const WORLD_PX = 512; // the whole world at zoom 0
-const LEAST_PX = 24; // an extent smaller than this on the screen shows nothing
+const MIN_PX = 24; // an extent smaller than this on the screen shows nothing
 const NEAR_ZOOM = 12; // from here on even a single place is worth looking at
 
 /** @param {number} longitude */
@@ -39,5 +39,5 @@ export function showsAnything({ zoom, centre: [longitude, latitude] }, [width_px
   const [left, right] = [extent[0], extent[2]].map((edge) => (toX(edge) - toX(longitude)) * scale);
   const [top, bottom] = [extent[3], extent[1]].map((edge) => (toY(edge) - toY(latitude)) * scale);
   const isInside = right >= -width_px / 2 && left <= width_px / 2 && bottom >= -height_px / 2 && top <= height_px / 2;
-  return isInside && (zoom >= NEAR_ZOOM || Math.max(right - left, bottom - top) >= LEAST_PX);
+  return isInside && (zoom >= NEAR_ZOOM || Math.max(right - left, bottom - top) >= MIN_PX);
 }

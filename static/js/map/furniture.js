@@ -6,11 +6,11 @@ import { coordinateText, lengthText } from "../units.js";
 /** @import { MapLibreMap, Position, ScreenPoint, Tip } from "./types.d.ts" */
 
 const TIP_AFTER_MS = 300;
-const WIDEST_SCALE_PX = 90;
+const MAX_SCALE_WIDTH_PX = 90;
 
 /** The longest round distance that is at most 90 px: { length_m, width_px }. @param {number} metres_per_px */
 export function scaleOf(metres_per_px) {
-  const most = metres_per_px * WIDEST_SCALE_PX;
+  const most = metres_per_px * MAX_SCALE_WIDTH_PX;
   const power = 10 ** Math.floor(Math.log10(most));
   const length_m = [5, 2].map((factor) => factor * power).find((candidate) => candidate <= most) ?? power;
   return { length_m, width_px: length_m / metres_per_px };

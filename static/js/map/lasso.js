@@ -6,7 +6,7 @@ import { swallowDrawnClick } from "./drawn_click.js";
 /** @import { MapLibreMap, Position } from "./types.d.ts" */
 
 const STEP_PX = 4; // between kept points
-const LEAST_PX = 24; // a smaller drawing was a click
+const MIN_PX = 24; // a smaller drawing was a click
 
 /**
  * on: { tool(), lasso([[lon, lat], …]) }
@@ -81,5 +81,5 @@ export function drawLassos(map, canvas, on) {
 export function isWide(points) {
   /** @param {number[]} values */
   const spanOf = (values) => Math.max(...values) - Math.min(...values);
-  return points.length > 2 && spanOf(points.map(([x]) => x)) + spanOf(points.map(([, y]) => y)) > LEAST_PX;
+  return points.length > 2 && spanOf(points.map(([x]) => x)) + spanOf(points.map(([, y]) => y)) > MIN_PX;
 }

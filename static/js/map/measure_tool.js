@@ -10,7 +10,7 @@ import { sourceOf } from "./look/style.js";
 
 /** @import { FeatureCollection, MapLibreMap, Position } from "./types.d.ts" */
 
-const NEAREST_M = 0.01;
+const MIN_DISTANCE_M = 0.01;
 const RADIANS = Math.PI / 180;
 
 /**
@@ -153,7 +153,7 @@ class Measure {
   /** Where the pointer is; where it was clicked is a point already. @param {Position | null} position */
   at(position) {
     const last = this.#points?.at(-1);
-    this.#pointer = last && position && distance_m(last, position) < NEAREST_M ? null : position;
+    this.#pointer = last && position && distance_m(last, position) < MIN_DISTANCE_M ? null : position;
     if (this.#points === null || this.#isDrawingDue) return;
     this.#isDrawingDue = true;
     requestAnimationFrame(() => this.#draw());

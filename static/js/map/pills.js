@@ -2,10 +2,10 @@
 
 import { countText } from "../units.js";
 
-const LONGEST_RUNS = 8;
+const MAX_RUNS_LENGTH = 8;
 const LETTER_PX = 7;
 const PADDING_PX = 18;
-const LEAST_WIDTH_PX = 28;
+const MIN_WIDTH_PX = 28;
 const HEIGHT_PX = 22;
 const DART_PX = 28;
 const DART_LETTER_PX = 6;
@@ -31,7 +31,7 @@ const DART_HEIGHT_PX = 16;
  */
 
 /** How wide a pill with this label is drawn, about. @param {string} label */
-export const pillWidth = (label) => Math.max(LEAST_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
+export const pillWidth = (label) => Math.max(MIN_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
 
 /** @param {Pick<Pill, "sequence" | "letter" | "isMissed">} a @param {Pick<Pill, "sequence" | "letter" | "isMissed">} b */
 const isSameKind = (a, b) => a.sequence === b.sequence && a.letter === b.letter && a.isMissed === b.isMissed;
@@ -125,6 +125,6 @@ export function mergedLabel(letter, numbers) {
     else runs.push([number]);
   }
   const label = letter + runs.map((run) => (run.length > 1 ? `${run[0]}–${run.at(-1)}` : `${run[0]}`)).join(", ");
-  if (label.length <= LONGEST_RUNS) return label;
+  if (label.length <= MAX_RUNS_LENGTH) return label;
   return [letter, countText(numbers.length, "target")].filter(Boolean).join(", ");
 }

@@ -12,8 +12,8 @@ import { positionIn } from "./coordinates_read.js";
 /** @typedef {{ name: string, position: number[], icon: string, detail: string }} NamedThing */
 
 const COORDINATES_ZOOM = 15;
-const MOST_ZONES = 4;
-const MOST_NAMED = 4;
+const MAX_ZONES = 4;
+const MAX_NAMED = 4;
 
 /**
  * The place that coordinates name, as a list of one or none: [{ icon, label, detail, position, zoom }].
@@ -52,7 +52,7 @@ export function namedFound(text, things) {
   if (!wanted) return [];
   return things
     .filter(({ name }) => name.toLocaleLowerCase().includes(wanted))
-    .slice(0, MOST_NAMED)
+    .slice(0, MAX_NAMED)
     .map(({ name, ...rest }) => ({ label: name, zoom: COORDINATES_ZOOM - 1, ...rest }));
 }
 
@@ -64,7 +64,7 @@ export function namedFound(text, things) {
  * @returns {Promise<FoundPlace[]>}
  */
 async function zonesFound(text, signal) {
-  const address = `/zones?text=${encodeURIComponent(text)}&limit=${MOST_ZONES}`;
+  const address = `/zones?text=${encodeURIComponent(text)}&limit=${MAX_ZONES}`;
   const { data } = /** @type {Answer<ZoneCollection>} */ (await get(address, { signal }));
   return data.features.map(({ geometry, properties }) => ({
     icon: "zone",

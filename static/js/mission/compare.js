@@ -70,7 +70,7 @@ export function isSamePlan(a, b) {
   return essence(a) === essence(b) && b.routes.every(beginsAndEndsAlike);
 }
 
-const LEAST_MOVED_M = 1;
+const MIN_MOVED_M = 1;
 const PRIORITIES = ["high", "normal", "low"];
 const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
 
@@ -182,7 +182,7 @@ export function endsBetween(old, now) {
   const moved_m = old?.start && now.start ? distance_m(old.start, now.start) : 0;
   const isSame = !old?.end_action || (old.end_action === now.end_action && old.base === now.base);
   const [from, to] = isSame ? [null, null] : [old, now].map(({ end_action, base }) => ({ end_action, base }));
-  return { moved_m: moved_m < LEAST_MOVED_M ? 0 : moved_m, from, to };
+  return { moved_m: moved_m < MIN_MOVED_M ? 0 : moved_m, from, to };
 }
 
 /** A route in short, as the drawing of a strip takes it. @param {ShortRoute} route */

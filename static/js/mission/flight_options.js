@@ -12,7 +12,7 @@ import { lostLinkOf } from "./lost_link.js";
 /** Any time, calm, no charging; without a link UAVs go on. @type {Readonly<FlightOptions>} */
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });
 export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
-export const MOST_LAYERS = 10; // missions/serializers/limits.py
+export const MAX_LAYERS = 10; // missions/serializers/limits.py
 const COMPASS = [
   t("north"),
   t("north-east"),

@@ -17,7 +17,7 @@ import { marginWords } from "./zones_passed.js";
 export const STEP_MS = 5 * 60_000;
 const HOUR_MS = 3_600_000;
 const TICK_HOURS = 6;
-const MOST_WAYS = 3; // that a row names for each UAV
+const MAX_WAYS = 3; // that a row names for each UAV
 
 /** @param {TimeSpan} span @returns {Span} */
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
@@ -158,7 +158,7 @@ export function legsText(legs) {
   for (const { uav, way } of legs) byUav.set(uav, new Set([...(byUav.get(uav) ?? []), way]));
   return [...byUav]
     .map(([uav, ways]) =>
-      [uav, ...[...ways].slice(0, MOST_WAYS), ...(ways.size > MOST_WAYS ? [t("and more")] : [])].join(", "),
+      [uav, ...[...ways].slice(0, MAX_WAYS), ...(ways.size > MAX_WAYS ? [t("and more")] : [])].join(", "),
     )
     .join("; ");
 }
@@ -179,8 +179,8 @@ export function wayOf({ letter, waypoints }, leg) {
   return before ? t("{start} to {end}|way", { start, end }) : t("start to {end}|way", { end });
 }
 
-const MOST_COMPARED = 12; // targets, of which departures are compared
-const LEAST_M = 1;
+const MAX_COMPARED = 12; // targets, of which departures are compared
+const MIN_M = 1;
 
 /**
  * Whether looking for a better departure may be of use: a zone is in the way of the plan, for a while or for ever.
@@ -190,7 +190,7 @@ const LEAST_M = 1;
  */
 export function mayDepartBetter({ gap_of, unassigned = [] }, targets) {
   return (
-    targets <= MOST_COMPARED &&
+    targets <= MAX_COMPARED &&
     (gap_of === "without_timed_zones" ||
       unassigned.some(({ reason }) => reason === "inside_zone" || reason === "no_path"))
   );
@@ -220,7 +220,7 @@ export function betterWords({ departs_at, looked_until, before, then }) {
       departs_at,
     };
   const gains = [
-    before.total_length_m - then.total_length_m >= LEAST_M &&
+    before.total_length_m - then.total_length_m >= MIN_M &&
       t("{length} less", { length: lengthText(before.total_length_m - then.total_length_m) }),
     before.done_s - then.done_s >= 60 &&
       t("done {time} sooner after it", { time: durationText(before.done_s - then.done_s) }),

@@ -6,7 +6,7 @@ import { post } from "../api.js";
 /** @import { LookupOutput, LookupResult } from "../api_types.d.ts" */
 
 const PER_REQUEST = 2000;
-export const MOST_REFS = 10_000;
+export const MAX_REFS = 10_000;
 
 /**
  * Each reference once, in the order of the list: one a line, or parted by tabs, commas or semicolons; quotes are

@@ -30,10 +30,10 @@ import { durationText, exactHeightText, numberText } from "../units.js";
  * @property {number} over_m
  */
 
-export const MOST_RALLY_POINTS = 50; // missions/serializers/limits.py
-export const LONGEST_HOLD_S = 3600; // planning/problem.py
+export const MAX_RALLY_POINTS = 50; // missions/serializers/limits.py
+export const MAX_HOLD_S = 3600; // planning/problem.py
 const USUAL_HOLD_S = 60;
-const LEAST_WAY_M = 20; // a shorter one is not seen
+const MIN_WAY_M = 20; // a shorter one is not seen
 const DIGITS = 6; // some 0.1 m
 
 /** @type {{ value: LostLink["behaviour"], words: string, meaning: string }[]} */
@@ -92,7 +92,7 @@ export const withHold = (lost_link, hold_s) => changed(lost_link, { hold_s });
 /** @param {Wish} lost_link @param {number[]} position */
 export function withRallyPoint(lost_link, position) {
   const { rally_points } = wholeLostLink(lost_link);
-  return rally_points.length < MOST_RALLY_POINTS
+  return rally_points.length < MAX_RALLY_POINTS
     ? changed(lost_link, { rally_points: [...rally_points, rounded(position)] })
     : lostLinkOf(lost_link);
 }
@@ -312,7 +312,7 @@ export function quietReturnsOf(plan) {
     return waypoints
       .filter(({ kind }, index) => !STAYS_DOWN.includes(kind) && !fails.has(`${route} ${index}`))
       .map(({ position }) => ({ from: position, to: nearest(position) }))
-      .filter(({ from, to }) => distance_m(from, to) > LEAST_WAY_M);
+      .filter(({ from, to }) => distance_m(from, to) > MIN_WAY_M);
   });
 }
 

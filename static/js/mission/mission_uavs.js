@@ -5,7 +5,7 @@ import { OWN_FIGURES } from "../uav_figures.js";
 /** @import { UavFeature } from "../api_types.d.ts" */
 /** @import { FleetUav, MissionSelection, PickedUav } from "./types.d.ts" */
 
-const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
+const MAX_UAV_NAME_LENGTH = 100; // missions/serializers/limits.py
 
 /** @param {UavFeature} feature @returns {FleetUav} */
 export function uavOf(feature) {
@@ -55,7 +55,7 @@ function freeName({ uavs }, name) {
   const taken = new Set(uavs.map((uav) => uav.name));
   let free = name;
   for (let number = 2; taken.has(free); number += 1)
-    free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
+    free = `${name.slice(0, MAX_UAV_NAME_LENGTH - ` ${number}`.length)} ${number}`;
   return free;
 }
 

@@ -8,7 +8,7 @@ import { durationText, energyText, lengthText, numberText } from "../units.js";
 
 /** @param {number} share */
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
-const LEAST_SHARE = 0.0005; // less is not told from nothing
+const MIN_SHARE = 0.0005; // less is not told from nothing
 
 const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
@@ -44,9 +44,9 @@ export function qualityOf({
   ];
   const share = shareText(above);
   if (gap_of === "without_timed_zones")
-    return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
+    return { isProven: false, words: beyondTimedZones(above < MIN_SHARE ? null : share, Boolean(wish)), detail: "" };
   const words =
-    above < LEAST_SHARE
+    above < MIN_SHARE
       ? t("Best possible.")
       : wish
         ? t("Within {share} of the best possible with the locked targets.", { share })

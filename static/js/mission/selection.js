@@ -22,7 +22,7 @@ export const EMPTY = Object.freeze({
   ...UNSAID,
 });
 
-export const MOST_TARGETS = 500; // of a mission: planning/solver/rules.py
+export const MAX_TARGETS = 500; // of a mission: planning/solver/rules.py
 
 /**
  * Two picks of the same place are one target: the asset whole, or one point of it.
@@ -117,7 +117,7 @@ export function withoutTargets(selection, keys) {
 
 /** Seconds at a target where nobody names them, as in planning/problem.py. */
 export const HOLD_S = { look: 5, photo: 10, hold: 30 };
-export const LONGEST_HOLD_S = 3600;
+export const MAX_HOLD_S = 3600;
 
 /**
  * What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in

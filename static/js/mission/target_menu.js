@@ -9,7 +9,7 @@ import { t, tn } from "../text.js";
 import { durationText } from "../units.js";
 import { lockOf, wishedPlace } from "./locks.js";
 import { uavsByName } from "./mission_uavs.js";
-import { LONGEST_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
+import { MAX_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
 
 /** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "./types.d.ts" */
 
@@ -182,7 +182,7 @@ export function targetMenu(targets, actions, known, more = []) {
     class: "input",
     type: "number",
     min: "0",
-    max: String(LONGEST_HOLD_S),
+    max: String(MAX_HOLD_S),
     step: "1",
     required: true,
     value: times.size === 1 ? String(tasks[0].hold_s) : "",

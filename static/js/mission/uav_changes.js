@@ -16,7 +16,7 @@ import { PERFORMANCE } from "./selection.js";
 
 /** In the order in which the server writes them down. @type {UavFigure[]} */
 const FIGURES = ["max_range_m", "cruise_speed_mps", ...PERFORMANCE, "sensors"];
-const MOST_DIGITS = 6;
+const MAX_DIGITS = 6;
 const SPACE = "\u00a0";
 
 /** @param {unknown} a @param {unknown} b */
@@ -162,7 +162,7 @@ function figureWords({ name, kept, now }) {
  */
 function toldApart(kept, now, digits) {
   const [before, after] = [kept, now].map((value) => (value === null ? null : shortText(value, digits)));
-  return before === after && before !== null && digits < MOST_DIGITS
+  return before === after && before !== null && digits < MAX_DIGITS
     ? toldApart(kept, now, digits + 1)
     : [before, after];
 }

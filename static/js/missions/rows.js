@@ -32,7 +32,7 @@ export const STATES = {
   failed: t("Failed"),
 };
 const EDITABLE = ["draft", "planned"];
-const MOST_DOTS = 24;
+const MAX_DOTS = 24;
 
 /** "39 of 46 targets" where a plan leaves some out. @param {MissionSummary} mission */
 function reachedWords({ target_count, unassigned_count }) {
@@ -164,7 +164,7 @@ function targetsCell(mission) {
     "td",
     { class: "targets" },
     count > 0 &&
-      count <= MOST_DOTS &&
+      count <= MAX_DOTS &&
       h(
         "div",
         { class: "dots", "aria-hidden": "true" },

@@ -7,7 +7,7 @@ import { t } from "../text.js";
 const WIDTH_PX = 112;
 const HEIGHT_PX = 56;
 const MARGIN_PX = 8;
-const LEAST_SPAN_DEG = 0.008; // of latitude: a single target is drawn with its surroundings
+const MIN_SPAN_DEG = 0.008; // of latitude: a single target is drawn with its surroundings
 
 /** @import { MissionSummary } from "../api_types.d.ts" */
 
@@ -19,7 +19,7 @@ const LEAST_SPAN_DEG = 0.008; // of latitude: a single target is drawn with its 
  * @param {readonly (readonly number[])[]} places
  * @returns {Projection | null}
  */
-export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MARGIN_PX, leastSpan = LEAST_SPAN_DEG) {
+export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MARGIN_PX, leastSpan = MIN_SPAN_DEG) {
   if (!places.length) return null;
   const latitude = places.reduce((sum, [, lat]) => sum + lat, 0) / places.length;
   const shrink = Math.max(0.05, Math.cos((latitude * Math.PI) / 180));

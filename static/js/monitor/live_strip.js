@@ -23,7 +23,7 @@ import { layOut, scaleOf } from "../mission/strips/span_strip.js";
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
 const DART_PX = 9;
-const LEAST_BRACKET_PX = 9;
+const MIN_BRACKET_PX = 9;
 
 /**
  * How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows.
@@ -72,7 +72,7 @@ export function liveStrip({ route, width_px, label, states, progress, certainty 
     base(plan.start),
     base(plan.end),
     plan.pills.map((pill) => drawPill(pill, states)),
-    progress && drawUav(at, Math.max(LEAST_BRACKET_PX, x(progress.within_m) - x(0)), certainty),
+    progress && drawUav(at, Math.max(MIN_BRACKET_PX, x(progress.within_m) - x(0)), certainty),
   );
 }
 

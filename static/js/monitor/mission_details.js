@@ -10,7 +10,7 @@ import { inAir } from "../domain/in_air.js";
 /** @typedef {Map<number, { parts: number[][][], last_ms: number }>} Flown lines by UAV */
 /** @typedef {{ geometry: { coordinates: number[] } | null, properties: { uav: number, measured_at: string, is_from_future?: boolean } }} Report */
 
-const MOST_RECORDS = 900;
+const MAX_RECORDS = 900;
 const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown
 
 /** The log as parts of a line by UAV: Map of uav → { parts: [[lon lat, …], …], last_ms }. @param {Report[]} features */
@@ -72,7 +72,7 @@ export function createMissionDetails(store) {
     /** @type {Report[]} */
     const features = [];
     /** @type {string | null} */
-    let next = `/telemetry?mission=${mission}&most=${MOST_RECORDS}&limit=1000`;
+    let next = `/telemetry?mission=${mission}&most=${MAX_RECORDS}&limit=1000`;
     while (next) {
       const { data } = /** @type {Answer<{ features: Report[], next: string | null }>} */ (await get(next));
       features.push(...data.features);

@@ -4,7 +4,7 @@
 /** @import { MonitorStore } from "./types.d.ts" */
 
 const CLOCKS_APART_MS = 3000;
-const SENDING_AT_MOST_MS = 12_000; // what the feed has not told by then is said by its other parts
+const MAX_SENDING_MS = 12_000; // what the feed has not told by then is said by its other parts
 
 /** @param {MonitorStore} store @param {number[]} ids of UAVs @param {CommandKind | null} kind null: nothing is on its way */
 export function markSending(store, ids, kind) {
@@ -23,7 +23,7 @@ export function dropSent(store) {
       const isThere = commands.some(
         (one) => one.uav.id === id && one.kind === kind && Date.parse(one.created_at) >= at_ms - CLOCKS_APART_MS,
       );
-      if (isThere || now_ms - at_ms > SENDING_AT_MOST_MS) markSending(store, [id], null);
+      if (isThere || now_ms - at_ms > MAX_SENDING_MS) markSending(store, [id], null);
     }
   });
 }

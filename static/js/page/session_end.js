@@ -12,7 +12,7 @@ import { clockText } from "../units.js";
 
 export const WARNS_S = 300;
 const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: somebody may be busy in another window
-const LONGEST_TIMER_S = 86_400;
+const MAX_TIMER_S = 86_400;
 
 /**
  * Looks when the session is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is told null,
@@ -53,7 +53,7 @@ export function createSessionWatch({
     clearTimer(timer);
     const isSoon = left_s <= WARNS_S;
     tell(isSoon ? { ends_at_ms: now_ms() + left_s * 1_000 } : null);
-    const wait_s = isSoon ? Math.min(ASKS_AGAIN_S, left_s + 1) : Math.min(left_s - WARNS_S, LONGEST_TIMER_S);
+    const wait_s = isSoon ? Math.min(ASKS_AGAIN_S, left_s + 1) : Math.min(left_s - WARNS_S, MAX_TIMER_S);
     timer = setTimer(look, wait_s * 1_000);
   }
 

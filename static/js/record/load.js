@@ -7,9 +7,9 @@ import { get } from "../api.js";
 
 /** @typedef {Awaited<ReturnType<typeof loadMission>>} LoadedMission */
 
-const MOST_RECORDS = 4_000; // over all UAVs; the server thins them out
-const MOST_ESTIMATES = 4_000;
-const MOST_ROWS = 2_000; // alerts and commands, each
+const MAX_RECORDS = 4_000; // over all UAVs; the server thins them out
+const MAX_ESTIMATES = 4_000;
+const MAX_ROWS = 2_000; // alerts and commands, each
 
 /**
  * @template {{ next: string | null }} Page
@@ -30,7 +30,7 @@ async function pagesAt(address, isEnough = () => false) {
 /** @template Row @param {{ results: Row[] }[]} pages */
 const rowsOf = (pages) => pages.flatMap(({ results }) => results);
 /** @param {{ results: unknown[], next: string | null }[]} pages */
-const areEnoughRows = (pages) => rowsOf(pages).length >= MOST_ROWS;
+const areEnoughRows = (pages) => rowsOf(pages).length >= MAX_ROWS;
 
 /** @template Feature @param {{ features: Feature[], every_s: number | null }[]} pages */
 const featuresOf = (pages) => ({
@@ -42,9 +42,9 @@ const featuresOf = (pages) => ({
 export async function loadMission(id) {
   const [{ data: record }, records, estimates, alerts, commands] = await Promise.all([
     /** @type {Promise<Answer<MissionRecord>>} */ (get(`/missions/${id}/record`)),
-    /** @type {Promise<RecordCollection[]>} */ (pagesAt(`/telemetry?mission=${id}&most=${MOST_RECORDS}&limit=1000`)),
+    /** @type {Promise<RecordCollection[]>} */ (pagesAt(`/telemetry?mission=${id}&most=${MAX_RECORDS}&limit=1000`)),
     /** @type {Promise<EstimateCollection[]>} */ (
-      pagesAt(`/missions/${id}/estimates?replaced=false&most=${MOST_ESTIMATES}&limit=1000`)
+      pagesAt(`/missions/${id}/estimates?replaced=false&most=${MAX_ESTIMATES}&limit=1000`)
     ),
     /** @type {Promise<AlertPage[]>} */ (pagesAt(`/alerts?mission=${id}&limit=200`, areEnoughRows)),
     /** @type {Promise<CommandPage[]>} */ (pagesAt(`/missions/${id}/commands?limit=200`, areEnoughRows)),

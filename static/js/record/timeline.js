@@ -38,7 +38,7 @@ const STEPS_MS = [
   12 * HOUR,
   24 * HOUR,
 ];
-const LONGEST_MS = STEPS_MS[STEPS_MS.length - 1];
+const MAX_MS = STEPS_MS[STEPS_MS.length - 1];
 const TICK_PX = 84;
 const SAME_MS = 500; // an event that the cursor stands on
 
@@ -82,7 +82,7 @@ export function ticksOf({ from_ms, to_ms }, width_px, ahead_min) {
   const most = Math.max(1, Math.floor(width_px / TICK_PX));
   const step_ms =
     STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ??
-    LONGEST_MS * Math.ceil((to_ms - from_ms) / LONGEST_MS / most);
+    MAX_MS * Math.ceil((to_ms - from_ms) / MAX_MS / most);
   const ahead_ms = ahead_min * MINUTE;
   const moments = [];
   for (let at = Math.ceil((from_ms + ahead_ms) / step_ms) * step_ms - ahead_ms; at <= to_ms; at += step_ms)

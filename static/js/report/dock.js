@@ -40,7 +40,7 @@ import { drawStrip } from "./strip.js";
 /** @typedef {{ routes: ReplayRoute[], span: TimeSpan }} Shown */
 /** @typedef {{ x: Scale["x"], width_px: number }} Axis */
 
-const MOST_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
+const MAX_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
 const MINUTE_MS = 60_000;
 const SHORT_S = 90;
 
@@ -232,7 +232,7 @@ export function createDock({ onChoose }) {
     byId("dock").classList.toggle("with-looked", looked !== null);
     for (const element of /** @type {NodeListOf<SVGElement>} */ (body.querySelectorAll("svg [data-place]")))
       element.classList.toggle("looked", Number(element.dataset.place) === looked);
-    const read = routes.filter(({ place }) => (looked === null ? routes.length <= MOST_READINGS : place === looked));
+    const read = routes.filter(({ place }) => (looked === null ? routes.length <= MAX_READINGS : place === looked));
     for (const { chart, drawing, readings } of drawn.charts) {
       const values = readingsOf(chart, moments);
       drawing.point(values);

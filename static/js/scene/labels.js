@@ -17,7 +17,7 @@ import { placeLabels } from "./label_places.js";
 /** @typedef {{ element: HTMLElement, text: string | null, className: string, width: number, height: number }} LabelElement */
 /** @typedef {ReturnType<typeof createLabels>} Labels */
 
-const MOST_OF_GROUND = 14;
+const MAX_OF_GROUND = 14;
 /** @type {Record<string, number>} by kind */
 const GROUND_REACH_M = { zone: 6_000, line: 2_500, tower: 420, bridge: 1_500, railway: 1_500 };
 const USUAL_REACH_M = 800;
@@ -130,7 +130,7 @@ function isFirstOfItsName() {
  * @param {number} [most]
  * @returns {SceneLabel[]}
  */
-export function groundLabels(labels, eye, most = MOST_OF_GROUND) {
+export function groundLabels(labels, eye, most = MAX_OF_GROUND) {
   return labels
     .map((label) => ({
       ...label,

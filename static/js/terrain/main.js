@@ -23,9 +23,9 @@ const HINTS = {
   profile: t("Click two or more points, or a power line."),
 };
 const KEYS_OF_PROFILE = ` ${t("Backspace takes the last point back, Esc ends.")}`;
-const MOST_SAMPLES = 1_500; // more than a drawing has pixels
+const MAX_SAMPLES = 1_500; // more than a drawing has pixels
 const REACH_PX = 24; // of the pointer from the profile's line, for the cursor
-const MOST_TOWER_PAGES = 10;
+const MAX_TOWER_PAGES = 10;
 
 /** @type {ModelFeature[]} */
 let models = [];
@@ -161,7 +161,7 @@ async function profileOfLine(id) {
 async function askProfile(line) {
   const length_m = pathLength_m(line);
   const finest_m = models.reduce((finest, { properties }) => Math.min(finest, properties.resolution_m), Infinity);
-  const step_m = Math.max(1, length_m / MOST_SAMPLES, Number.isFinite(finest_m) ? finest_m / 2 : 0);
+  const step_m = Math.max(1, length_m / MAX_SAMPLES, Number.isFinite(finest_m) ? finest_m / 2 : 0);
   const body = { line, step_m: Math.min(step_m, 100_000) };
   return /** @type {Answer<Profile>} */ (await post("/terrain/profile", body)).data;
 }
@@ -172,7 +172,7 @@ async function towersIn(box) {
   const found = [];
   /** @type {string | null} */
   let next = `/assets?kind=tower&limit=500&bbox=${box.map((degrees, index) => (degrees + (index < 2 ? -1e-6 : 1e-6)).toFixed(7)).join(",")}`;
-  for (let number = 0; next && number < MOST_TOWER_PAGES; number += 1) {
+  for (let number = 0; next && number < MAX_TOWER_PAGES; number += 1) {
     const { data } = /** @type {Answer<AssetCollection>} */ (await get(next));
     found.push(...data.features);
     next = data.next;

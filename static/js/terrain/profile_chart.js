@@ -21,7 +21,7 @@ export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
 /** @typedef {Pick<Profile, "length_m" | "distance_m" | "positions" | "ground_amsl_m" | "lowest_m" | "highest_m">} ProfileLine */
 /** @typedef {NonNullable<ReturnType<typeof scalesOf>>} Scales */
 
-const LEAST_SPAN_M = 20; // a plain must not look like mountains
+const MIN_SPAN_M = 20; // a plain must not look like mountains
 const UNTOLD_TOWER_PX = 12; // of a tower whose height nobody has stated; drawn broken
 const RULES = 3;
 
@@ -69,7 +69,7 @@ export function scalesOf(profile, towers, width, height) {
   if (!known.length) return null;
   const lowest = known.reduce((a, b) => Math.min(a, b));
   const highest = known.reduce((a, b) => Math.max(a, b));
-  const room = Math.max(0, LEAST_SPAN_M - (highest - lowest)) / 2;
+  const room = Math.max(0, MIN_SPAN_M - (highest - lowest)) / 2;
   const [low, high] = [lowest - room, highest + room];
   const [wide, tall] = [width - EDGES.left - EDGES.right, height - EDGES.top - EDGES.bottom];
   return {

@@ -24,7 +24,7 @@ OWN_UNKNOWN = "What its autopilot does by itself is not known."
 OWN = {"ardupilot": OWN_ARDUPILOT, "px4": OWN_PX4}
 FIX_IN_SPACE = 3
 MORE_SATELLITES, CLEAR_SHARE = 1, 0.85  # than raise it; of the HDOP that raises it
-LEAST_JUMP_M = 50.0
+MIN_JUMP_M = 50.0
 JUMP_LASTS_S = 6.0
 BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown it
 
@@ -66,7 +66,7 @@ def _jump_m(situation: Situation, fresh: Report) -> float | None:
         seconds = fresh.measured_s - before.measured_s
         if here is not None and there is not None and 0.0 < seconds <= BETWEEN_S:
             metres = _flat_m(there, here)
-            if metres >= max(LEAST_JUMP_M, situation.limits.jump_mps * _own_s(before, fresh, situation.link.clock_rate)):
+            if metres >= max(MIN_JUMP_M, situation.limits.jump_mps * _own_s(before, fresh, situation.link.clock_rate)):
                 memory.jumped_s, memory.jump_m = fresh.received_s, metres
     is_news = memory.jumped_s is not None and situation.now_s - memory.jumped_s <= JUMP_LASTS_S
     return memory.jump_m if is_news else None

@@ -24,7 +24,7 @@ class Command(BaseCommand):
 
     def add_arguments(self, parser: ArgumentParser) -> None:
         parser.add_argument("--name", help="the same at each start, and no other watch's (SPANWISE_ESTIMATOR_NAME)")
-        parser.add_argument("--most-uavs", type=int, help="that it holds at once (SPANWISE_ESTIMATOR_MOST_UAVS)")
+        parser.add_argument("--most-uavs", type=int, help="that it holds at once (SPANWISE_ESTIMATOR_MAX_UAVS)")
 
     def handle(self, *_: Any, name: str | None, most_uavs: int | None, **__: Any) -> None:
         watch = Watch(options_of_settings(name=name, most_uavs=most_uavs))

@@ -16,7 +16,7 @@ from telemetry.gateway.process import Gateway
 
 logger = logging.getLogger(__name__)
 
-PORT_EVERY_S = 5.0
+PORT_INTERVAL_S = 5.0
 ENDS_WITHIN_S = 9.5
 
 
@@ -44,7 +44,7 @@ class Command(BaseCommand):
                 if error.errno != errno.EADDRINUSE:
                     raise CommandError(f"The gateway cannot listen: {error}") from error
                 logger.error("the gateway waits for a port that somebody else holds: %s", error)
-                time.sleep(PORT_EVERY_S)
+                time.sleep(PORT_INTERVAL_S)
             else:
                 return
 

@@ -31,7 +31,7 @@ KILLED = (
 )
 KILLS, SHORT_KILLS = 50, 10
 BETWEEN_S = 6.0
-P95_S, MOST_S = 15.0, 30.0
+P95_S, MAX_S = 15.0, 30.0
 GIVEN_UP_S = 120.0
 PAGES = 3
 
@@ -87,8 +87,8 @@ def _tell(course: Course, recovered_s: list[tuple[str, float]], pages: Pages) ->
         of_kind[kind_of(name)].append(taken_s)
     longest = ", ".join(f"{kind} {max(taken):.1f}" for kind, taken in sorted(of_kind.items()))
     figure = f"p50 {percentile(all_s, 0.5):.1f} s, p95 {percentile(all_s, 0.95):.1f} s, longest {max(all_s):.1f} s ({longest})"
-    is_met = percentile(all_s, 0.95) <= P95_S and max(all_s) <= MOST_S
-    course.tell(f"{len(all_s)} kills (-9): until it works again", figure, f"p95 {P95_S:.0f} s, at most {MOST_S:.0f} s", is_met)
+    is_met = percentile(all_s, 0.95) <= P95_S and max(all_s) <= MAX_S
+    course.tell(f"{len(all_s)} kills (-9): until it works again", figure, f"p95 {P95_S:.0f} s, at most {MAX_S:.0f} s", is_met)
     course.tell(f"{PAGES} open pages", f"{pages.gaps} gaps in the sequence", "0", pages.gaps == 0)
 
 

@@ -24,9 +24,9 @@ STALLED = 10
 LASTS_S, SHORT_LASTS_S = 180.0, 20.0
 SETTLES_S, SHORT_SETTLES_S = 60.0, 10.0
 OPEN_WITHIN_S = 240.0
-MOST_AHEAD = 2**16  # bytes that come in before a page that reads nothing takes no more
+MAX_AHEAD = 2**16  # bytes that come in before a page that reads nothing takes no more
 AT_ONCE = 20  # pages that open at the same time
-MOST_GROWTH = 0.05
+MAX_GROWTH = 0.05
 COUNTS = {"worker-data": 0, "worker-flight": 0, "worker-planning": 0, "worker-simulation": 0, "simulator": 0, "beat": 0}
 
 
@@ -70,7 +70,7 @@ class Reader:
 
 
 async def _open(port: int, trust: ssl.SSLContext, token: str) -> Socket:
-    reader, writer = await asyncio.open_connection("localhost", port, ssl=trust, limit=MOST_AHEAD)
+    reader, writer = await asyncio.open_connection("localhost", port, ssl=trust, limit=MAX_AHEAD)
     key = base64.b64encode(secrets.token_bytes(16)).decode()
     head = f"GET /ws/live HTTP/1.1\r\nHost: localhost:{port}\r\nAuthorization: Bearer {token}\r\nConnection: Upgrade\r\n"
     writer.write(f"{head}Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n\r\n".encode())
@@ -124,7 +124,7 @@ async def _watch(course: Course, day: Day) -> None:
     _tell(course, readers, woken, heard / lasts_s, lasts_s)
     growth = after / before - 1
     figure = f"{before / 2**20:.0f} MiB, {growth:+.1%} in {lasts_s:.0f} s"
-    course.tell("memory of the live program", figure, f"+{MOST_GROWTH:.0%} at most", growth <= MOST_GROWTH)
+    course.tell("memory of the live program", figure, f"+{MAX_GROWTH:.0%} at most", growth <= MAX_GROWTH)
 
 
 def _tell(course: Course, readers: list[Reader], woken: int, heard_per_s: float, lasts_s: float) -> None:

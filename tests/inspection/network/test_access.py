@@ -6,7 +6,7 @@ from shapely import box
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.network.flown_heights import FlownHeights
-from inspection.network.paths.access import MOST_ROUND, clear_legs
+from inspection.network.paths.access import MAX_ROUND, clear_legs
 from inspection.network.zones.zone_index import ZoneIndex
 from tests.inspection.network.drawn_graphs import drawn_graph
 
@@ -43,11 +43,11 @@ def test_the_search_widens_past_nodes_behind_a_zone_and_the_nearest_of_these_are
     """The wall stands between the position and the first forty nodes; round its western end it is 1.5 km."""
     wall = ZoneIndex([box(9.99, 50.0004, 10.02, 50.0006)], [7], ["wall"])
     found = legs(zones=wall, want=3, radius_m=10_000)
-    straight, bent = list(found)[:-MOST_ROUND], list(found)[-MOST_ROUND:]
+    straight, bent = list(found)[:-MAX_ROUND], list(found)[-MAX_ROUND:]
     assert len(straight) == 3
     assert straight[0].node > 35
     assert [leg.bends for leg in straight] == [()] * 3
-    assert [leg.node for leg in bent] == list(range(MOST_ROUND))
+    assert [leg.node for leg in bent] == list(range(MAX_ROUND))
     assert all(len(leg.bends) == 2 for leg in bent)
     for leg in found:
         line = np.array([(10.0, 50.001), *leg.bends, CHAIN.position[leg.node]])

@@ -17,7 +17,7 @@ from tests.exact_geometry import segment_meets_polygon
 from tests.inspection.network.drawn_ground import Spot, lonlat, square, zone
 
 CLEARANCE_M = 5.0
-LONGEST_M = 10_000.0
+MAX_LENGTH_M = 10_000.0
 
 
 def index(*polygons: BaseGeometry, **bands: list[float]) -> ZoneIndex:
@@ -31,7 +31,7 @@ def errand(*spots: Spot, heights: tuple[float, float] | None = None) -> Errand:
     return Errand(places, pairs, *(heights or (None, None)))
 
 
-def way(zones: ZoneIndex, start: Spot, end: Spot, longest_m: float = LONGEST_M, **flown: tuple[float, float]) -> WayRound | None:
+def way(zones: ZoneIndex, start: Spot, end: Spot, longest_m: float = MAX_LENGTH_M, **flown: tuple[float, float]) -> WayRound | None:
     return ways_round(zones, [errand(start, end, **flown)], CLEARANCE_M, longest_m)[0][0]
 
 
@@ -137,7 +137,7 @@ def test_a_small_bay_of_a_vast_zone_is_gone_round_as_closely_as_a_small_zone():
     coast = [(250.0 * number - 200_000.0, -500.0 * np.cos(np.pi * number / 2)) for number in range(1_601)]
     vast = zone(*coast, (200_000.0, -90_000.0), (-200_000.0, -90_000.0))
     zones, start, end = index(vast), (0.0, 0.0), (1_000.0, 0.0)
-    found = ways_round(zones, [errand(start, end)], CLEARANCE_M, LONGEST_M)[0][0]
+    found = ways_round(zones, [errand(start, end)], CLEARANCE_M, MAX_LENGTH_M)[0][0]
     line = np.array([lonlat(start), *found.bend.tolist(), lonlat(end)])
     assert not zones.meets(line[:-1], line[1:], CLEARANCE_M).any()
     assert found.length_m == pytest.approx(2 * np.hypot(500.0, 505.0), abs=60.0)
@@ -150,9 +150,9 @@ def test_a_zone_across_the_seam_is_not_gone_round():
 
 
 def test_nothing_asked_is_nothing_found():
-    assert ways_round(index(square((0.0, 0.0), 10.0)), [], CLEARANCE_M, LONGEST_M) == []
+    assert ways_round(index(square((0.0, 0.0), 10.0)), [], CLEARANCE_M, MAX_LENGTH_M) == []
     empty = Errand(np.zeros((0, 2)), np.zeros((0, 2), dtype=np.int64))
-    assert ways_round(index(), [empty, errand((0.0, 0.0), (9.0, 0.0))], CLEARANCE_M, LONGEST_M)[0] == []
+    assert ways_round(index(), [empty, errand((0.0, 0.0), (9.0, 0.0))], CLEARANCE_M, MAX_LENGTH_M)[0] == []
 
 
 spot = st.tuples(st.integers(-40, 40), st.integers(-40, 40)).map(lambda place: (place[0] * 25.0, place[1] * 25.0))
@@ -176,7 +176,7 @@ def zones_apart(draw: st.DrawFn) -> list[BaseGeometry]:
 def test_as_short_as_brute_force_and_clear(drawn, spots):
     """Brute force: all legs between all corners, stood off by 6 m, that shapely finds to be farther than 5.05 m from every zone."""
     zones = index(*drawn)
-    found = ways_round(zones, [errand(*spots)], CLEARANCE_M, LONGEST_M)[0]
+    found = ways_round(zones, [errand(*spots)], CLEARANCE_M, MAX_LENGTH_M)[0]
     for end, one in zip(spots[1:], found, strict=True):
         if one is not None:
             assert_clear(zones, one, spots[0], end)

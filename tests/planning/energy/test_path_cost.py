@@ -29,7 +29,7 @@ def test_sums_are_kept_for_the_same_wind_and_kind_of_uav_alone() -> None:
 def test_beyond_their_room_the_sums_used_longest_ago_go_first(monkeypatch: pytest.MonkeyPatch) -> None:
     graph = line_graph([at(0, 0), at(500, 0)], [45, 45])
     iris = graph_taken(graph, IRIS, WINDY, RULES, None)
-    monkeypatch.setattr(path_cost, "MOST_BYTES", 2 * iris.sums.nbytes)
+    monkeypatch.setattr(path_cost, "MAX_BYTES", 2 * iris.sums.nbytes)
     heavy = graph_taken(graph, HEAVY, WINDY, RULES, None)
     assert graph_taken(graph, IRIS, WINDY, RULES, None) is iris
     graph_taken(graph, IRIS, Conditions(), RULES, None)

@@ -48,7 +48,7 @@ def test_each_order_is_tried_where_there_are_few_targets(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(12))
 def test_of_many_targets_a_route_is_found_that_is_one(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cheapest_route, "MOST_TRIED", 0)
+    monkeypatch.setattr(cheapest_route, "MAX_TRIED", 0)
     problem = drawn(seed)
     routes = LeastRoutes(problem, Kind.METRES)
     for visit in range(len(problem.visits)):

@@ -118,7 +118,7 @@ def test_the_other_uav_is_quicker_than_a_second_sortie() -> None:
 
 def test_the_number_of_targets_is_that_of_all_sorties() -> None:
     (left_out,) = solve(on_a_road([-10, 10], (returning(21, sorties=2, most_targets=1),))).unassigned
-    assert left_out.reason is Reason.MOST_TARGETS
+    assert left_out.reason is Reason.MAX_TARGETS
 
 
 def test_a_route_that_has_to_begin_with_a_run_is_one_flight() -> None:

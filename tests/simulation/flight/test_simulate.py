@@ -12,7 +12,7 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.route_file import MOST_WAYPOINTS, InvalidRoute, RouteFile, items_of, read_route
+from simulation.flight.route_file import MAX_WAYPOINTS, InvalidRoute, RouteFile, items_of, read_route
 from simulation.flight.route_flight import cross_track_m, fly_route
 from simulation.flight.weather import Weather
 from tests.simulation.flight.lists import HOME, off_m, place, wind
@@ -73,7 +73,7 @@ def test_route_is_flown_from_a_shell_without_database_and_redis(tmp_path: Path) 
             },
             "180th meridian",
         ),
-        ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 9}] * (MOST_WAYPOINTS + 1), "speed_mps": 5}, "at most 9,000"),
+        ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 9}] * (MAX_WAYPOINTS + 1), "speed_mps": 5}, "at most 9,000"),
     ],
 )
 def test_route_that_makes_no_sense_is_named(wrong: Any, words: str) -> None:

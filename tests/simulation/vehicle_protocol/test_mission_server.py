@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.mission_server import MOST_REQUESTS, REQUEST_EVERY_S
+from simulation.vehicle_protocol.mission_server import MAX_REQUESTS, REQUEST_INTERVAL_S
 from simulation.vehicle_protocol.stations import Station
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import TO, Talk, kinds, only
@@ -153,10 +153,10 @@ def test_a_silent_station_is_asked_again_and_then_told_that_it_is_over():
     talk.say(count(5), item(0, waypoint(0)))
     told = [
         one
-        for one in talk.pass_by(REQUEST_EVERY_S * (MOST_REQUESTS + 4))
+        for one in talk.pass_by(REQUEST_INTERVAL_S * (MAX_REQUESTS + 4))
         if one.get_type().startswith("MISSION_") and hasattr(one, "mission_type")
     ]
-    assert kinds(told) == ["MISSION_REQUEST_INT"] * (MOST_REQUESTS - 1) + ["MISSION_ACK"]
+    assert kinds(told) == ["MISSION_REQUEST_INT"] * (MAX_REQUESTS - 1) + ["MISSION_ACK"]
     assert {one.seq for one in told[:-1]} == {1} and told[-1].type == mavlink.MAV_MISSION_OPERATION_CANCELLED
     assert len(talk.uav.items) == 3
     assert only(talk.say(item(1, waypoint(1))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
@@ -165,7 +165,7 @@ def test_a_silent_station_is_asked_again_and_then_told_that_it_is_over():
 def test_tries_go_by_the_wall_and_not_by_simulated_time():
     talk = Talk()
     talk.say(count(5))
-    told = talk.pass_by(20.0, wall_s=2 * REQUEST_EVERY_S + 0.01)
+    told = talk.pass_by(20.0, wall_s=2 * REQUEST_INTERVAL_S + 0.01)
     assert kinds(told).count("MISSION_REQUEST_INT") == 2
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mavlink.decoding.measurement import Measurement
-from telemetry.alerting.detector import LOOK_EVERY_S
+from telemetry.alerting.detector import POLL_INTERVAL_S
 from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.order import DETECTORS
@@ -74,7 +74,7 @@ def wrong_with(make, seed: int) -> str:
             words.append(f"{code} told before it began")
     if make is link_lost:
         lost_s = watch.reached("link-lost", (CRITICAL,))
-        if lost_s is None or lost_s > START_S + fault.begins_s + lost_after_s(LIMITS, interval_s) + LOOK_EVERY_S:
+        if lost_s is None or lost_s > START_S + fault.begins_s + lost_after_s(LIMITS, interval_s) + POLL_INTERVAL_S:
             words.append("lost too late")
     wanted = {code for code, _, _ in fault.due}
     opened = [(event.code, event.subject) for event in watch.opened()]

@@ -13,7 +13,7 @@ from mavlink.decoding.measurement import Measurement
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
+from telemetry.alerting.meetings import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.alerting.watched import WatchedUav
@@ -131,7 +131,7 @@ def test_in_a_crowd_each_is_told_of_those_that_come_nearest():
     crowd = [a_uav(key, lat_m=float(key)) for key in range(40)]
     met = meetings(crowd, 20.0)
     told = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
-    assert len(told) <= 40 * MOST_MET
+    assert len(told) <= 40 * MAX_MET
     assert {(key, key + 1) for key in range(39)} <= told
 
 

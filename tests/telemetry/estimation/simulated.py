@@ -32,13 +32,13 @@ from tests.simulation.planned_flights import planned_timing, usable_wh
 from tests.telemetry.estimation.heard import reports_of
 from tests.telemetry.estimation.routes import drawn_route, route_on_line
 from tests.telemetry.estimation.scoring import BEGUN_S, INTERVALS_S, Score, score
-from tests.telemetry.estimation.truth import LONGEST_S, STEP_S, Events, Truth
+from tests.telemetry.estimation.truth import MAX_DURATION_S, STEP_S, Events, Truth
 
 SAMPLE_STEPS = 5  # of 0.04 s; the rest of a truth's rows lie between
 HOVERS_S = 20.0
 STANDS_S = 8.0  # after the landing
 SPEEDS_MPS = {"iris": (4.0, 5.0, 6.0, 8.0), "inspector": (8.0, 10.0, 12.0, 14.0)}
-MOST_WIND_MPS = {"iris": 6.0, "inspector": 10.0}  # as forecast
+MAX_WIND_MPS = {"iris": 6.0, "inspector": 10.0}  # as forecast
 WIND_AGL_M = 60.0
 
 
@@ -60,7 +60,7 @@ def simulated_flight(seed: int, lines: Sequence[Sequence[LonLat]] = ()) -> Simul
     code = "iris" if seed // 2 % 2 else "inspector"
     flavour = chance.choice(list(Flavour))
     while True:
-        speeds, most_mps = SPEEDS_MPS[code], MOST_WIND_MPS[code]
+        speeds, most_mps = SPEEDS_MPS[code], MAX_WIND_MPS[code]
         route = route_on_line(seed, lines, speeds) if lines and seed % 2 else drawn_route(seed, speeds)
         forecast = WindLayer(WIND_AGL_M, chance.choice([0.0, 1.0]) * chance.uniform(1.0, most_mps), chance.uniform(0.0, 359.0))
         timed = planned_timing(route, code, Conditions((forecast,)))
@@ -128,7 +128,7 @@ class _Operator:
         self._must(uav.load(self._items).is_done)
         self._until(self._starts_s)
         self._must(uav.set_mode(Mode.MISSION).is_done and uav.arm().is_done)
-        while uav.now_s < LONGEST_S and uav.is_armed and uav.mission_state is not MissionState.COMPLETE:
+        while uav.now_s < MAX_DURATION_S and uav.is_armed and uav.mission_state is not MissionState.COMPLETE:
             self._intervene()
             self._step()
         self._must(not uav.is_crashed)

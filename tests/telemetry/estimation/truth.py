@@ -17,7 +17,7 @@ from mavlink.approved_route import HOVER, Flight
 from telemetry.estimation.knowledge import Knowledge
 
 STEP_S = 0.1
-LONGEST_S = 3_600.0
+MAX_DURATION_S = 3_600.0
 FloatArray = NDArray[np.float64]
 MODES = {
     "px4": {"mission": "MISSION", "hold": "LOITER", "return": "RTL", "land": "LAND"},
@@ -175,7 +175,7 @@ class _Pilot:
         target_m, stay = max(self.uav.up, 50.0), self._braked()
         while self.uav.up < target_m - 1.0:
             self._stay(stay, self.uav.climbs_mps, "return")
-        while (far_m := math.hypot(self.uav.east, self.uav.north)) > 2.0 and self.now_s < LONGEST_S:
+        while (far_m := math.hypot(self.uav.east, self.uav.north)) > 2.0 and self.now_s < MAX_DURATION_S:
             speed = min(self._ground_speed(-self.uav.east, -self.uav.north, self.knowledge.cruise_speed_mps), self._stopping(far_m))
             self._step(-self.uav.east / far_m * speed, -self.uav.north / far_m * speed, 0.0, "return")
         self._land("return", 0.0)
@@ -189,7 +189,7 @@ class _Pilot:
         wished = (waypoint.speed_mps or self.knowledge.cruise_speed_mps) * self.pace
         length_m = math.hypot(east - start[0], north - start[1])
         rise_m = waypoint.altitude_relative_m - start[2]
-        while self.now_s < LONGEST_S:
+        while self.now_s < MAX_DURATION_S:
             if self.now_s >= self.pause_at:
                 self.pause_at = math.inf
                 self._wait_paused()
@@ -275,7 +275,7 @@ class _Pilot:
 
     def _land(self, mode: str, ground_m: float) -> None:
         stay = self._braked()
-        while self.uav.up > ground_m + 0.1 and self.now_s < LONGEST_S:
+        while self.uav.up > ground_m + 0.1 and self.now_s < MAX_DURATION_S:
             sinks = self.uav.sinks_mps if self.uav.up > ground_m + self.slow_below_m else 0.7
             self._stay(stay, -sinks, mode)
         self._stand(8.0, mode, in_air=False)

@@ -13,7 +13,7 @@ from urllib.parse import quote
 from django.conf import settings
 from django.db import connection
 
-from tests.telemetry.gateway.station import PATIENCE_S
+from tests.telemetry.gateway.station import TIMEOUT_S
 
 PROJECT_DIR = Path(__file__).resolve().parents[3]
 
@@ -43,7 +43,7 @@ def gateway_program(port: int, log_dir: Path, *, name: str = "test", transport: 
         process = subprocess.Popen(  # noqa: S603
             command, cwd=PROJECT_DIR, env=environment(log_dir), stdout=subprocess.PIPE, stderr=log, text=True, bufsize=1
         )
-        timer = threading.Timer(3 * PATIENCE_S, process.kill)
+        timer = threading.Timer(3 * TIMEOUT_S, process.kill)
         timer.start()
         try:
             assert process.stdout is not None

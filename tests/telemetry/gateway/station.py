@@ -23,10 +23,10 @@ from telemetry.gateway.options import Address, Options
 from telemetry.gateway.process import Gateway
 from workspace.models import User
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
-def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = PATIENCE_S) -> Any:
+def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = TIMEOUT_S) -> Any:
     """What `fact` tells as soon as it is true."""
     until_s = time.monotonic() + patience_s
     while time.monotonic() < until_s:
@@ -63,12 +63,12 @@ def gateway_at_work(log_dir: Path, *, name: str = "test", **options: Any) -> Ite
     thread = threading.Thread(target=run, name=f"gateway {name}")
     thread.start()
     try:
-        assert started.wait(PATIENCE_S), "the gateway does not listen"
+        assert started.wait(TIMEOUT_S), "the gateway does not listen"
         yield made[0]
     finally:
         if len(made) == 2:
             made[1].call_soon_threadsafe(made[0].stop)
-        thread.join(PATIENCE_S)
+        thread.join(TIMEOUT_S)
         connections.close_all()
         assert not thread.is_alive(), f"the gateway does not end: {asyncio.all_tasks(made[1])}"
 

@@ -21,12 +21,12 @@ from mavlink.mission_sync.flown_items import Flown
 from mavlink.signing import FrameWriter
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem
-from mavlink.vehicle_state import MOST_PARAMETERS, VehicleState
+from mavlink.vehicle_state import MAX_PARAMETERS, VehicleState
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway
-from telemetry.gateway.desk import MOST_UPLOADS, Desk
+from telemetry.gateway.desk import MAX_UPLOADS, Desk
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
@@ -126,7 +126,7 @@ def test_nothing_is_set_in_motion_while_it_is_loaded(kind, loading):
 
 def test_an_abort_is_claimed_however_many_uploads_there_are():
     session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True, may_hear=lambda _: True)
-    uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MOST_UPLOADS)]
+    uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MAX_UPLOADS)]
     database = Database(renew_claims=lambda: {upload.pk: 1 for upload in uploads}, claim_commands=list)
     desk = a_desk(database, session)
     desk._carriages = {upload.pk: Carriage(upload, None, None) for upload in uploads}
@@ -261,12 +261,12 @@ def test_a_vehicle_that_says_too_much_keeps_to_its_room():
     in_mission = mavlink.MAVLink_heartbeat_message(2, mavlink.MAV_AUTOPILOT_PX4, 1 | 128, MISSION, 4, 3)
     messages = [in_mission, mavlink.MAVLink_extended_sys_state_message(0, IN_AIR)]
     messages += [mavlink.MAVLink_mission_item_reached_message(number % 7) for number in range(500)]
-    messages += [mavlink.MAVLink_param_value_message(f"P{number}".encode(), 1.0, 9, 1, 0) for number in range(MOST_PARAMETERS + 50)]
+    messages += [mavlink.MAVLink_param_value_message(f"P{number}".encode(), 1.0, 9, 1, 0) for number in range(MAX_PARAMETERS + 50)]
     for message in messages:
         for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
             session.receive(frame, peer, time.time())
     assert [flown.item for flown in session.flown] == [0, 499 % 7], "the first, which may be being told, and the last"
-    assert len(session.state.parameters) == MOST_PARAMETERS
+    assert len(session.state.parameters) == MAX_PARAMETERS
 
 
 def test_one_that_sends_far_too_much_takes_no_room_from_the_others():

@@ -26,7 +26,7 @@ LOSS = 0.3
 KILLS = 5
 UAVS = 40
 WANTED_FOR_S = 3_600.0
-LONGEST_S = 420.0
+MAX_DURATION_S = 420.0
 UAVS_IN_OVERLOAD = 160
 LIFE_S = 12.0
 URGENT = (CommandKind.HOLD, CommandKind.RETURN)
@@ -132,10 +132,10 @@ def test_commands_over_bad_links_and_killed_gateways(number, tmp_path):
                     program.send_signal(signal.SIGKILL)
                     program.wait()
                     continue
-                wait_for(lambda: not is_open().exclude(kind=CommandKind.CLEAR_MISSION).exists(), "all orders", patience_s=LONGEST_S)
+                wait_for(lambda: not is_open().exclude(kind=CommandKind.CLEAR_MISSION).exists(), "all orders", patience_s=MAX_DURATION_S)
                 for vehicle in fleet.vehicles.values():  # what flies keeps its mission
                     vehicle.is_armed = vehicle.is_in_air = False
-                wait_for(lambda: not is_open().exists(), "all missions to be off", patience_s=LONGEST_S)
+                wait_for(lambda: not is_open().exists(), "all missions to be off", patience_s=MAX_DURATION_S)
         taken = {system: list(vehicle.taken) for system, vehicle in fleet.vehicles.items()}
     ends = Counter(UavCommand.objects.values_list("state", "outcome_code"))
     assert sum(ends.values()) == number
@@ -150,7 +150,7 @@ def test_what_is_urgent_hardly_waits_though_gateways_are_killed(tmp_path, monkey
 
     The waits are those of the people who gave the commands, from given to done: the time in which no gateway runs is in all of them.
     """
-    monkeypatch.setenv("SPANWISE_GATEWAY_MOST_COMMANDS", "2")
+    monkeypatch.setenv("SPANWISE_GATEWAY_MAX_COMMANDS", "2")
     uavs = [unsigned_uav(system) for system in range(1, UAVS_IN_OVERLOAD + 1)]
     chance, port, given = random.Random(11), free_port(), 0
     with Fleet(port, [uav.mavlink_system_id for uav in uavs]) as fleet:
@@ -169,7 +169,7 @@ def test_what_is_urgent_hardly_waits_though_gateways_are_killed(tmp_path, monkey
                     urgent(chance.choice(uavs), chance)  # while nobody is there
                     given += 1
                 else:
-                    wait_for(lambda: not is_open().exists(), "all commands", patience_s=LONGEST_S)
+                    wait_for(lambda: not is_open().exists(), "all commands", patience_s=MAX_DURATION_S)
         taken = {system: list(vehicle.taken) for system, vehicle in fleet.vehicles.items()}
     told = {(CommandState.APPLIED, ""), (CommandState.EXPIRED, "superseded")}
     assert set(UavCommand.objects.values_list("state", "outcome_code")) <= told
@@ -198,7 +198,7 @@ def p99_wait_s(priority: CommandPriority) -> float:
 @pytest.mark.long
 def test_what_is_urgent_hardly_waits_under_overload(tmp_path, settings, record_property):
     """Of a gateway that can do four things at once forty speeds are wanted; now and then a UAV must hold."""
-    settings.GATEWAY_MOST_COMMANDS = 4
+    settings.GATEWAY_MAX_COMMANDS = 4
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
     with gateway_at_work(tmp_path) as gateway, Fleet(port_of(gateway), [uav.mavlink_system_id for uav in uavs]):
         wait_for(lambda: len(gateway.sessions) == UAVS and all(session.state.flavour for session in gateway.sessions.values()))

@@ -17,7 +17,7 @@ from telemetry.selectors.alert_words import alert_words
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
-from tests.telemetry.gateway.station import PATIENCE_S, gateway_at_work, port_of, wait_for
+from tests.telemetry.gateway.station import TIMEOUT_S, gateway_at_work, port_of, wait_for
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
@@ -44,7 +44,7 @@ def begin(uav: Uav, mission: Mission, approval: Approval) -> UavCommand:
     return queue_command(uav=uav, kind=CommandKind.START, actor=None, mission=mission, approval=approval, parameters={"flight": 1})
 
 
-def ended(command: UavCommand, *, patience_s: float = PATIENCE_S) -> UavCommand:
+def ended(command: UavCommand, *, patience_s: float = TIMEOUT_S) -> UavCommand:
     def found() -> bool:
         command.refresh_from_db()
         return command.state in (CommandState.APPLIED, CommandState.FAILED, CommandState.EXPIRED)

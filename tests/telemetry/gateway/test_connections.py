@@ -55,7 +55,7 @@ def test_one_that_takes_nothing_gets_whole_frames_or_none_and_holds_up_nobody(li
         began_s = time.monotonic()
         for _ in range(200_000):
             peer.send(BEAT)
-        assert peer.writer.transport.get_write_buffer_size() < peers.MOST_UNSENT + len(BEAT)
+        assert peer.writer.transport.get_write_buffer_size() < peers.MAX_UNSENT + len(BEAT)
         assert time.monotonic() - began_s < 8.0, "it is not waited for"
         with another(port):
             await until(lambda: len(heard) == 2)
@@ -66,7 +66,7 @@ def test_one_that_takes_nothing_gets_whole_frames_or_none_and_holds_up_nobody(li
                 taken += piece
         except TimeoutError:
             pass
-        assert len(taken) > peers.MOST_UNSENT // 2
+        assert len(taken) > peers.MAX_UNSENT // 2
         assert taken == BEAT * (len(taken) // len(BEAT)), "no frame is cut"
         slow.close()
         listeners.close()
@@ -89,7 +89,7 @@ def test_one_that_was_left_half_open_is_given_up(listeners, heard, monkeypatch):
 
 
 def test_who_fills_all_connections_does_not_keep_a_vehicle_out(listeners, heard, monkeypatch):
-    monkeypatch.setattr(peers, "MOST_CONNECTIONS", 5)
+    monkeypatch.setattr(peers, "MAX_CONNECTIONS", 5)
 
     async def run() -> None:
         port, vehicle = await connected(listeners)

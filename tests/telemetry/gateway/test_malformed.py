@@ -17,7 +17,7 @@ pytestmark = pytest.mark.django_db(transaction=True)
 
 GOOD_EVERY = 50
 LET_IT_CATCH_UP = 1_000
-MOST_GROWTH_MIB = 24.0
+MAX_GROWTH_MIB = 24.0
 
 
 def resident_mib() -> float:
@@ -75,7 +75,7 @@ def test_malformed_datagrams(number, tmp_path, record_property):
                 began_mib = resident_mib()
         wait_for(lambda: TelemetryRecord.objects.count() == len(sent))
         assert gateway.listeners.damages.total() >= number * 0.95
-        assert resident_mib() - began_mib < MOST_GROWTH_MIB
+        assert resident_mib() - began_mib < MAX_GROWTH_MIB
         assert not gateway.damages
         dropped = gateway.listeners.damages.total()
         grown_mib = resident_mib() - began_mib

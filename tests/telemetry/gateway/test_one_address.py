@@ -17,7 +17,7 @@ from tests.workspace.people import somebody
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
-PATIENCE_S = 180.0
+TIMEOUT_S = 180.0
 NAMES = ("one", "two")
 
 
@@ -50,19 +50,19 @@ def test_a_uav_whose_gateway_is_killed_is_served_by_another_one_behind_the_same_
         address = running.enter_context(OneAddress(backends))
         for vehicle, key in vehicles:
             running.enter_context(Flyer(vehicle, address.port, key=key))
-        wait_for(lambda: {holder_of(uav).partition("/")[0] for uav in uavs} == set(NAMES), "each has one", patience_s=PATIENCE_S)
+        wait_for(lambda: {holder_of(uav).partition("/")[0] for uav in uavs} == set(NAMES), "each has one", patience_s=TIMEOUT_S)
         lost = next(uav for uav in uavs if holder_of(uav).startswith("one/"))
         stays = next(uav for uav in uavs if uav.pk != lost.pk)
-        wait_for(lambda: newest(lost) and newest(stays), "both report", patience_s=PATIENCE_S)
+        wait_for(lambda: newest(lost) and newest(stays), "both report", patience_s=TIMEOUT_S)
 
         programs[0].send_signal(signal.SIGKILL)
         programs[0].wait()
         hold = queue_command(uav=lost, kind=CommandKind.HOLD, actor=None)
         before, before_of_other = newest(lost), newest(stays)
         backends[0].is_there = False  # its pod is not ready any more
-        wait_for(lambda: holder_of(lost).startswith("two/"), "the other one serves it", patience_s=PATIENCE_S)
-        wait_for(lambda: newest(lost) > before and newest(stays) > before_of_other, "both report", patience_s=PATIENCE_S)
-        wait_for(lambda: is_applied(hold), "the command", patience_s=PATIENCE_S)
+        wait_for(lambda: holder_of(lost).startswith("two/"), "the other one serves it", patience_s=TIMEOUT_S)
+        wait_for(lambda: newest(lost) > before and newest(stays) > before_of_other, "both report", patience_s=TIMEOUT_S)
+        wait_for(lambda: is_applied(hold), "the command", patience_s=TIMEOUT_S)
     for uav in uavs:
         sequences = list(TelemetryRecord.objects.filter(uav=uav).values_list("sequence", flat=True))
         assert len(sequences) == len(set(sequences)), "each once"

@@ -9,7 +9,7 @@ from typing import Any
 
 from websocket import ABNF, WebSocket, WebSocketException, WebSocketTimeoutException
 
-from tests.workspace.front_door import PATIENCE_S
+from tests.workspace.front_door import TIMEOUT_S
 
 KINDS = ("uavs", "missions", "alerts", "commands", "offers")
 
@@ -54,7 +54,7 @@ class Page:
                     self.shows[kind].pop(gone, None)
         return message
 
-    def take_until(self, is_so: Callable[["Page"], Any], patience_s: float = PATIENCE_S) -> Any:
+    def take_until(self, is_so: Callable[["Page"], Any], patience_s: float = TIMEOUT_S) -> Any:
         """What `is_so` finds."""
         until_s = time.monotonic() + patience_s
         while not (found := is_so(self)):
@@ -63,7 +63,7 @@ class Page:
                 self.take()
             except WebSocketTimeoutException:
                 raise AssertionError("it was never told") from None
-        self.socket.settimeout(PATIENCE_S)
+        self.socket.settimeout(TIMEOUT_S)
         return found
 
     def say(self, word: object) -> None:

@@ -30,7 +30,7 @@ from workspace.timed_waits import wait_for_event
 pytestmark = pytest.mark.django_db(transaction=True)
 
 PAGES = 8
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 
 
 @dataclass
@@ -57,7 +57,7 @@ def replicas(django_db_setup: None) -> Iterator[Replicas]:
         running_here.enter_context(running([nginx, "-e", "stderr", "-c", str(configuration)]))
         programs = [running_here.enter_context(running(commands.live("--uds", str(path)), **door.environment)) for path in sockets]
         two = replace(door, port=port)
-        wait_until(lambda: all(accepts(path) for path in sockets) and two.is_open, PATIENCE_S)
+        wait_until(lambda: all(accepts(path) for path in sockets) and two.is_open, TIMEOUT_S)
         yield Replicas(two, programs)
 
 
@@ -77,20 +77,20 @@ def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(repl
     assert store_records([record(uav, 1, longitude_deg=10.0)]).stored == 1
     pages = [Page(replicas.door.open("/ws/live", user=person)) for _ in range(PAGES)]
     for page in pages:
-        page.take_until(lambda one: shows(one, uav, 10.0), PATIENCE_S)
+        page.take_until(lambda one: shows(one, uav, 10.0), TIMEOUT_S)
     stopped = replicas.programs[0]
     stopped.send_signal(signal.SIGTERM)
     assert store_records([record(uav, 2, longitude_deg=10.5)]).stored == 1
-    stopped.wait(PATIENCE_S)
+    stopped.wait(TIMEOUT_S)
     assert store_records([record(uav, 3, longitude_deg=11.0)]).stored == 1
     came_back = 0
     for page in pages:
         try:
-            page.take_until(lambda one: shows(one, uav, 11.0), PATIENCE_S)
+            page.take_until(lambda one: shows(one, uav, 11.0), TIMEOUT_S)
         except HungUp as goodbye:
             assert goodbye.code == RESTARTS
             again = Page(replicas.door.open("/ws/live", user=person))
-            again.take_until(lambda one: shows(one, uav, 11.0), PATIENCE_S)
+            again.take_until(lambda one: shows(one, uav, 11.0), TIMEOUT_S)
             came_back += 1
     assert 0 < came_back < PAGES
 
@@ -114,7 +114,7 @@ def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None
         farewell.begin()
         farewell.begin()
         sockets.append(Told(farewell))
-        assert await wait_for_event(left, PATIENCE_S)
+        assert await wait_for_event(left, TIMEOUT_S)
         loop.remove_signal_handler(signal.SIGINT)
         return sockets, len(farewell._sockets)
 

@@ -13,7 +13,7 @@ from missions.services.flying import mark_started, mark_target
 from missions.services.refused import Refused
 from missions.services.steering import command_uav
 from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
-from telemetry.selectors.live import MOST_CLOSED
+from telemetry.selectors.live import MAX_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
 from tests.missions.flights import approved, carry, dispatched, fleet, ground
@@ -109,10 +109,10 @@ def test_of_alerts_that_were_closed_the_newest_are_shown_of_all_and_of_each_miss
     facts = {"uav": uav, "level": AlertLevel.ADVISORY, "opened_at": now - timedelta(minutes=50)}
     Alert.objects.create(**facts, code="open", message="open", mission=busy)
     Alert.objects.create(**facts, code="calm", message="calm", mission=quiet, closed_at=now - timedelta(minutes=49))
-    for number in range(MOST_CLOSED + 5):
+    for number in range(MAX_CLOSED + 5):
         closed_at = now - timedelta(seconds=10 * number)
         Alert.objects.create(**facts, code=f"a{number}", message="over", mission=busy, closed_at=closed_at)
-    newest = {"open", *(f"a{number}" for number in range(MOST_CLOSED))}
+    newest = {"open", *(f"a{number}" for number in range(MAX_CLOSED))}
     assert {alert["code"] for alert in shown(user)["alerts"]} == newest
     assert {alert["code"] for alert in shown(user, f"?mission={busy.pk}")["alerts"]} == newest
     assert {alert["code"] for alert in shown(user, f"?mission={quiet.pk}")["alerts"]} == {"calm"}

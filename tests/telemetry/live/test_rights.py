@@ -107,7 +107,7 @@ def test_a_page_of_the_organisation_shows_nothing_of_another(here: Door) -> None
 
 
 def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here: Door) -> None:
-    assert sockets.CHECK_PERSON_EVERY_S <= 4.0
+    assert sockets.CHECK_PERSON_INTERVAL_S <= 4.0
     elsewhere = Organisation.objects.create(name="Elsewhere")
     ends: dict[str, Callable[[User], object]] = {
         "signed out everywhere": lambda user: User.objects.filter(pk=user.pk).update(session_generation=1),

@@ -15,11 +15,11 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle, item_int, item_of
 
 REQUEST_S, GIVE_UP_S = 1.0, 8.0
-MOST_ITEMS = 650
+MAX_ITEMS = 650
 AUTO, GUIDED, STABILIZE, RTL, LAND, BRAKE = 3, 4, 0, 6, 9, 17
 NOT_ARMABLE = frozenset({AUTO, RTL, LAND, BRAKE})
 DISARMS_AFTER_S = 10.0
-LARGEST_ALTITUDE_M = 83_000.0
+MAX_ALTITUDE_M = 83_000.0
 HOME = MissionItem(16, mavlink.MAV_FRAME_GLOBAL, (0.0, 0.0, 0.0, 0.0), 98000100, 554000100, 20.0)
 FRAMES = {0: 0, 2: 0, 3: 3, 5: 0, 6: 3, 10: 10, 11: 10}
 PLACED = frozenset({16, 17, 18, 19, 21, 22, 31, 82, 195, 201})
@@ -62,7 +62,7 @@ class ArduPilot(Vehicle):
         kind = MissionType(message.mission_type)
         if not self._has(kind):
             return [self._ack(mavlink.MAV_MISSION_UNSUPPORTED, kind)]
-        if message.count > MOST_ITEMS:
+        if message.count > MAX_ITEMS:
             return [self._ack(mavlink.MAV_MISSION_NO_SPACE, kind)]
         del self.lists[kind][max(message.count, 1 if kind is MissionType.MISSION else 0) :]
         if not message.count:
@@ -108,7 +108,7 @@ class ArduPilot(Vehicle):
                 return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
             if abs(item.longitude_e7) > 1_800_000_000:
                 return int(mavlink.MAV_MISSION_INVALID_PARAM6_Y)
-            if not abs(item.altitude_m) < LARGEST_ALTITUDE_M:
+            if not abs(item.altitude_m) < MAX_ALTITUDE_M:
                 return int(mavlink.MAV_MISSION_INVALID_PARAM7)
             if item.frame not in FRAMES:
                 return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)

@@ -10,7 +10,7 @@ from django.utils import timezone
 from workspace.models import TokenScope, User
 from workspace.services import create_api_token
 
-LONGEST_DAYS = 365
+MAX_DAYS = 365
 
 
 class Command(BaseCommand):
@@ -23,8 +23,8 @@ class Command(BaseCommand):
         parser.add_argument("--scope", action="append", choices=TokenScope.values, help="may be repeated; all of the role unless told")
 
     def handle(self, *args: Any, **options: Any) -> None:
-        if not 1 <= options["days"] <= LONGEST_DAYS:
-            raise CommandError(f"--days: 1 to {LONGEST_DAYS}")
+        if not 1 <= options["days"] <= MAX_DAYS:
+            raise CommandError(f"--days: 1 to {MAX_DAYS}")
         try:
             user = User.objects.get(username=options["user"], is_active=True)
         except User.DoesNotExist as error:

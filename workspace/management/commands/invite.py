@@ -6,7 +6,7 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 from django.urls import reverse
 
-from workspace.invitations import LONGEST_DAYS, invite
+from workspace.invitations import MAX_DAYS, invite
 from workspace.models import Organisation, Role
 
 
@@ -22,8 +22,8 @@ class Command(BaseCommand):
         organisation = Organisation.objects.filter(name=options["organisation"]).first()
         if organisation is None:
             raise CommandError(f"no organisation is called {options['organisation']}")
-        if not 1 <= options["days"] <= LONGEST_DAYS:
-            raise CommandError(f"--days: 1 to {LONGEST_DAYS}")
+        if not 1 <= options["days"] <= MAX_DAYS:
+            raise CommandError(f"--days: 1 to {MAX_DAYS}")
         invitation, token = invite(organisation=organisation, actor=None, role=Role(options["role"]), email="", days=options["days"])
         self.stdout.write(f"For {invitation.get_role_display()} of {organisation}, until {invitation.expires_at:%Y-%m-%d %H:%M} UTC:")
         self.stdout.write(reverse("invitation", args=[token]))

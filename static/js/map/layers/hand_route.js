@@ -9,7 +9,7 @@ import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 /** @typedef {{ chosen: number | null, stateOf: (leg: number) => string, isFree: (point: any) => boolean }} HandLook */
 
 const SOURCE = "hand-route";
-const LEAST_MIDDLE_PX = 44; // a shorter leg has no room for a handle
+const MIN_MIDDLE_PX = 44; // a shorter leg has no room for a handle
 
 /** @type {HandLook} */
 const NO_LOOK = { chosen: null, stateOf: () => "stored", isFree: () => false };
@@ -137,7 +137,7 @@ export function middlesOf(map, points) {
   return points.slice(1).flatMap(({ position }, index) => {
     const from = points[index].position;
     const [a, b] = [from, position].map((place) => map.project(/** @type {Position} */ (place)));
-    if (Math.hypot(a.x - b.x, a.y - b.y) < LEAST_MIDDLE_PX) return [];
+    if (Math.hypot(a.x - b.x, a.y - b.y) < MIN_MIDDLE_PX) return [];
     return [{ index, position: [(from[0] + position[0]) / 2, (from[1] + position[1]) / 2] }];
   });
 }

@@ -10,8 +10,8 @@ import { mergePills } from "../pills.js";
 /** @import { Group, Pill } from "../pills.js" */
 /** @import { MapLibreMap, ScreenPoint } from "../types.d.ts" */
 
-const MOST_MARKERS = 200;
-const MOST_NAMES = 6;
+const MAX_MARKERS = 200;
+const MAX_NAMES = 6;
 const REACH_PX = 4;
 const MISSED = -1; // instead of a route's number
 
@@ -21,7 +21,7 @@ const lookOf = (pill) =>
 
 /** @param {Pick<Pill, "name" | "isMissed">[]} members */
 function namesOf(members) {
-  const names = members.slice(0, MOST_NAMES).map((pill) => pill.name);
+  const names = members.slice(0, MAX_NAMES).map((pill) => pill.name);
   const rest = members.length - names.length;
   const more = rest > 0 ? ` ${tn(rest, "and {count} more", "and {count} more")}` : "";
   return `${names.join("; ")}${more}${members[0].isMissed ? `: ${t("not reached")}` : ""}`;
@@ -58,7 +58,7 @@ class Targets {
   /** @param {TargetPill[]} pills */
   update(pills) {
     this.#pills = pills;
-    const features = pills.length > MOST_MARKERS ? pills.map(featureOf) : [];
+    const features = pills.length > MAX_MARKERS ? pills.map(featureOf) : [];
     setFeatures(this.#map, "many-targets", features);
     this.#draw();
   }
@@ -70,7 +70,7 @@ class Targets {
    * @returns {string | null}
    */
   at({ x, y }) {
-    if (this.#pills.length <= MOST_MARKERS) return null;
+    if (this.#pills.length <= MAX_MARKERS) return null;
     /** @type {[[number, number], [number, number]]} */
     const box = [
       [x - REACH_PX, y - REACH_PX],
@@ -125,7 +125,7 @@ class Targets {
   #draw() {
     /** @type {Map<string, Drawn>} */
     const next = new Map();
-    const isMany = this.#pills.length > MOST_MARKERS;
+    const isMany = this.#pills.length > MAX_MARKERS;
     const placed = isMany ? [] : this.#pills.map((pill) => ({ ...pill, ...placeOf(this.#map, pill.position) }));
     for (const group of mergePills(placed)) {
       const [first] = group.members;

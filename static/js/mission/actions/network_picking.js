@@ -30,7 +30,7 @@ function createAreaPicking({ problem, failed }, addMany) {
       if (data.count > data.assets.length) {
         problem(
           t("{count} assets stand there.", { count: data.count }),
-          t("A mission takes {most}. Take a smaller area, or pick whole lines.", { most: picks.MOST_TARGETS }),
+          t("A mission takes {most}. Take a smaller area, or pick whole lines.", { most: picks.MAX_TARGETS }),
           [],
           { untilChanged: true },
         );

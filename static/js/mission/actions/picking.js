@@ -27,12 +27,12 @@ export function createPicking(context) {
   function addTargets(targets, { sayWhat = true } = {}) {
     const before = selection().targets.length;
     const next = picks.withTargets(selection(), targets);
-    if (next.targets.length > picks.MOST_TARGETS && next.targets.length > before) {
+    if (next.targets.length > picks.MAX_TARGETS && next.targets.length > before) {
       const words = t("{count} would come to {now} that are picked. Take fewer, or plan several missions.", {
         count: next.targets.length - before,
         now: before,
       });
-      problem(t("A mission takes {most} targets.", { most: picks.MOST_TARGETS }), words, [], { untilChanged: true });
+      problem(t("A mission takes {most} targets.", { most: picks.MAX_TARGETS }), words, [], { untilChanged: true });
       return 0;
     }
     change(next);
@@ -61,7 +61,7 @@ export function createPicking(context) {
   /** Other targets in place of those that are picked. @param {PickedTarget[]} targets @param {string} words */
   function replaceTargets(targets, words) {
     if (
-      targets.length > picks.MOST_TARGETS ||
+      targets.length > picks.MAX_TARGETS ||
       !change({ ...selection(), targets: picks.withTargets(picks.EMPTY, targets).targets })
     )
       return;

@@ -14,7 +14,7 @@ import { withResult } from "./plan_results.js";
 /** @import { JobLink, JobPage } from "../../api_types.d.ts" */
 /** @import { MissionPageState, MissionSelection, MissionStore, PlanResult } from "../types.d.ts" */
 
-export const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
+export const MAX_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
 
 /** @param {unknown} error */
 const wordsOf = (error) => (error instanceof Error ? error.message : String(error));
@@ -115,7 +115,7 @@ export function createPlanBeside(store) {
     if (store.state.figures[basis] || store.state.planningBeside === basis) return;
     const own = search.begin(asked);
     try {
-      if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
+      if (asked.targets.length > MAX_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
       await search.make(other, own);
     } catch (error) {
       if (!isAbort(error)) say(t("The other way of planning has no figures: {reason}", { reason: wordsOf(error) }));
@@ -128,7 +128,7 @@ export function createPlanBeside(store) {
     stop,
     /** @param {MissionSelection} asked */
     want(asked) {
-      if (asked.targets.length <= MOST_PLANNED_AT_ONCE) void start(asked);
+      if (asked.targets.length <= MAX_PLANNED_AT_ONCE) void start(asked);
       else {
         wanted = asked;
         beginWanted(store.state);
@@ -158,7 +158,7 @@ export function createPlanBeside(store) {
     /** To a save that the server has to plan for; the large one is made after it. */
     giveWay() {
       const later = search.running();
-      if (!later || later.targets.length <= MOST_PLANNED_AT_ONCE) return;
+      if (!later || later.targets.length <= MAX_PLANNED_AT_ONCE) return;
       stop();
       wanted = later;
     },

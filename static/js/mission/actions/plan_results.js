@@ -4,7 +4,7 @@ import * as picks from "../selection.js";
 
 /** @import { MissionPageState, MissionSelection, PlanResult, ShownPlan } from "../types.d.ts" */
 
-const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
+const MAX_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
 
 /**
  * The plan of a result, with the selection that it was made for: its indices point into that.
@@ -37,5 +37,5 @@ export function withResult(figures, basis, result) {
   const rest = Object.entries(figures).filter(
     ([known, other]) => known !== basis && other.ground_revision === result.ground_revision,
   );
-  return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
+  return Object.fromEntries([...rest.slice(-MAX_KEPT + 1), [basis, result]]);
 }

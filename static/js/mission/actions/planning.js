@@ -11,7 +11,7 @@ import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
 import { qualityOf, wishWordsOf } from "../plan_quality.js";
 import { figuresOf, isPlanCurrent, sentenceOf, unreachedOf } from "../plan_view.js";
 import * as picks from "../selection.js";
-import { cancelJob, createPlanBeside, MOST_PLANNED_AT_ONCE } from "./plan_beside.js";
+import { cancelJob, createPlanBeside, MAX_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
 
 /** @import { Answer } from "../../api.js" */
@@ -289,7 +289,7 @@ function showKnownPlans({ store, page }, aside) {
     }
     aside.keepOnlyFor(state.selection);
     const isShownAsStored = state.planIsStored && state.plan?.basis === basis;
-    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE)
+    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MAX_PLANNED_AT_ONCE)
       aside.want(state.selection);
   });
 }

@@ -18,7 +18,7 @@ export function createRallyPoints({ store, selection, change }) {
     if (!set(link.withRallyPoint(selection().lost_link, position))) return;
     const count = points().length;
     say(t("Rally point {name} is placed.", { name: rallyName(count - 1) }));
-    if (count >= link.MOST_RALLY_POINTS) store.update({ tool: "point" });
+    if (count >= link.MAX_RALLY_POINTS) store.update({ tool: "point" });
   }
 
   return {

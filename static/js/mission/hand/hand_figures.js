@@ -11,9 +11,9 @@ import { isFlownTo } from "./hand_route.js";
 /** @import { HandPoint } from "../types.d.ts" */
 
 const SAME_MPS = 0.1;
-const LEAST_M = 1;
-const LEAST_S = 30;
-const LEAST_PERCENT = 0.5;
+const MIN_M = 1;
+const MIN_S = 30;
+const MIN_PERCENT = 0.5;
 
 /** @param {number} difference @param {number} least @param {(value: number) => string} textOf */
 const signed = (difference, least, textOf) =>
@@ -29,14 +29,14 @@ const signed = (difference, least, textOf) =>
 export function figuresOfLook(look, stored) {
   if (!look || look.length_m === null || look.duration_s === null || !stored) return "";
   const told = [
-    `${lengthText(look.length_m)}${signed(look.length_m - stored.length_m, LEAST_M, lengthText)}`,
-    `${durationText(look.duration_s)}${signed(look.duration_s - stored.duration_s, LEAST_S, durationText)}`,
+    `${lengthText(look.length_m)}${signed(look.length_m - stored.length_m, MIN_M, lengthText)}`,
+    `${durationText(look.duration_s)}${signed(look.duration_s - stored.duration_s, MIN_S, durationText)}`,
   ];
   if (look.battery_percent !== null) {
     const difference = stored.battery_percent === null ? 0 : look.battery_percent - stored.battery_percent;
     told.push(
       t("{percent} at landing", {
-        percent: `${percentText(look.battery_percent)}${signed(difference, LEAST_PERCENT, percentText)}`,
+        percent: `${percentText(look.battery_percent)}${signed(difference, MIN_PERCENT, percentText)}`,
       }),
     );
   }

@@ -10,7 +10,7 @@ import * as hand from "./hand_route.js";
 /** @import { HandLook } from "../../api_types.d.ts" */
 /** @import { HandEdit, HandFaults, HandPoint, MissionContext } from "../types.d.ts" */
 
-const MOST_KNOWN = 50; // routes as they were wished, with what the server said of them
+const MAX_KNOWN = 50; // routes as they were wished, with what the server said of them
 /** @type {HandFaults} */
 export const NO_FAULTS = hand.faultsOf(null);
 
@@ -61,7 +61,7 @@ export function createHandLooks({ store, wordsOf }) {
       );
       looks.set(keyOf(points), data);
       const [oldest] = looks.keys();
-      if (looks.size > MOST_KNOWN) looks.delete(oldest);
+      if (looks.size > MAX_KNOWN) looks.delete(oldest);
       if (store.state.hand?.sequence !== asked.sequence) return;
       put({ look: data });
       const now = store.state.hand;

@@ -27,12 +27,12 @@ import { OBJECTIVES } from "../plan_view.js";
  * @property {() => unknown} keepMineAsCopy
  */
 
-const MOST_NAMES = 6;
+const MAX_NAMES = 6;
 
 /** @template Item @param {readonly Item[]} items @param {(item: Item) => string} nameOf */
 function listed(items, nameOf) {
-  const names = items.slice(0, MOST_NAMES).map(nameOf).join(", ");
-  return items.length > MOST_NAMES ? t("{names} and {count} more", { names, count: items.length - MOST_NAMES }) : names;
+  const names = items.slice(0, MAX_NAMES).map(nameOf).join(", ");
+  return items.length > MAX_NAMES ? t("{names} and {count} more", { names, count: items.length - MAX_NAMES }) : names;
 }
 
 /**

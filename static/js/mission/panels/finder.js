@@ -4,7 +4,7 @@ import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { placesFound } from "../../map/places_found.js";
 import { t, tn } from "../../text.js";
-import { detailOf, MOST_TARGETS } from "../selection.js";
+import { detailOf, MAX_TARGETS } from "../selection.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AssetCollection, AssetFeature } from "../../api_types.d.ts" */
@@ -239,8 +239,8 @@ class Finder {
     const foot = byId("found-foot");
     foot.hidden = !this.#how.canPlan || total < 2;
     if (foot.hidden) return;
-    if (total > MOST_TARGETS) {
-      const values = { count: total, most: MOST_TARGETS };
+    if (total > MAX_TARGETS) {
+      const values = { count: total, most: MAX_TARGETS };
       foot.replaceChildren(
         h("p", {}, t("{count} match; a mission takes {most}. Narrow the search to add all.", values)),
       );
@@ -266,7 +266,7 @@ class Finder {
   async #takeAll() {
     const asked = this.#question();
     asked.set("flyable", "true");
-    asked.set("limit", String(MOST_TARGETS));
+    asked.set("limit", String(MAX_TARGETS));
     try {
       const { data } = /** @type {Answer<AssetCollection>} */ (await get(`/assets?${asked}`));
       this.#how.addAll(data.features);

@@ -42,8 +42,8 @@ const STATE_WORDS = {
   failed: t("Failed"),
 };
 const phone = matchMedia("(max-width: 720px)");
-const MOST_CAUSES = 3;
-const MOST_UNREACHED = 3;
+const MAX_CAUSES = 3;
+const MAX_UNREACHED = 3;
 
 /** The mission's address with the part of the map that is in sight. @param {Mission} mission */
 async function copyAddress(mission) {
@@ -222,13 +222,13 @@ const conflictNotice = ({ whose, at }, actions) =>
  */
 function planNotices({ plan }, { actions, canPlan, askWhy }) {
   const unreached = unreachedOf(plan);
-  const more = unreached.length - MOST_UNREACHED;
+  const more = unreached.length - MAX_UNREACHED;
   /** @param {string[]} keys @param {string} label @returns {WayOut[]} */
   const remove = (keys, label) => (canPlan ? [{ label, act: () => actions.removeTargets(keys) }] : []);
   return folded([
     ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", inWords(message))),
     ...unreached
-      .slice(0, MOST_UNREACHED)
+      .slice(0, MAX_UNREACHED)
       .map(({ target, sentence }) =>
         notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, [
           { label: t("Why?"), act: () => askWhy({ target: target.key }) },
@@ -291,7 +291,7 @@ function staleNotice(mission, actions, { canPlan, showPlace }) {
   const headline = isOfGround
     ? mission.stale_reason.split(/(?<=\.) /)[0]
     : t("The ground has changed since this was planned.");
-  const lines = causes.slice(0, MOST_CAUSES).map(({ message, from, to, position }) => {
+  const lines = causes.slice(0, MAX_CAUSES).map(({ message, from, to, position }) => {
     const times = from && to && t("There from {start} to {end}.", { start: departureText(from), end: clockText(to) });
     return h(
       "li",

@@ -4,7 +4,7 @@ import { ApiError } from "../../api.js";
 import { find, h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
-import { listIn, lookUp, MOST_REFS, rowsToAdd } from "../list_reading.js";
+import { listIn, lookUp, MAX_REFS, rowsToAdd } from "../list_reading.js";
 import { nameOf, targetOfRow } from "../selection.js";
 
 /** @import { AssetKind, LookupResult } from "../../api_types.d.ts" */
@@ -18,7 +18,7 @@ const KINDS = () => [
   ["railway", t("Railways")],
   ["bridge", t("Bridges")],
 ];
-const LONGEST_FILE = 2_000_000;
+const MAX_FILE_LINES = 2_000_000;
 
 /** @typedef {ReturnType<typeof rowsToAdd>[number]} Row */
 
@@ -79,9 +79,9 @@ function createForm({ showAnswer, signal, close }) {
 
   async function ask() {
     const { refs, externalIds } = listIn(words.value);
-    if (!refs.length || refs.length > MOST_REFS) {
+    if (!refs.length || refs.length > MAX_REFS) {
       wrong.textContent = refs.length
-        ? t("At most {most} references at once; these are {count}.", { most: MOST_REFS, count: refs.length })
+        ? t("At most {most} references at once; these are {count}.", { most: MAX_REFS, count: refs.length })
         : t("Paste at least one reference.");
       words.focus();
       return;
@@ -146,7 +146,7 @@ function fileInput(words, wrong) {
   input.addEventListener("change", async () => {
     const chosen = input.files?.[0];
     if (!chosen) return;
-    if (chosen.size > LONGEST_FILE) wrong.textContent = t("This file is too large for a list.");
+    if (chosen.size > MAX_FILE_LINES) wrong.textContent = t("This file is too large for a list.");
     else words.value = await chosen.text();
     input.value = "";
   });

@@ -21,10 +21,10 @@ import { passedZones, zoneWords } from "../zones_passed.js";
 /** @typedef {ReturnType<typeof flightOf>} Flight a flight from the side */
 /** @typedef {{ low: number, high: number }} Span of the heights that are drawn */
 
-const LEAST_SPAN_M = 60; // a plain must not look like mountains
+const MIN_SPAN_M = 60; // a plain must not look like mountains
 const NEAR_ZONE_M = 300;
-const MOST_VERTICES = 1_900; // of the 2,000 that the server takes
-const MOST_STEPS = 600;
+const MAX_VERTICES = 1_900; // of the 2,000 that the server takes
+const MAX_STEPS = 600;
 
 /**
  * Every k-th of the positions where there are more than the server takes; both ends stay.
@@ -33,7 +33,7 @@ const MOST_STEPS = 600;
  * @param {Item[]} positions
  * @param {number} [most]
  */
-export function thinned(positions, most = MOST_VERTICES) {
+export function thinned(positions, most = MAX_VERTICES) {
   const step = Math.ceil((positions.length - 1) / (most - 1));
   if (step <= 1) return positions;
   return positions.filter((_, index) => index % step === 0 || index === positions.length - 1);
@@ -54,7 +54,7 @@ export function createGrounds() {
     const line = thinned(waypoints.map(({ position }) => position));
     const asked = post("/terrain/profile", {
       line,
-      step_m: Math.max(5, length_m / MOST_STEPS),
+      step_m: Math.max(5, length_m / MAX_STEPS),
       near_m: NEAR_ZONE_M,
     }).then(({ data }) => groundOf(/** @type {Profile} */ (data), length_m));
     asked.catch(() => known.delete(waypoints)); // asked again the next time
@@ -199,7 +199,7 @@ export function spanOf({ path, under }) {
   );
   const low = known.reduce((a, b) => Math.min(a, b), Infinity);
   const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
-  const room = Math.max(0, LEAST_SPAN_M - (high - low));
+  const room = Math.max(0, MIN_SPAN_M - (high - low));
   return { low, high: high + room + (high - low) * 0.08 };
 }
 

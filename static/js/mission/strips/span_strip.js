@@ -68,7 +68,7 @@ import { zoneWords } from "../zones_passed.js";
 const TICK_SPACING_PX = 3.5;
 const TARGET_SPACING_PX = 19;
 const LETTER_PX = 7;
-const MOST_PUSHED_PX = 14; // from the true place; more, and neighbours become one pill
+const MAX_PUSHED_PX = 14; // from the true place; more, and neighbours become one pill
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
 const EDGE_PX = 10;
@@ -135,7 +135,7 @@ export function placePills(targets, start_px, end_px, width_px) {
     keepApart(pills, start_px, end_px, width_px);
     if (
       pills.length < 2 ||
-      pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MOST_PUSHED_PX && isOnStrip(pill, start_px, end_px))
+      pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MAX_PUSHED_PX && isOnStrip(pill, start_px, end_px))
     )
       return pills;
     const gaps = pills

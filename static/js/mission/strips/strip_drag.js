@@ -17,7 +17,7 @@ import { h } from "../../dom.js";
  * @property {Place | null} place
  */
 
-const LEAST_PX = 5; // less is a click
+const MIN_PX = 5; // less is a click
 
 /**
  * rows: the list of routes. strips: Map of sequence → what spanStrip gives. drop(keys, { sequence, index }).
@@ -50,7 +50,7 @@ export function createPillDrag(rows, { strips, drop }) {
   function move(event) {
     if (event.pointerId !== drag?.pointerId) return;
     if (!drag.ghost) {
-      if (Math.hypot(event.clientX - drag.x, event.clientY - drag.y) < LEAST_PX) return;
+      if (Math.hypot(event.clientX - drag.x, event.clientY - drag.y) < MIN_PX) return;
       drag.ghost = h("div", { class: `pill strip-ghost ${drag.colour}`, "aria-hidden": "true" }, drag.label);
       document.body.append(drag.ghost);
       rows.classList.add("dragging");

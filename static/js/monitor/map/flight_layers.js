@@ -11,7 +11,7 @@ import { ellipseRing, metresPerPixel } from "./ellipse.js";
 /** A UAV that is estimated or lost. @typedef {Pick<DrawnUav, "colour" | "certainty" | "position" | "bound" | "last" | "words">} UncertainUav */
 
 const BEFORE = "line-labels";
-const LEAST_RING_PX = 14;
+const MIN_RING_PX = 14;
 const CLEAR_PX = 48;
 const SOURCES = ["flown", "last-report", "ellipses", "offered"];
 
@@ -174,7 +174,7 @@ export function showUncertain(map, uavs) {
     "ellipses",
     uavs.flatMap((uav) => {
       if (!uav.bound) return [];
-      const ring = ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]));
+      const ring = ellipseRing(uav.position, uav.bound, MIN_RING_PX * metresPerPixel(zoom, uav.position[1]));
       return feature(uav, { type: "Polygon", coordinates: [ring] });
     }),
   );

@@ -31,8 +31,8 @@ import {
 
 const EVERY_MS = 2000;
 const LASTS_S = 60; // of the clock on the wall, until somebody says otherwise
-const LONGEST_FAULT_S = 86_400;
-const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
+const MAX_FAULT_S = 86_400;
+const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 
 /** @param {string} id @param {(readonly [number | string, string])[]} entries value and words of each */
 const choice = (id, entries) =>
@@ -346,9 +346,9 @@ class ChangesInFlight {
   #windForm() {
     /** @param {number} most_mps */
     const inUnits = (most_mps) => Math.floor(most_mps / SPEED_UNIT.mps);
-    const wind = number("simulation-wind", Math.round(5 / SPEED_UNIT.mps), 0, inUnits(MOST_WIND_MPS));
+    const wind = number("simulation-wind", Math.round(5 / SPEED_UNIT.mps), 0, inUnits(MAX_WIND_MPS));
     const from = number("simulation-from", 270, 0, 360);
-    const gusts = number("simulation-gusts", 0, 0, inUnits(MOST_GUSTS_MPS));
+    const gusts = number("simulation-gusts", 0, 0, inUnits(MAX_GUSTS_MPS));
     /** @param {Event} event */
     const onsubmit = (event) => {
       event.preventDefault();
@@ -377,7 +377,7 @@ class ChangesInFlight {
   #faultButton({ name, image, words, lasts, of }) {
     const onclick = () => {
       if (lasts && !this.#seconds.reportValidity()) return;
-      const flown_s = Math.min(this.#seconds.valueAsNumber * (this.#flown?.speed ?? 1), LONGEST_FAULT_S);
+      const flown_s = Math.min(this.#seconds.valueAsNumber * (this.#flown?.speed ?? 1), MAX_FAULT_S);
       const send = () =>
         Promise.all(
           this.#meant().map((vehicle) => patch(`/simulated-vehicles/${vehicle.id}`, { faults: of(vehicle, flown_s) })),

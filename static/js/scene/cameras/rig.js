@@ -24,8 +24,8 @@ const BEGINNINGS = {
 };
 const FIELDS_DEG = { chase: 50, orbit: 45, top: 40, free: 55, onboard: 65 };
 /** @type {Partial<Record<CameraMode, number>>} */
-const NEAREST_M = { chase: 3, orbit: 5, top: 25 };
-const FARTHEST_M = 60_000;
+const MIN_DISTANCE_M = { chase: 3, orbit: 5, top: 25 };
+const MAX_DISTANCE_M = 60_000;
 const FIT_MARGIN = 1.2; // bars stand over the picture's edges
 const ABOVE_GROUND_M = 1.6; // a camera is never lower
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
@@ -125,7 +125,7 @@ export function createRig({ isCalm = () => false } = {}) {
     fit(radius_m, field_deg = FIELDS_DEG[rig.mode]) {
       if (rig.mode === "free" || rig.mode === "onboard" || rig.mode === "chase") rig.setMode("orbit");
       const reach_m = (FIT_MARGIN * radius_m) / Math.sin((field_deg / 2) * (Math.PI / 180));
-      view().distance_m = within(reach_m, NEAREST_M[rig.mode] ?? 0, FARTHEST_M);
+      view().distance_m = within(reach_m, MIN_DISTANCE_M[rig.mode] ?? 0, MAX_DISTANCE_M);
       rig.offset = [0, 0, 0];
       rig.isGliding = true;
     },
@@ -228,7 +228,7 @@ function handled(rig, view, followed_deg, goFree) {
     zoom(factor) {
       if (rig.mode === "free") hand.move(Math.log(factor) * -60, 0, 0);
       else if (rig.mode !== "onboard")
-        view().distance_m = within(view().distance_m * factor, NEAREST_M[rig.mode] ?? 0, FARTHEST_M);
+        view().distance_m = within(view().distance_m * factor, MIN_DISTANCE_M[rig.mode] ?? 0, MAX_DISTANCE_M);
     },
     /** Along the picture's plane, in shares of its height. @param {number} right @param {number} up */
     pan(right, up) {

@@ -15,7 +15,7 @@ const DART = [
   [-9, 11],
 ];
 const REST = 0.35; // of what is not looked at
-const LEAST_RING_PX = 14;
+const MIN_RING_PX = 14;
 
 /** @param {ScenePalette} palette @param {number} place */
 const colourOf = (palette, place) => palette.routes[place % ROUTES];
@@ -123,8 +123,8 @@ function ring(context, { along_m, across_m, bearing_deg }, metresPerPixel, turn,
   context.ellipse(
     0,
     0,
-    Math.max(LEAST_RING_PX, across_m / metresPerPixel),
-    Math.max(LEAST_RING_PX, along_m / metresPerPixel),
+    Math.max(MIN_RING_PX, across_m / metresPerPixel),
+    Math.max(MIN_RING_PX, along_m / metresPerPixel),
     0,
     0,
     2 * Math.PI,

@@ -27,16 +27,16 @@ import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
 /** @typedef {ReturnType<typeof createUavs>} Uavs */
 
-const LEAST_PX = 40; // across: from far away it is drawn larger than it is
+const MIN_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
 const GLOW = 0.4;
-const MOST_CONE = 1.6; // times that, from far away
+const MAX_CONE = 1.6; // times that, from far away
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
 const LIT_DARK = "#66727a"; // what shines of it where all else is dark
 const ROTOR_LIGHT = 5; // times its own colour, there
 const GHOST_LIGHT = 0.4; // towards white, there
-const LEAST_BOUND_M = 1.5;
-const LEAST_BOUND_PX = 14; // radius
+const MIN_BOUND_M = 1.5;
+const MIN_BOUND_PX = 14; // radius
 
 const RIM_VERTEX = `
   varying vec3 vNormal; varying vec3 vView; varying vec3 vTint;
@@ -169,7 +169,7 @@ export function createUavs(count) {
   /** What its camera sees. @param {DrawnUav} uav @param {number} scale */
   function putCone(uav, scale) {
     turn.setFromUnitVectors(down, aim.set(...uav.camera));
-    matrix.compose(at, turn, size.setScalar(Math.min(scale, MOST_CONE)));
+    matrix.compose(at, turn, size.setScalar(Math.min(scale, MAX_CONE)));
     put(meshes.cones, uav.colour);
   }
 
@@ -202,12 +202,12 @@ export function createUavs(count) {
         if (uav.route === hidden) continue;
         const { kind, bound } = uav.moment;
         const per_px = metresPerPixel(uav.place);
-        const scale = Math.max(1, (LEAST_PX * per_px) / SPAN_M);
+        const scale = Math.max(1, (MIN_PX * per_px) / SPAN_M);
         tilt.set(uav.pitch_deg * RADIANS, -uav.heading_deg * RADIANS, -uav.roll_deg * RADIANS, "YXZ");
         at.set(uav.place[0], uav.place[1] + 0.06 * (scale - 1), uav.place[2]);
         putBody(uav, scale, palette, isDark);
         if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) putCone(uav, scale);
-        if (kind === ESTIMATED && bound) putBound(uav, bound, Math.max(LEAST_BOUND_M, LEAST_BOUND_PX * per_px));
+        if (kind === ESTIMATED && bound) putBound(uav, bound, Math.max(MIN_BOUND_M, MIN_BOUND_PX * per_px));
       }
       for (const mesh of all) {
         mesh.visible = mesh.count > 0;

@@ -28,7 +28,7 @@ const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
 const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
 const APART_M = 0.4; // points of a way that are nearer to each other show nothing more
-const LONGEST_M = 20; // of a stretch: between its ends its width is in proportion, which is right for a short one alone
+const MAX_LENGTH_M = 20; // of a stretch: between its ends its width is in proportion, which is right for a short one alone
 const ALWAYS_S = -1e9; // a time that is over
 const FOR_EVER_S = 1e30;
 
@@ -144,7 +144,7 @@ export function ribbonArrays(lines) {
   const drawn = lines
     .map(thinned)
     .filter(({ positions }) => positions.length >= 6)
-    .map((line) => stepped(line, LONGEST_M))
+    .map((line) => stepped(line, MAX_LENGTH_M))
     .map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
   const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
   const arrays = {

@@ -10,7 +10,7 @@ const SLAB_M = 1.4;
 const PIER_EVERY_M = 30;
 const PIER_M = 1.4; // along the bridge
 const INSET_M = 1.5; // of abutments
-const LEAST_ROOM_M = 0.5; // below the slab, for a pier to be seen
+const MIN_ROOM_M = 0.5; // below the slab, for a pier to be seen
 
 /**
  * Gives { vertices, index } without normals: faces are flat.
@@ -30,7 +30,7 @@ export function bridgeSolid(bridge, { frame, ground }) {
     for (const ring of flat) addSides(solid, ring, deck - SLAB_M, deck);
     for (const wall of supportsOf(flat[0])) {
       const foot = Math.min(...wall.map(([x, z]) => ground.heightAt(x, z)));
-      if (deck - SLAB_M - foot > LEAST_ROOM_M) addSides(solid, wall, foot - 1, deck - SLAB_M);
+      if (deck - SLAB_M - foot > MIN_ROOM_M) addSides(solid, wall, foot - 1, deck - SLAB_M);
     }
   }
   return { vertices: Float32Array.from(solid.vertices), index: Uint32Array.from(solid.index) };

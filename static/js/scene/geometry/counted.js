@@ -1,6 +1,6 @@
 /** What planners count above what is drawn: over supports whose height nobody has stated, and from top to top between them. Values in, arrays out. */
 
-const LEAST_M = 0.5; // less is not shown
+const MIN_M = 0.5; // less is not shown
 const CAP_M = 1.6; // half of the cross on top of a mark
 
 /** @import { Scene, Support } from "../../api_types.d.ts" */
@@ -11,7 +11,7 @@ const CAP_M = 1.6; // half of the cross on top of a mark
  *
  * @param {Pick<Support, "height_m" | "likely_m">} support
  */
-export const uncounted_m = ({ height_m, likely_m }) => (height_m - likely_m > LEAST_M ? height_m - likely_m : 0);
+export const uncounted_m = ({ height_m, likely_m }) => (height_m - likely_m > MIN_M ? height_m - likely_m : 0);
 
 /**
  * { points, first }: the wires that planners count there, as polylines of wiresOf, straight from top to top; marks: Float32Array of segments

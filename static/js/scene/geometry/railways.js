@@ -20,8 +20,8 @@ const MAST_EVERY_M = 58;
 const MAST_OUT_M = 1.2; // beside the bed
 const CONTACT_M = 5.6; // above the ground
 const CARRIER_SAG_M = 1.1;
-const LEAST_LIFT_M = 0.05;
-const MOST_ROUNDS = 12;
+const MIN_LIFT_M = 0.05;
+const MAX_ROUNDS = 12;
 
 /**
  * All railways of a scene, in their order: [{ bed: { vertices, uv (0 to 1 across, metres along), index }, rails: Float32Array of segments
@@ -59,13 +59,13 @@ function ramps(ways) {
   /** @param {number[]} place */
   const key = ([x, z]) => `${Math.round(x)} ${Math.round(z)}`;
   let waiting = ways.filter(({ onDeck }) => onDeck.some((height) => height !== null));
-  for (let round = 0; round < MOST_ROUNDS && waiting.length; round += 1) {
+  for (let round = 0; round < MAX_ROUNDS && waiting.length; round += 1) {
     const lifted = new Set();
     for (const way of waiting) {
       slope(way);
       for (const place of [0, way.points.length - 1]) {
         const at = key(way.points[place]);
-        if (way.heights[place] > (ends.get(at) ?? -Infinity) + LEAST_LIFT_M) lifted.add(at);
+        if (way.heights[place] > (ends.get(at) ?? -Infinity) + MIN_LIFT_M) lifted.add(at);
         ends.set(at, Math.max(ends.get(at) ?? -Infinity, way.heights[place]));
       }
     }
@@ -73,7 +73,7 @@ function ramps(ways) {
       (way) =>
         [0, way.points.length - 1].filter((place) => {
           const height = ends.get(key(way.points[place])) ?? -Infinity;
-          if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + LEAST_LIFT_M) return false;
+          if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + MIN_LIFT_M) return false;
           way.heights[place] = height;
           return true;
         }).length > 0,

@@ -13,7 +13,7 @@ export const BODY = 0;
 export const INSULATOR = 1;
 export const FOUNDATION = 2;
 
-const LEAST_DEPTH_M = 0.6; // of a foundation
+const MIN_DEPTH_M = 0.6; // of a foundation
 const SEGMENTS = 5; // of a pole that gets thinner
 
 /**
@@ -41,7 +41,7 @@ export function supportMembers(support, frame, below_m = 0) {
     (start, end, width_m, tone = BODY) =>
       list.add(place(start), place(end), width_m, tone);
   const draw = { outline: into(outline), fine: into(fine) };
-  const drawn = { ...support, height_m: support.likely_m, depth_m: LEAST_DEPTH_M + Math.max(below_m, 0) };
+  const drawn = { ...support, height_m: support.likely_m, depth_m: MIN_DEPTH_M + Math.max(below_m, 0) };
   (BUILDERS[support.form] ?? pole)(drawn, draw);
   insulators(drawn, draw);
   return { outline: outline.take(), fine: fine.take() };
@@ -79,7 +79,7 @@ function pole(support, { outline, fine }) {
     }
   }
   if (!isWooden) fine([0, -support.depth_m, 0], [0, 0.35, 0], foot_m * 1.6, FOUNDATION);
-  else if (support.depth_m > LEAST_DEPTH_M) fine([0, -support.depth_m, 0], [0, 0, 0], foot_m);
+  else if (support.depth_m > MIN_DEPTH_M) fine([0, -support.depth_m, 0], [0, 0, 0], foot_m);
 }
 
 /**

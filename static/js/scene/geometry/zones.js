@@ -16,7 +16,7 @@ import { area2, triangulate } from "./triangulate.js";
 /** @typedef {ReturnType<typeof zoneVolume>} ZoneVolume */
 
 export const WITHIN_M = 0.15; // a floor, ceiling or wall strays no farther from what it follows
-const MOST_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
+const MAX_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
 const ON_CLIP_DEG = 1e-6;
 const LIFT_M = 0.25; // a floor on the ground lies so far above it
 
@@ -35,7 +35,7 @@ export function withinFor(zones, frame, folds) {
     polygons.map(([outline]) => boxOf(outline.map((place) => local(frame, place)))),
   );
   let within_m = WITHIN_M;
-  while (boxes.reduce((sum, box) => sum + folds.count(box, within_m), 0) > MOST_BLOCKS) within_m *= 2;
+  while (boxes.reduce((sum, box) => sum + folds.count(box, within_m), 0) > MAX_BLOCKS) within_m *= 2;
   return within_m;
 }
 

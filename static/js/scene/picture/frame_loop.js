@@ -2,7 +2,7 @@
 
 /** @import { FrameTime } from "../types.d.ts" */
 
-const LONGEST_STEP_S = 0.25; // after a pause nothing jumps
+const MAX_STEP_S = 0.25; // after a pause nothing jumps
 
 /** @typedef {FrameTime & { between_ms: number }} LoopTime between_ms: since the frame before; 0 after a pause */
 
@@ -15,7 +15,7 @@ export function frameLoop(draw) {
     wanted = 0;
     if (isOver) return;
     const between_ms = last_ms ? now_ms - last_ms : 0;
-    const goesOn = draw({ dt_s: Math.min(LONGEST_STEP_S, between_ms / 1_000), now_ms, between_ms });
+    const goesOn = draw({ dt_s: Math.min(MAX_STEP_S, between_ms / 1_000), now_ms, between_ms });
     last_ms = goesOn ? now_ms : 0;
     if (goesOn) request();
   }

@@ -9,10 +9,10 @@ import { frameLoop } from "./frame_loop.js";
 
 const SLOW_MS = 45; // a frame that takes longer, many times over, is drawn with fewer pixels
 const SLOW_FRAMES = 12;
-const MOST_PIXELS = 2; // of the device a CSS pixel
-const LEAST_PIXELS = 0.75;
+const MAX_PIXELS = 2; // of the device a CSS pixel
+const MIN_PIXELS = 0.75;
 const NEAR_SHARE = 0.25; // of the room round the camera: nothing is nearer than that
-const [LEAST_NEAR_M, LOW_NEAR_M, MOST_NEAR_M] = [0.15, 2, 500];
+const [MIN_NEAR_M, LOW_NEAR_M, MAX_NEAR_M] = [0.15, 2, 500];
 const LOW_M = 80; // with less room bridges and the like may stand beside it
 const FAR_M = 200_000;
 
@@ -118,7 +118,7 @@ function createAim(camera, size) {
       camera.up.set(...up);
       camera.lookAt(...look);
       camera.fov = size.width < size.height ? Math.min(75, field_deg * 1.25) : field_deg;
-      camera.near = Math.min(room_m < LOW_M ? LOW_NEAR_M : MOST_NEAR_M, Math.max(LEAST_NEAR_M, room_m * NEAR_SHARE));
+      camera.near = Math.min(room_m < LOW_M ? LOW_NEAR_M : MAX_NEAR_M, Math.max(MIN_NEAR_M, room_m * NEAR_SHARE));
       camera.updateProjectionMatrix();
       camera.updateMatrixWorld();
     },
@@ -161,7 +161,7 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
   const camera = new PerspectiveCamera(50, 1, 0.5, FAR_M);
   const size = { width: 1, height: 1 };
   const figures = createFigures();
-  let pixels = Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS);
+  let pixels = Math.min(globalThis.devicePixelRatio || 1, MAX_PIXELS);
   let slow = 0;
 
   function render() {
@@ -182,9 +182,9 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
   /** @param {LoopTime} time */
   function keepPace({ between_ms }) {
     slow = between_ms > SLOW_MS ? slow + 1 : 0;
-    if (slow < SLOW_FRAMES || pixels <= LEAST_PIXELS) return;
+    if (slow < SLOW_FRAMES || pixels <= MIN_PIXELS) return;
     slow = 0;
-    pixels = Math.max(LEAST_PIXELS, pixels * 0.75);
+    pixels = Math.max(MIN_PIXELS, pixels * 0.75);
     fit();
   }
 

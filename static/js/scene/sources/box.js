@@ -3,7 +3,7 @@
 /** @import { FlightSource } from "../types.d.ts" */
 
 const ROUND_M = 900; // on each side of what is flown
-const LONGEST_M = 39_000; // a side of what the server gives at once
+const MAX_LENGTH_M = 39_000; // a side of what the server gives at once
 const METRES_PER_DEGREE = 111_195;
 
 /**
@@ -24,7 +24,7 @@ export function boxRound(places) {
   const metres = [METRES_PER_DEGREE * Math.cos((latitude * Math.PI) / 180), METRES_PER_DEGREE];
   const [[west, east], [south, north]] = spans.map(([least, most], axis) => {
     const middle = (least + most) / 2;
-    const half = Math.min((most - least) / 2 + ROUND_M / metres[axis], LONGEST_M / 2 / metres[axis]);
+    const half = Math.min((most - least) / 2 + ROUND_M / metres[axis], MAX_LENGTH_M / 2 / metres[axis]);
     return [middle - half, middle + half];
   });
   return [west, south, east, north].map((degrees) => Number(degrees.toFixed(5)));

@@ -15,7 +15,7 @@ import { placedSamples } from "./record_source.js";
 
 const GLIDE_MS = 300; // as the marker on the map
 const SILENT_MS = 45_000; // no ribbon over a longer silence
-const MOST_SAMPLES = 4_000; // of a UAV's ribbon; the oldest half is thinned out then
+const MAX_SAMPLES = 4_000; // of a UAV's ribbon; the oldest half is thinned out then
 
 /**
  * What is known of a UAV at the server's time; null while it was never seen.
@@ -71,8 +71,8 @@ export function addSample(pieces, sample) {
 
 /** @param {Piece} piece */
 function thinOut(piece) {
-  if (piece.samples.length <= MOST_SAMPLES) return;
-  const half = MOST_SAMPLES / 2;
+  if (piece.samples.length <= MAX_SAMPLES) return;
+  const half = MAX_SAMPLES / 2;
   piece.samples = [...piece.samples.slice(0, half).filter((_, index) => index % 2 === 0), ...piece.samples.slice(half)];
 }
 

@@ -13,7 +13,7 @@ import { rehearsalSource } from "./rehearsal_source.js";
 
 const UNDER_WAY = ["dispatched", "active"];
 const OVER = ["completed", "aborted", "failed"];
-const MOST_RECORDS = 3_000; // of the line flown so far
+const MAX_RECORDS = 3_000; // of the line flown so far
 const ORDER = ["fail", "warnings", "pass"];
 
 /**
@@ -65,7 +65,7 @@ async function readRehearsal(mission, { rehearsal, run = null }, rehearsals) {
 async function readLive(mission) {
   const features = [];
   let next = /** @type {string | null} */ (
-    `/telemetry?mission=${mission.id}&most=${MOST_RECORDS}&limit=${Math.min(MOST_RECORDS, 1_000)}`
+    `/telemetry?mission=${mission.id}&most=${MAX_RECORDS}&limit=${Math.min(MAX_RECORDS, 1_000)}`
   );
   while (next) {
     const { data } = /** @type {Answer<RecordCollection>} */ (await get(next));

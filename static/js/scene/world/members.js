@@ -14,8 +14,8 @@ import {
 
 /** @import { Members } from "../types.d.ts" */
 
-const LEAST_PX = 0.9; // an outline is never thinner on the screen
-const LEAST_SHADOW_PX = 2.4; // nor its shadow in the shadow map
+const MIN_PX = 0.9; // an outline is never thinner on the screen
+const MIN_SHADOW_PX = 2.4; // nor its shadow in the shadow map
 const SIZE = new Vector2();
 
 /** fog and light as every Lambert surface; far members are made as wide as a pixel. @param {number} leastPx */
@@ -59,7 +59,7 @@ function shadowMaterial(leastShadow) {
  *
  * @param {{ leastPx?: number, castShadow?: boolean }} [how]
  */
-export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
+export function memberMesh({ leastPx = MIN_PX, castShadow = true } = {}) {
   const prism = new CylinderGeometry(0.5, 0.5, 1, 4, 1, true);
   const { material, uniforms } = memberMaterial(leastPx);
   const leastShadow = { value: 0.2 };
@@ -109,7 +109,7 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
     },
     /** How wide a pixel of the shadow map is. @param {number} metres */
     shadowPixel(metres) {
-      leastShadow.value = LEAST_SHADOW_PX * metres;
+      leastShadow.value = MIN_SHADOW_PX * metres;
     },
     /** @param {Members} members @param {Float32Array} colours */
     set(members, colours) {

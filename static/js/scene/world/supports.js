@@ -5,7 +5,7 @@ import { FOUNDATION, INSULATOR, supportMembers } from "../geometry/towers.js";
 import { Color, Group } from "../three.js";
 import { memberMesh } from "./members.js";
 
-const MOST_A_FRAME = 6; // supports that get their bracing
+const MAX_A_FRAME = 6; // supports that get their bracing
 const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
 
 /** @import { Support } from "../../api_types.d.ts" */
@@ -127,7 +127,7 @@ function nearMembers({ near_m, most }) {
         choose(eye);
       }
       if (!isStale || !standing) return "same";
-      for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, fineMembers(standing, place));
+      for (const place of wanted.splice(0, MAX_A_FRAME)) near.set(place, fineMembers(standing, place));
       if (wanted.length) return "working";
       isStale = false;
       return "new";

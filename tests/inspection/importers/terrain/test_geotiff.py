@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.geotiff import MOST_PART_BYTES, GeoTiff
+from inspection.importers.terrain.geotiff import MAX_PART_BYTES, GeoTiff
 from inspection.importers.terrain.raster import Kind
 from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
 from inspection.importers.terrain.tiff_unpacking import LZW, PACKBITS, unpacked_part
@@ -149,7 +149,7 @@ ZEROS = zlib.compress(bytes(4_000_000), 9)  # 1000 : 1
 MOST_OF_IT = zlib.compress(np.full(10_000, 300, dtype="<f4").tobytes(), 9)[:-8]
 
 HOSTILE = [
-    (tiff_of(ZEROS, width=40_000, height=4_000, rows_per_strip=4_000), f"at most {MOST_PART_BYTES // MIB} MiB"),
+    (tiff_of(ZEROS, width=40_000, height=4_000, rows_per_strip=4_000), f"at most {MAX_PART_BYTES // MIB} MiB"),
     (tiff_of(ZEROS, width=2_000_000, height=2_000_000, rows_per_strip=1), "at most 200000000"),
     (tiff_of(ZEROS, width=10_000, height=10_000, rows_per_strip=1), "lists 1"),
     (tiff_of(ZEROS, width=3, height=60_000_000, rows_per_strip=1), "at most 1000000"),

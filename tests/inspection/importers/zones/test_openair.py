@@ -11,7 +11,7 @@ import shapely
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
-from inspection.importers.zones.openair import FARTHEST_M, arc, arc_between, area_of_all_loops, circle_ring
+from inspection.importers.zones.openair import MAX_DISTANCE_M, arc, arc_between, area_of_all_loops, circle_ring
 from inspection.importers.zones.openair_values import NAUTICAL_MILE_M, height_of, length_m_of, position_of
 from inspection.importers.zones.zone_file import ZoneFile, ZoneFileError, read_zones
 
@@ -107,7 +107,7 @@ def test_line_ends_a_byte_order_mark_and_latin_letters_change_nothing(zone_file:
 @pytest.mark.parametrize("is_clockwise", [True, False])
 def test_sides_of_an_arc_keep_to_the_exact_curve(radius_m: float, is_clockwise: bool) -> None:
     path = arc(CENTRE, radius_m, 30.0, 250.0, is_clockwise, "line 1")
-    assert _farthest_from_circle_m(path, radius_m) <= FARTHEST_M + 0.02 <= 1.0
+    assert _farthest_from_circle_m(path, radius_m) <= MAX_DISTANCE_M + 0.02 <= 1.0
     first = WGS84.inv(*CENTRE, *path[0])[0] % 360
     last = WGS84.inv(*CENTRE, *path[-1])[0] % 360
     assert (first, last) == (pytest.approx(30.0, abs=1e-6), pytest.approx(250.0, abs=1e-6))

@@ -4,7 +4,7 @@ import { h, icon } from "../../../dom.js";
 import { open } from "../../../page/keyboard.js";
 import { t } from "../../../text.js";
 import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
-import { compassText, conditionsOf, MILD_C, MOST_LAYERS } from "../../flight_options.js";
+import { compassText, conditionsOf, MILD_C, MAX_LAYERS } from "../../flight_options.js";
 import { windArrow } from "../../wind_arrow.js";
 
 /** @import { Conditions } from "../../types.d.ts" */
@@ -21,8 +21,8 @@ import { windArrow } from "../../wind_arrow.js";
  */
 
 const FIRST_LAYER = { altitude_agl_m: 100, speed_mps: 5, from_deg: 270 };
-const [HIGHEST_M, STRONGEST_MPS] = [1000, 60]; // missions/serializers/limits.py
-const [COLDEST_C, HOTTEST_C] = [-60, 60];
+const [MAX_HEIGHT_M, MAX_WIND_MPS] = [1000, 60]; // missions/serializers/limits.py
+const [MIN_TEMPERATURE_C, HOTTEST_C] = [-60, 60];
 
 /**
  * Typed in the reader's unit, read in SI; one that nobody touched is what it was.
@@ -57,14 +57,14 @@ function windRow(layer, onRemove) {
   const height = figure(layer.altitude_agl_m, {
     label: t("Height above ground"),
     min: 0,
-    max: HIGHEST_M,
+    max: MAX_HEIGHT_M,
     unit: SHORT_UNIT.unit,
     ...per(SHORT_UNIT.metres),
   });
   const speed = figure(layer.speed_mps, {
     label: t("Wind speed"),
     min: 0,
-    max: STRONGEST_MPS,
+    max: MAX_WIND_MPS,
     unit: SPEED_UNIT.unit,
     ...per(SPEED_UNIT.mps),
   });
@@ -139,7 +139,7 @@ function createWind(wind) {
 
   function addLayer() {
     const last = rows.at(-1)?.read();
-    const row = add(last ? { ...last, altitude_agl_m: Math.min(HIGHEST_M, last.altitude_agl_m + 100) } : FIRST_LAYER);
+    const row = add(last ? { ...last, altitude_agl_m: Math.min(MAX_HEIGHT_M, last.altitude_agl_m + 100) } : FIRST_LAYER);
     draw();
     row.focus();
   }
@@ -148,7 +148,7 @@ function createWind(wind) {
     list.replaceChildren(...rows.map(({ element }) => element));
     heads.hidden = rows.length === 0;
     calm.hidden = rows.length > 0;
-    more.disabled = rows.length >= MOST_LAYERS;
+    more.disabled = rows.length >= MAX_LAYERS;
   }
 
   for (const layer of wind) add(layer);
@@ -178,7 +178,7 @@ export function askForConditions(conditions, use) {
   const wind = createWind(known.wind);
   const temperature = figure(known.temperature_c, {
     label: t("Temperature"),
-    min: COLDEST_C,
+    min: MIN_TEMPERATURE_C,
     max: HOTTEST_C,
     unit: TEMPERATURE_UNIT.unit,
     typed: TEMPERATURE_UNIT.typed,

@@ -11,7 +11,7 @@ import { showLegalTimes } from "./legal_times.js";
 /** @import { MissionActions, MissionSelection, MissionStore } from "../../types.d.ts" */
 
 const USUAL_CHARGING_W = 100;
-const MOST_CHARGING_W = 5000;
+const MAX_CHARGING_W = 5000;
 
 /** @param {MissionStore} store @param {MissionActions} actions */
 export function mountFlightOptions(store, actions) {
@@ -109,7 +109,7 @@ function chargingOptions(store, actions) {
     type: "number",
     id: "charging-power",
     min: 1,
-    max: MOST_CHARGING_W,
+    max: MAX_CHARGING_W,
     step: "any",
   });
   power.addEventListener("change", () => {

@@ -75,14 +75,14 @@ function holdField(store, actions) {
     type: "number",
     id: "lost-link-hold",
     min: 0,
-    max: link.LONGEST_HOLD_S,
+    max: link.MAX_HOLD_S,
     step: 1,
     required: true,
     "aria-describedby": fault.id,
   });
   hold.addEventListener("change", () => {
     const isRight = hold.validity.valid && hold.value !== "";
-    showFault(hold, fault, isRight ? "" : t("From 0 to {most} s.", { most: link.LONGEST_HOLD_S }));
+    showFault(hold, fault, isRight ? "" : t("From 0 to {most} s.", { most: link.MAX_HOLD_S }));
     if (isRight) actions.setOption("lost_link", link.withHold(store.state.selection.lost_link, hold.valueAsNumber));
   });
   const element = h(

@@ -53,7 +53,7 @@ export function createRallyList(store, actions, showPlaces) {
     element.hidden = !link.usesRallyPoints(selection.lost_link);
     none.hidden = rally_points.length > 0;
     count.textContent = rally_points.length ? `${rally_points.length}` : "";
-    const isFull = rally_points.length >= link.MOST_RALLY_POINTS;
+    const isFull = rally_points.length >= link.MAX_RALLY_POINTS;
     onMap.disabled = isFull;
     adding.refresh(isFull);
     rows.draw(rally_points.map((position, index) => ({ position, index })));
@@ -108,7 +108,7 @@ function createAdding(actions, showPlaces) {
         showFault(
           coordinates,
           fault,
-          t("A mission has at most {most} rally points.", { most: link.MOST_RALLY_POINTS }),
+          t("A mission has at most {most} rally points.", { most: link.MAX_RALLY_POINTS }),
         );
       else if (coordinates.value === "") showFault(coordinates, fault, "");
     },

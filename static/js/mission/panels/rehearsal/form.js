@@ -5,13 +5,13 @@ import { t } from "../../../text.js";
 import { SPEED_UNIT } from "../../../units.js";
 import { CONDITIONS, conditionWords, ownConditions } from "../../rehearsal/rehearsal.js";
 
-const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
+const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 /** @param {number} mps */
 const typedSpeed = (mps) => Math.floor(mps / SPEED_UNIT.mps);
 const FIGURES = [
-  { name: "wind_mps", label: t("Wind speed"), unit: SPEED_UNIT.unit, min: 0, max: typedSpeed(MOST_WIND_MPS) },
+  { name: "wind_mps", label: t("Wind speed"), unit: SPEED_UNIT.unit, min: 0, max: typedSpeed(MAX_WIND_MPS) },
   { name: "from_deg", label: t("Wind from"), unit: "°", min: 0, max: 360 },
-  { name: "gusts_mps", label: t("Gusts"), unit: SPEED_UNIT.unit, min: 0, max: typedSpeed(MOST_GUSTS_MPS) },
+  { name: "gusts_mps", label: t("Gusts"), unit: SPEED_UNIT.unit, min: 0, max: typedSpeed(MAX_GUSTS_MPS) },
   { name: "battery_percent", label: t("Battery holds"), unit: "%", min: 10, max: 100 },
 ];
 

@@ -27,7 +27,7 @@ import { mainOf, stripRoom } from "./room.js";
  * @property {string} fault why the ground could not be read
  */
 
-const MOST_WAITS = 3;
+const MAX_WAITS = 3;
 
 /** What the axis reaches to. @param {MissionPageState} state @param {ShownPlan} plan @param {ShownRoute} route */
 const longestOf = (state, plan, route) =>
@@ -208,8 +208,8 @@ function wholeWords(route, flight, fault, departs_at) {
   if (landing !== null) lines.push(line(t("done at {time}", { time: timeAt(departs_at, landing) })));
   const battery = batteryOf(route);
   if (battery) lines.push(line(t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used })));
-  const rest = flight.waits.length - MOST_WAITS;
-  for (const wait of flight.waits.slice(0, MOST_WAITS))
+  const rest = flight.waits.length - MAX_WAITS;
+  for (const wait of flight.waits.slice(0, MAX_WAITS))
     lines.push(line(`${t("at {distance}", { distance: lengthText(wait.at_m) })}: ${stayText(wait)}`));
   if (rest > 0) lines.push(line(tn(rest, "and {count} more", "and {count} more")));
   if (fault) return [...lines, line(fault)];

@@ -5,8 +5,8 @@ import { find } from "../../../dom.js";
 const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery
 const LENGTH_PX = 84 + 12;
-const LEAST_STRIP_PX = 200; // else length and battery give way
-const LEAST_PX = 160;
+const MIN_STRIP_PX = 200; // else length and battery give way
+const MIN_PX = 160;
 
 /** @param {HTMLElement} dock */
 export const mainOf = (dock) => find(dock, ".dock-main", HTMLElement);
@@ -16,7 +16,7 @@ const roomBesideAll = (dock) =>
   mainOf(dock).clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
 
 /** Whether length and battery have to give way. @param {HTMLElement} dock */
-export const isTight = (dock) => roomBesideAll(dock) < LEAST_STRIP_PX;
+export const isTight = (dock) => roomBesideAll(dock) < MIN_STRIP_PX;
 
 /**
  * Room for a strip: on a phone all there is, where the dock is narrow without length and battery.
@@ -25,7 +25,7 @@ export const isTight = (dock) => roomBesideAll(dock) < LEAST_STRIP_PX;
  */
 export function stripRoom(dock) {
   const width = mainOf(dock).clientWidth;
-  if (matchMedia("(max-width: 720px)").matches) return Math.max(LEAST_PX, width - 32);
+  if (matchMedia("(max-width: 720px)").matches) return Math.max(MIN_PX, width - 32);
   const room = roomBesideAll(dock);
-  return Math.max(LEAST_PX, room < LEAST_STRIP_PX ? width - BESIDE_PX + LENGTH_PX : room);
+  return Math.max(MIN_PX, room < MIN_STRIP_PX ? width - BESIDE_PX + LENGTH_PX : room);
 }

@@ -22,7 +22,7 @@ import { passedZones } from "../../zones_passed.js";
 /** @typedef {ReturnType<typeof spanStrip>} Strip */
 /** @typedef {{ plan: ShownPlan, longest_m: number, width_px: number }} Drawn what all strips have in common */
 
-const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
+const MAX_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /**
  * Keys by the place of each route; what is locked to a UAV without a route is not drawn.
@@ -153,7 +153,7 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
      */
     lookForZones(plan, onFound) {
       const flown = routesOf(plan).filter(({ geometry }) => geometry);
-      for (const route of flown.slice(0, MOST_LOOKED_AT)) {
+      for (const route of flown.slice(0, MAX_LOOKED_AT)) {
         if (zonesOf.has(route.waypoints)) continue;
         grounds(route).then(
           (ground) => {

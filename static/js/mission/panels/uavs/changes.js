@@ -10,7 +10,7 @@ import { changeWords, openChanges } from "../../uav_changes.js";
 /** @typedef {Pick<MissionPageState, "mission" | "selection" | "plan" | "planIsStored">} State */
 
 const CHANGEABLE = ["draft", "planned"];
-const MOST_TOLD = 4;
+const MAX_TOLD = 4;
 
 /**
  * What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know
@@ -47,7 +47,7 @@ export function uavNotice(state, actions, canPlan) {
           "A UAV changed since this mission was made.",
           "{count} UAVs changed since this mission was made.",
         );
-  const more = changes.length - MOST_TOLD;
+  const more = changes.length - MAX_TOLD;
   return h(
     "div",
     { class: "notice warning" },
@@ -59,7 +59,7 @@ export function uavNotice(state, actions, canPlan) {
       h(
         "ul",
         { class: "causes" },
-        changes.slice(0, MOST_TOLD).map((change) => h("li", {}, changeWords(change))),
+        changes.slice(0, MAX_TOLD).map((change) => h("li", {}, changeWords(change))),
       ),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more UAV", "{count} more UAVs")),
       mayChange &&

@@ -4,7 +4,7 @@ import { find, h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { boundsIn } from "../../../uav_figures.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../../units.js";
-import { MOST_TARGETS } from "../../selection.js";
+import { MAX_TARGETS } from "../../selection.js";
 
 /** @import { EndActionEnum } from "../../../api_types.d.ts" */
 /** @import { OwnFigure } from "../../../uav_figures.js" */
@@ -29,7 +29,7 @@ import { MOST_TARGETS } from "../../selection.js";
  * @property {number | null} max_airspeed_mps
  */
 
-const MOST_SORTIES = 20; // missions/serializers/limits.py
+const MAX_SORTIES = 20; // missions/serializers/limits.py
 
 /** @type {[EndActionEnum, string][]} */
 export const END_CHOICES = [
@@ -162,11 +162,11 @@ export function createLimits(uav) {
   const input = { class: "input", type: "number", min: 1, step: 1 };
   const most = h("input", {
     ...input,
-    max: MOST_TARGETS,
+    max: MAX_TARGETS,
     placeholder: t("as many as fit"),
     value: uav.most_targets ?? "",
   });
-  const sorties = h("input", { ...input, max: MOST_SORTIES, required: true, value: uav.sorties ?? 1 });
+  const sorties = h("input", { ...input, max: MAX_SORTIES, required: true, value: uav.sorties ?? 1 });
   return {
     element: h(
       "div",

@@ -8,7 +8,7 @@ import { createHandFields } from "./hand_fields.js";
 
 /** @import { HandEdit, HandPoint, MissionActions, MissionPageState, MissionStore, ShownPlan } from "../../types.d.ts" */
 
-const MOST_SAID = 4;
+const MAX_SAID = 4;
 
 /** @param {string} image @param {string} label @param {{ title?: string, class?: string, act: () => unknown }} how */
 const iconButton = (image, label, { title, class: more = "", act }) =>
@@ -176,11 +176,11 @@ export function createByHand(store, actions) {
 
   /** @param {string[]} list */
   function drawFaults(list) {
-    const rest = list.length - MOST_SAID;
+    const rest = list.length - MAX_SAID;
     const more = rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [];
     faults.hidden = list.length === 0;
     faults.replaceChildren(
-      ...[...list.slice(0, MOST_SAID), ...more].map((words) =>
+      ...[...list.slice(0, MAX_SAID), ...more].map((words) =>
         h("li", {}, icon("circle-x", "small"), h("span", {}, words)),
       ),
     );

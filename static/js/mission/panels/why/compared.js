@@ -11,7 +11,7 @@ import { moreOrLess } from "../routes/row.js";
 
 /** @typedef {ReturnType<typeof movesBetween>} Moves */
 
-const MOST_MOVES = 30;
+const MAX_MOVES = 30;
 
 /** @param {ShownPlan} plan @param {ShortPlan} last */
 export function comparison(plan, last) {
@@ -127,12 +127,12 @@ function moved(moves, now) {
     );
     return sequence < 0 ? route.uav : `${routeLetter(sequence)} ${route.uav}`;
   };
-  const rest = moves.length - MOST_MOVES;
+  const rest = moves.length - MAX_MOVES;
   return h(
     "ul",
     { class: "why-moves", "aria-label": t("Targets that have changed") },
     moves
-      .slice(0, MOST_MOVES)
+      .slice(0, MAX_MOVES)
       .map(({ label, from, to }) => h("li", {}, h("span", {}, label), h("small", {}, `${place(from)} → ${place(to)}`))),
     rest > 0 && h("li", {}, tn(rest, "and {count} more", "and {count} more")),
   );

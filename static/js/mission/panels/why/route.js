@@ -23,7 +23,7 @@ import { basisOf } from "../../selection.js";
  * @property {boolean} canPlan
  */
 
-const LEAST_M = 20; // less is the rounding of positions
+const MIN_M = 20; // less is the rounding of positions
 
 /** @param {RouteExplanation} said @param {Explaining} explaining @returns {Child[]} */
 export function routeExplanation(said, explaining) {
@@ -57,7 +57,7 @@ export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
       length_m: round_zones_m ?? 0, // null: too much to work out
     },
   ];
-  return list.filter(({ name, length_m }) => name === "straight" || length_m >= LEAST_M);
+  return list.filter(({ name, length_m }) => name === "straight" || length_m >= MIN_M);
 }
 
 /** @param {RouteExplanation} said */
@@ -89,7 +89,7 @@ function parts(said) {
  * @param {RouteExplanation} said
  */
 function zonesInTheWay({ zones }) {
-  const found = zones.filter(({ extra_m }) => extra_m >= LEAST_M);
+  const found = zones.filter(({ extra_m }) => extra_m >= MIN_M);
   if (!found.length) return null;
   return h(
     "ul",
@@ -173,7 +173,7 @@ const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 /** @param {RouteExplanation} said @param {ShownRoute} route @param {Explaining} explaining */
 function heaviest({ heaviest: found }, route, { plan, actions, canPlan }) {
   const target = found && plan.targets[found.target];
-  if (!found || !target || found.saves_m < LEAST_M || route.targets.length < 2) return null;
+  if (!found || !target || found.saves_m < MIN_M || route.targets.length < 2) return null;
   const words = t("Without {target} {name} flies {length} less.", {
     target: target.label,
     name: route.name,
