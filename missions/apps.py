@@ -2,11 +2,14 @@
 
 from django.apps import AppConfig
 
+from workspace.field_labels import label
+
 
 class MissionsConfig(AppConfig):
     name = "missions"
 
     def ready(self) -> None:
+        label(self.get_models())
         from inspection.auto_apply_hooks import register_check  # noqa: PLC0415 (models are there by then)
 
         register_check("missions.flown_ground_selectors.flown_missions_touched")

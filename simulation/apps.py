@@ -2,11 +2,14 @@
 
 from django.apps import AppConfig
 
+from workspace.field_labels import label
+
 
 class SimulationConfig(AppConfig):
     name = "simulation"
 
     def ready(self) -> None:
+        label(self.get_models())
         from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
         from missions.event_hooks import register_sources  # noqa: PLC0415
 

@@ -2,11 +2,14 @@
 
 from django.apps import AppConfig
 
+from workspace.field_labels import label
+
 
 class TelemetryConfig(AppConfig):
     name = "telemetry"
 
     def ready(self) -> None:
+        label(self.get_models())
         from missions.approval_hooks import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
         from missions.event_hooks import register_sources  # noqa: PLC0415
         from missions.flight_hooks import register_flight_teller  # noqa: PLC0415

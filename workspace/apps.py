@@ -2,6 +2,11 @@
 
 from django.apps import AppConfig
 
+from workspace.field_labels import label
+
 
 class WorkspaceConfig(AppConfig):
     name = "workspace"
+
+    def ready(self) -> None:
+        label(self.get_models())

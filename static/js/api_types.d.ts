@@ -1271,7 +1271,7 @@ export interface components {
             /** Format: double */
             bound_speed_mps: number;
         };
-        /** @description What telemetry/estimation/as_json.py writes. */
+        /** @description What telemetry/services/watches.py writes. */
         EstimateShape: {
             /** Format: date-time */
             at: string;

@@ -76,7 +76,7 @@ test("what keeps UAVs apart is named with the nearest that they come", () => {
   assert.equal(isFault, false);
   assert.match(
     plain(words),
-    /^Separation: Kite takes off 3 min later, Kite flies 15 m higher\. Closest pair: Heron and Kite, 42 m horizontally, 15 m .* 70 s/,
+    /^Separation: Kite starts 3 min later and flies 15 m higher\. Closest pair: Heron and Kite, 42 m horizontally, 15 m .* 70 s/,
   );
   assert.equal(separationOf({ routes: [heron], separation: apart }), null);
 });
@@ -145,4 +145,10 @@ test("a battery is fuller after charging and full after a base, and time has gon
       ["base", 2000],
     ],
   );
+});
+
+test("UAVs that pass long after each other are apart by minutes", () => {
+  const closest = { metres: 42.1, vertical_m: null, seconds: 190, uavs: ["Heron", "Kite"], position: [0, 0] };
+  const { words } = separationOf({ routes: [heron, kite], separation: { ...apart, closest } });
+  assert.match(plain(words), /42 m horizontally, 3 min apart\./);
 });

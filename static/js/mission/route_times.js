@@ -10,6 +10,8 @@ import { timeAt } from "./flight_options.js";
 /** @import { Plan, Route, Separation } from "../api_types.d.ts" */
 /** @import { ShownPlan } from "./types.d.ts" */
 
+const SHORT_S = 120; // from here on a gap is told in minutes
+
 /** @typedef {{ index: number, kind: "base" | "charging", stay_s: number, charged_wh: number | null }} Stay */
 
 /**
@@ -128,17 +130,19 @@ export function separationOf({ separation, routes }) {
   const flown = routes.filter(({ geometry }) => geometry);
   if (!separation?.unresolved || flown.length < 2) return null;
   if (separation.unresolved.length) return { isFault: true, words: separation.unresolved.map(conflictWords).join(" ") };
-  const changes = flown.flatMap(({ uav, departs_s }, index) =>
-    [
-      departs_s > 0 && t("{name} takes off {time} later", { name: uav, time: durationText(departs_s) }),
-      separation.layers[index] > 0 &&
-        t("{name} flies {height} higher", { name: uav, height: heightText(separation.layers[index]) }),
-    ].filter(Boolean),
-  );
+  const changes = flown.flatMap((route, index) => changeWords(route, separation.layers[index]) || []);
   const kept = changes.length
     ? t("Separation: {changes}.", { changes: changes.join(", ") })
     : t("The UAVs keep apart.");
   return { isFault: false, words: [kept, nearestWords(separation.closest)].filter(Boolean).join(" ") };
+}
+
+/** What one UAV does to keep apart; empty: nothing. @param {Pick<Route, "uav" | "departs_s">} route @param {number} layer_m */
+function changeWords({ uav: name, departs_s }, layer_m) {
+  const values = { name, time: durationText(departs_s), height: heightText(layer_m) };
+  if (departs_s > 0 && layer_m > 0) return t("{name} starts {time} later and flies {height} higher", values);
+  if (departs_s > 0) return t("{name} starts {time} later", values);
+  return layer_m > 0 ? t("{name} flies {height} higher", values) : "";
 }
 
 /** @param {Separation["closest"]} closest */
@@ -149,7 +153,7 @@ function nearestWords(closest) {
     one,
     other,
     distance: lengthText(closest.metres),
-    time: `${numberText(closest.seconds)}\u00a0s`,
+    time: closest.seconds < SHORT_S ? `${numberText(closest.seconds)}\u00a0s` : durationText(closest.seconds),
     height: heightText(closest.vertical_m ?? 0),
   };
   return closest.vertical_m === null || closest.vertical_m === undefined

@@ -211,7 +211,6 @@ export default {
   "More than one flight only where it returns to its start; each on a full battery.":
     "Mehr als ein Flug nur, wo es zum Start zurückkehrt; jeder mit vollem Akku.",
   "{name} flies {height} higher": "{name} fliegt {height} höher",
-  "{name} takes off {time} later": "{name} startet {time} später",
   "Closest pair: {one} and {other}, {distance} horizontally, {height} vertically, {time} apart.":
     "Engstes Paar: {one} und {other}, {distance} horizontal, {height} vertikal, {time} auseinander.",
   "Closest pair: {one} and {other}, {distance} horizontally, {time} apart.":
@@ -355,4 +354,6 @@ export default {
   "{name} lies inside {zone}: nothing may land there.": "{name} liegt in {zone}: Dort darf nichts landen.",
   "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.":
     "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
+  "{name} starts {time} later and flies {height} higher": "{name} startet {time} später und fliegt {height} höher",
+  "{name} starts {time} later": "{name} startet {time} später",
 };

@@ -216,5 +216,6 @@ export default {
     "Das Hochgeladene wird mit der freigegebenen Mission verglichen. Das UAV startet nicht.",
   "Upload to {name}": "Auf {name} hochladen",
   "Autopilot parameter: {names}": "Parameter des Autopiloten: {names}",
-  "Return altitude not reported by {count} UAVs: {names}. Their return paths are not checked against terrain and zones.": "Rückkehrhöhe von {count} UAVs nicht gemeldet: {names}. Ihre Rückwege werden nicht gegen Gelände und Zonen geprüft.",
+  "Return altitude not reported by {count} UAVs: {names}. Their return paths are not checked against terrain and zones.":
+    "Rückkehrhöhe von {count} UAVs nicht gemeldet: {names}. Ihre Rückwege werden nicht gegen Gelände und Zonen geprüft.",
 };

@@ -196,12 +196,6 @@ export default {
   "Why {name} flies this way": "Warum {name} so fliegt",
   "Why {target} is not reached": "Warum {target} nicht erreicht wird",
   "Why?": "Warum?",
-  "With {target} as well, {other} would fly {length}, and all together {change} less.":
-    "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} weniger.",
-  "With {target} as well, {other} would fly {length}, and all together {change} more.":
-    "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} mehr.",
-  "With {target} as well, {other} would fly {length}; its range is {range}.":
-    "Mit {target} dazu flöge {other} {length}; die Reichweite ist {range}.",
   "Without {target} {name} flies {length} less.": "Ohne {target} fliegt {name} {length} weniger.",
   "Worth trying.": "Einen Versuch wert.",
   "You can go on: what you change is kept in this browser and saved when the server is back.":
@@ -247,7 +241,6 @@ export default {
   "{name} is the last to be done, after {time}.": "{name} ist als Letztes fertig, nach {time}.",
   "{name} would need {missing} more range, or a start that is nearer: drag its square on the map.":
     "{name} bräuchte {missing} mehr Reichweite oder einen näheren Start: das Quadrat auf der Karte ziehen.",
-  "{own}, not {other}.": "{own}, nicht {other}.",
   "{target} is not reached.": "{target} wird nicht erreicht.",
   "{time} later": "{time} später",
   "{time} sooner": "{time} früher",
@@ -255,4 +248,20 @@ export default {
   "“{name}” is kept.": "„{name}“ ist gespeichert.",
   "There from {start} to {end}.": "Dort von {start} bis {end}.",
   "Loading …": "Wird geladen …",
+  "Giving {target} to {other} is not possible: it would fly {length}, its range is {range}.":
+    "{target} an {other} zu geben ist nicht möglich: Es flöge {length}, seine Reichweite ist {range}.",
+  "Giving {target} to {other} would fly {change} more in total.":
+    "Mit {target} für {other} würden insgesamt {change} mehr geflogen.",
+  "Giving {target} to {other} would fly {change} less in total.":
+    "Mit {target} für {other} würden insgesamt {change} weniger geflogen.",
+  "Giving {target} to {other} would finish at about the same time (and fly {change} more).":
+    "Mit {target} für {other} wäre das Ende etwa gleich (und {change} mehr zu fliegen).",
+  "Giving {target} to {other} would finish at about the same time (and fly {change} less).":
+    "Mit {target} für {other} wäre das Ende etwa gleich (und {change} weniger zu fliegen).",
+  "Giving {target} to {other} would finish about {time} earlier.":
+    "Mit {target} für {other} wäre das Ende etwa {time} früher.",
+  "Giving {target} to {other} would finish about {time} later (and fly {change} more).":
+    "Mit {target} für {other} wäre das Ende etwa {time} später (und {change} mehr zu fliegen).",
+  "Giving {target} to {other} would finish about {time} later (and fly {change} less).":
+    "Mit {target} für {other} wäre das Ende etwa {time} später (und {change} weniger zu fliegen).",
 };

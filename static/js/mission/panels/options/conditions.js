@@ -4,7 +4,7 @@ import { h, icon } from "../../../dom.js";
 import { open } from "../../../page/keyboard.js";
 import { t } from "../../../text.js";
 import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
-import { compassText, conditionsOf, MILD_C, MAX_LAYERS } from "../../flight_options.js";
+import { compassText, conditionsOf, MAX_LAYERS, MILD_C } from "../../flight_options.js";
 import { windArrow } from "../../wind_arrow.js";
 
 /** @import { Conditions } from "../../types.d.ts" */
@@ -139,7 +139,9 @@ function createWind(wind) {
 
   function addLayer() {
     const last = rows.at(-1)?.read();
-    const row = add(last ? { ...last, altitude_agl_m: Math.min(MAX_HEIGHT_M, last.altitude_agl_m + 100) } : FIRST_LAYER);
+    const row = add(
+      last ? { ...last, altitude_agl_m: Math.min(MAX_HEIGHT_M, last.altitude_agl_m + 100) } : FIRST_LAYER,
+    );
     draw();
     row.focus();
   }

@@ -105,11 +105,7 @@ function createAdding(actions, showPlaces) {
       add.disabled = isFull;
       coordinates.disabled = isFull;
       if (isFull)
-        showFault(
-          coordinates,
-          fault,
-          t("A mission has at most {most} rally points.", { most: link.MAX_RALLY_POINTS }),
-        );
+        showFault(coordinates, fault, t("A mission has at most {most} rally points.", { most: link.MAX_RALLY_POINTS }));
       else if (coordinates.value === "") showFault(coordinates, fault, "");
     },
   };

@@ -8,6 +8,7 @@ import { t } from "../../../text.js";
 import { durationText, energyText, lengthText } from "../../../units.js";
 import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan_view.js";
 import { basisOf } from "../../selection.js";
+import { insteadWords } from "./instead_words.js";
 
 /** @import { BindsEnum, ObjectiveEnum, RouteExplanation } from "../../../api_types.d.ts" */
 /** @import { Child } from "../../../dom.js" */
@@ -117,23 +118,8 @@ function showReason(id, reason) {
 
 /** @param {RouteExplanation} said @param {ShownPlan} plan */
 function instead(said, plan) {
-  const { alternative } = said;
-  if (!alternative) return null;
-  const [own, other] = [plan.result.routes[said.uav], plan.result.routes[alternative.uav]];
-  const values = {
-    own: own.uav,
-    other: other.uav,
-    target: plan.targets[alternative.target]?.label ?? "",
-    length: lengthText(alternative.other_length_m),
-    range: alternative.max_range_m === null ? "" : lengthText(alternative.max_range_m),
-    change: lengthText(Math.abs(alternative.total_change_m)),
-  };
-  const words = alternative.is_beyond_range
-    ? t("With {target} as well, {other} would fly {length}; its range is {range}.", values)
-    : alternative.total_change_m >= 0
-      ? t("With {target} as well, {other} would fly {length}, and all together {change} more.", values)
-      : t("With {target} as well, {other} would fly {length}, and all together {change} less.", values);
-  return h("p", {}, h("strong", {}, t("{own}, not {other}.", values)), " ", words);
+  const words = insteadWords(said, plan);
+  return words && h("p", {}, words);
 }
 
 /** @param {ShownPlan} plan @param {ShownRoute} route */

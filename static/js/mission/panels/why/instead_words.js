@@ -1,0 +1,62 @@
+/** What it would cost to give a target to another UAV, in the unit of the plan's objective. Values in, values out. */
+
+import { t } from "../../../text.js";
+import { durationText, lengthText } from "../../../units.js";
+import { longestDuration_s } from "../../plan_view.js";
+
+/** @import { RouteExplanation } from "../../../api_types.d.ts" */
+/** @import { ShownPlan } from "../../types.d.ts" */
+
+const MIN_S = 30; // less is no other time
+
+/** Seconds for so many metres more on a route, at its own mean speed. @param {{ length_m: number, duration_s: number }} route @param {number} more_m */
+const timeFor_s = ({ length_m, duration_s }, more_m) => (length_m > 0 ? (more_m * duration_s) / length_m : 0);
+
+/**
+ * How much later the last UAV would be done: the target's own hover time goes with it and counts with neither.
+ *
+ * @param {RouteExplanation} said
+ * @param {ShownPlan["result"]} result
+ */
+function finishChange_s({ uav, alternative }, result) {
+  if (!alternative) return 0;
+  const { uav: to, other_length_m, total_change_m } = alternative;
+  const [own, other] = [result.routes[uav], result.routes[to]];
+  const theirs_m = other_length_m - other.length_m;
+  const routes = result.routes.map((route, place) => {
+    if (place === uav) return { ...route, duration_s: own.duration_s + timeFor_s(own, total_change_m - theirs_m) };
+    const speed = other.length_m > 0 ? other : own; // one that has not flown yet flies as fast as this one
+    return place === to ? { ...route, duration_s: other.duration_s + timeFor_s(speed, theirs_m) } : route;
+  });
+  return longestDuration_s({ ...result, routes }) - longestDuration_s(result);
+}
+
+/** Empty where there is no other UAV for it. @param {RouteExplanation} said @param {ShownPlan} plan */
+export function insteadWords(said, { result, targets }) {
+  const { alternative } = said;
+  if (!alternative) return "";
+  const time_s = finishChange_s(said, result);
+  const values = {
+    other: result.routes[alternative.uav].uav,
+    target: targets[alternative.target]?.label ?? "",
+    length: lengthText(alternative.other_length_m),
+    range: lengthText(alternative.max_range_m),
+    change: lengthText(Math.abs(alternative.total_change_m)),
+    time: durationText(Math.abs(time_s)),
+  };
+  const isMore = alternative.total_change_m >= 0;
+  if (alternative.is_beyond_range)
+    return t("Giving {target} to {other} is not possible: it would fly {length}, its range is {range}.", values);
+  if (result.objective !== "makespan")
+    return isMore
+      ? t("Giving {target} to {other} would fly {change} more in total.", values)
+      : t("Giving {target} to {other} would fly {change} less in total.", values);
+  if (Math.abs(time_s) < MIN_S)
+    return isMore
+      ? t("Giving {target} to {other} would finish at about the same time (and fly {change} more).", values)
+      : t("Giving {target} to {other} would finish at about the same time (and fly {change} less).", values);
+  if (time_s < 0) return t("Giving {target} to {other} would finish about {time} earlier.", values);
+  return isMore
+    ? t("Giving {target} to {other} would finish about {time} later (and fly {change} more).", values)
+    : t("Giving {target} to {other} would finish about {time} later (and fly {change} less).", values);
+}

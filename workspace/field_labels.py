@@ -1,0 +1,31 @@
+"""Labels of models and their fields in the administration of the database: units in brackets, abbreviations in capitals."""
+
+from collections.abc import Iterable
+
+from django.db.models import Field, Model
+
+UNITS = {
+    "m": "m", "m2": "m²", "mps": "m/s", "s": "s", "h": "h", "deg": "°", "percent": "%", "wh": "Wh", "w": "W", "kg": "kg", "v": "V",
+    "bytes": "bytes",
+}  # fmt: skip
+ABBREVIATIONS = {
+    word.lower(): word for word in ("UAV", "UAVs", "ID", "IDs", "OSM", "MAVLink", "AGL", "AMSL", "API", "ETag", "GPS")
+} | {"sha256": "SHA-256"}  # fmt: skip
+
+
+def label_of(words: str) -> str:
+    """Return "altitude AGL [m]" of "altitude agl m"."""
+    *rest, last = words.split(" ")
+    unit = UNITS.get(last) if rest else None
+    spoken = [ABBREVIATIONS.get(word.lower(), word) for word in (rest if unit else [*rest, last])]
+    return " ".join([*spoken, f"[{unit}]"] if unit else spoken)
+
+
+def label(models: Iterable[type[Model]]) -> None:
+    """Give models and fields of an app their labels, which migrations know nothing of; a field that has words of its own keeps them."""
+    for model in models:
+        options = model._meta
+        options.verbose_name, options.verbose_name_plural = label_of(str(options.verbose_name)), label_of(str(options.verbose_name_plural))
+        for field in options.get_fields():
+            if isinstance(field, Field) and field.verbose_name == field.name.replace("_", " "):
+                field.verbose_name = label_of(str(field.verbose_name))
