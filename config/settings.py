@@ -8,11 +8,11 @@ from typing import Any
 
 import dj_database_url
 
+from config.environment import secret
 from config.log_settings import log_settings
 from config.mail import mail_settings
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
-from config.secret_files import secret
 from inspection.network.flown_heights import FlownHeights
 from inspection.network.rules import LinkingRules
 from inspection.zones.rules import ZoneRules

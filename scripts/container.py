@@ -14,8 +14,9 @@ from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from typing import NoReturn
 
+from config.environment import secret
+
 from config.private_servers import state_directory
-from config.secret_files import secret
 from operation.json_lines import is_asked_for, write_json_lines
 from scripts import commands, container_health, container_proxy
 from scripts.inner_tls import inner_certificate, look_after

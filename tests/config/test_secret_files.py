@@ -4,10 +4,10 @@ from pathlib import Path
 
 import dj_database_url
 import pytest
+from config.environment import SecretUnreadable, secret
 from redis import ConnectionPool, SSLConnection
 
 from config.private_servers import broker_url
-from config.secret_files import SecretUnreadable, secret
 
 
 def test_a_secret_may_come_from_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
