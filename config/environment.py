@@ -1,4 +1,7 @@
-"""Secrets that the environment names by a file, as container platforms hand them over: NAME_FILE in place of NAME."""
+"""Environment variables as settings: flags, lists, numbers, and secrets from files.
+
+A secret may be named by a file, as container platforms hand them over: NAME_FILE in place of NAME.
+"""
 
 import os
 from pathlib import Path
@@ -22,3 +25,23 @@ def secret(name: str, default: str = "") -> str:
         return Path(path).read_text().rstrip("\r\n")
     except (OSError, UnicodeDecodeError) as error:
         raise SecretUnreadable(f"{name}_FILE leads to {path}, which cannot be read: {type(error).__name__}") from None
+
+
+def flag(name: str, default: bool) -> bool:
+    """Whether the variable is 1, true, yes or on."""
+    return os.environ.get(name, "1" if default else "0").lower() in {"1", "true", "yes", "on"}
+
+
+def entries(name: str, default: str) -> list[str]:
+    """The entries of a list with commas."""
+    return [entry.strip() for entry in os.environ.get(name, default).split(",") if entry.strip()]
+
+
+def number(name: str, default: float) -> float:
+    """The variable as a number. Raises ValueError."""
+    return float(os.environ.get(name, default))
+
+
+def mebibytes(name: str, default: int) -> int:
+    """The variable, in MiB, as bytes."""
+    return int(number(name, default) * 1024 * 1024)

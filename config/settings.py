@@ -8,7 +8,7 @@ from typing import Any
 
 import dj_database_url
 
-from config.environment import secret
+from config.environment import entries, flag, mebibytes, number, secret
 from config.log_settings import log_settings
 from config.mail import mail_settings
 from config.openapi_settings import openapi_settings
@@ -25,22 +25,6 @@ from planning.solver.rules import RoutingRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()
-
-
-def _flag(name: str, default: bool) -> bool:
-    return os.environ.get(name, "1" if default else "0").lower() in {"1", "true", "yes", "on"}
-
-
-def _list(name: str, default: str) -> list[str]:
-    return [entry.strip() for entry in os.environ.get(name, default).split(",") if entry.strip()]
-
-
-def _float(name: str, default: float) -> float:
-    return float(os.environ.get(name, default))
-
-
-def _mebibytes(name: str, default: int) -> int:
-    return int(_float(name, default) * 1024 * 1024)
 
 
 def _secret_key() -> str:
@@ -61,14 +45,14 @@ def _secret_key() -> str:
 
 SECRET_KEY = _secret_key()
 SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions and links that were signed with these still hold
-DEBUG = _flag("SPANWISE_DEBUG", default=False)
-ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
-CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
+DEBUG = flag("SPANWISE_DEBUG", default=False)
+ALLOWED_HOSTS = entries("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
+CSRF_TRUSTED_ORIGINS = entries("SPANWISE_TRUSTED_ORIGINS", "")
 TRUSTED_PROXIES = trusted_proxies()
 PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: where links in mails lead
 
 # Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.
-HTTPS = _flag("SPANWISE_HTTPS", default=False)
+HTTPS = flag("SPANWISE_HTTPS", default=False)
 SECURE_SSL_REDIRECT = HTTPS
 SESSION_COOKIE_SECURE = HTTPS
 CSRF_COOKIE_SECURE = HTTPS
@@ -81,9 +65,9 @@ SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
 SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
 SESSION_ENGINE = "workspace.session_store"
-SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
-SESSION_IDLE_S = _float("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
-SESSION_WATCHING_S = _float("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
+SESSION_COOKIE_AGE = int(number("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
+SESSION_IDLE_S = number("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
+SESSION_WATCHING_S = number("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
 PASSWORD_HASHERS = ["workspace.password_hashing.Argon2id", "django.contrib.auth.hashers.PBKDF2PasswordHasher"]  # new, old
 MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
@@ -189,14 +173,14 @@ AUTH_PASSWORD_VALIDATORS = [
     *({"NAME": f"django.contrib.auth.password_validation.{name}Validator"} for name in _DJANGOS_VALIDATORS),
     {"NAME": "workspace.password_words.ContextWordsValidator"},
 ]
-PASSWORD_WORDS = _list("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
-REQUIRES_SECOND_FACTOR = _flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
+PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
+REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"
 
 PASSWORD_RESET_TIMEOUT = 3_600  # seconds that the link of a mail works
-SIGN_IN_LOG_DAYS = int(_float("SPANWISE_SIGN_IN_LOG_DAYS", 180))
+SIGN_IN_LOG_DAYS = int(number("SPANWISE_SIGN_IN_LOG_DAYS", 180))
 
 globals().update(mail_settings(secret("SPANWISE_EMAIL_URL", "console://")))
 DEFAULT_FROM_EMAIL = os.environ.get("SPANWISE_EMAIL_FROM", "Spanwise <spanwise@localhost>")
@@ -220,13 +204,13 @@ STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".s
 UPLOAD_DIR = Path(os.environ.get("SPANWISE_UPLOAD_DIR") or STATE_DIR / "uploads")
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
 MAX_UPLOAD_BYTES = {
-    "osm": _mebibytes("SPANWISE_MAX_OSM_MIB", 512),
-    "terrain": _mebibytes("SPANWISE_MAX_TERRAIN_MIB", 512),
-    "assets": _mebibytes("SPANWISE_MAX_ASSETS_MIB", 128),
-    "zones": _mebibytes("SPANWISE_MAX_ZONES_MIB", 16),
+    "osm": mebibytes("SPANWISE_MAX_OSM_MIB", 512),
+    "terrain": mebibytes("SPANWISE_MAX_TERRAIN_MIB", 512),
+    "assets": mebibytes("SPANWISE_MAX_ASSETS_MIB", 128),
+    "zones": mebibytes("SPANWISE_MAX_ZONES_MIB", 16),
 }
 
-UPLOADS_BYTES = _mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
+UPLOADS_BYTES = mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
@@ -324,31 +308,31 @@ CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
 # The field's own rules, each with a unit in its name.
 GRAPH_RULES = LinkingRules(
-    bridge_to_tower_m=_float("SPANWISE_BRIDGE_TO_TOWER_M", LinkingRules.bridge_to_tower_m),
-    bridge_to_bridge_m=_float("SPANWISE_BRIDGE_TO_BRIDGE_M", LinkingRules.bridge_to_bridge_m),
-    railway_to_tower_m=_float("SPANWISE_RAILWAY_TO_TOWER_M", LinkingRules.railway_to_tower_m),
-    crossing_m=_float("SPANWISE_CROSSING_M", LinkingRules.crossing_m),
-    railway_spacing_m=_float("SPANWISE_RAILWAY_SPACING_M", LinkingRules.railway_spacing_m),
-    off_network_factor=_float("SPANWISE_OFF_NETWORK_FACTOR", LinkingRules.off_network_factor),
-    detour_m=_float("SPANWISE_DETOUR_M", LinkingRules.detour_m),
-    zone_clearance_m=_float("SPANWISE_ZONE_CLEARANCE_M", LinkingRules.zone_clearance_m),
+    bridge_to_tower_m=number("SPANWISE_BRIDGE_TO_TOWER_M", LinkingRules.bridge_to_tower_m),
+    bridge_to_bridge_m=number("SPANWISE_BRIDGE_TO_BRIDGE_M", LinkingRules.bridge_to_bridge_m),
+    railway_to_tower_m=number("SPANWISE_RAILWAY_TO_TOWER_M", LinkingRules.railway_to_tower_m),
+    crossing_m=number("SPANWISE_CROSSING_M", LinkingRules.crossing_m),
+    railway_spacing_m=number("SPANWISE_RAILWAY_SPACING_M", LinkingRules.railway_spacing_m),
+    off_network_factor=number("SPANWISE_OFF_NETWORK_FACTOR", LinkingRules.off_network_factor),
+    detour_m=number("SPANWISE_DETOUR_M", LinkingRules.detour_m),
+    zone_clearance_m=number("SPANWISE_ZONE_CLEARANCE_M", LinkingRules.zone_clearance_m),
 )
 ROUTING_RULES = RoutingRules(
-    access_leg_m=_float("SPANWISE_ACCESS_LEG_M", RoutingRules.access_leg_m),
-    small_plan_targets=int(_float("SPANWISE_SMALL_PLAN_TARGETS", RoutingRules.small_plan_targets)),
-    large_plan_search_s=_float("SPANWISE_LARGE_PLAN_SEARCH_S", RoutingRules.large_plan_search_s),
+    access_leg_m=number("SPANWISE_ACCESS_LEG_M", RoutingRules.access_leg_m),
+    small_plan_targets=int(number("SPANWISE_SMALL_PLAN_TARGETS", RoutingRules.small_plan_targets)),
+    large_plan_search_s=number("SPANWISE_LARGE_PLAN_SEARCH_S", RoutingRules.large_plan_search_s),
 )
 FLIGHT_RULES = FlightRules(
-    clearance_m=_float("SPANWISE_CLEARANCE_M", FlightRules.clearance_m),
-    transit_agl_m=_float("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
-    max_agl_m=_float("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
-    cruise_speed_mps=_float("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
-    longest_flight_s=_float("SPANWISE_MAX_FLIGHT_S", FlightRules.longest_flight_s),
-    turnaround_s=_float("SPANWISE_TURNAROUND_S", FlightRules.turnaround_s),
+    clearance_m=number("SPANWISE_CLEARANCE_M", FlightRules.clearance_m),
+    transit_agl_m=number("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),
+    max_agl_m=number("SPANWISE_MAX_AGL_M", FlightRules.max_agl_m),
+    cruise_speed_mps=number("SPANWISE_CRUISE_SPEED_MPS", FlightRules.cruise_speed_mps),
+    longest_flight_s=number("SPANWISE_MAX_FLIGHT_S", FlightRules.longest_flight_s),
+    turnaround_s=number("SPANWISE_TURNAROUND_S", FlightRules.turnaround_s),
 )
 ZONE_RULES = ZoneRules(
-    time_margin_s=_float("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),
-    height_margin_m=_float("SPANWISE_ZONE_HEIGHT_MARGIN_M", ZoneRules.height_margin_m),
+    time_margin_s=number("SPANWISE_ZONE_TIME_MARGIN_S", ZoneRules.time_margin_s),
+    height_margin_m=number("SPANWISE_ZONE_HEIGHT_MARGIN_M", ZoneRules.height_margin_m),
 )
 FLOWN_HEIGHTS = FlownHeights(
     transit_agl_m=FLIGHT_RULES.transit_agl_m,
@@ -358,64 +342,64 @@ FLOWN_HEIGHTS = FlownHeights(
     max_agl_m=FLIGHT_RULES.max_agl_m,
 )
 SEPARATION_RULES = SeparationRules(
-    lateral_m=_float("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
-    vertical_m=_float("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
-    time_s=_float("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
+    lateral_m=number("SPANWISE_SEPARATION_LATERAL_M", SeparationRules.lateral_m),
+    vertical_m=number("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
+    time_s=number("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
 COMMAND_RULES = CommandRules(
-    motion_s=_float("SPANWISE_MOTION_COMMAND_S", CommandRules.motion_s),
-    stop_s=_float("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
-    upload_s=_float("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
-    speed_s=_float("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
-    read_back_s=_float("SPANWISE_READ_BACK_S", CommandRules.read_back_s),
+    motion_s=number("SPANWISE_MOTION_COMMAND_S", CommandRules.motion_s),
+    stop_s=number("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
+    upload_s=number("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
+    speed_s=number("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
+    read_back_s=number("SPANWISE_READ_BACK_S", CommandRules.read_back_s),
 )
 # The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
-GATEWAY_MAX_COMMANDS = int(_float("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # carried at once, above which speeds wait
-LINK_BUDGET_BYTES_S = _float("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
-GATEWAY_ALONE_S = _float("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
-GATEWAY_MAX_RECORDS = int(_float("SPANWISE_GATEWAY_MAX_RECORDS", 100_000))  # kept in memory while the database is away
+GATEWAY_MAX_COMMANDS = int(number("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # carried at once, above which speeds wait
+LINK_BUDGET_BYTES_S = number("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
+GATEWAY_ALONE_S = number("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
+GATEWAY_MAX_RECORDS = int(number("SPANWISE_GATEWAY_MAX_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
-MAX_FLIGHT_LOG_MIB = _float("SPANWISE_MAX_FLIGHT_LOG_MIB", 256)
+MAX_FLIGHT_LOG_MIB = number("SPANWISE_MAX_FLIGHT_LOG_MIB", 256)
 # The watch, which estimates where UAVs are between their reports.
 ESTIMATOR_NAME = os.environ.get("SPANWISE_ESTIMATOR_NAME", "")
-ESTIMATOR_MAX_UAVS = int(_float("SPANWISE_ESTIMATOR_MAX_UAVS", 1_000))  # that one watch holds at once
-TAKE_OFF_DISTANCE_M = _float("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
+ESTIMATOR_MAX_UAVS = int(number("SPANWISE_ESTIMATOR_MAX_UAVS", 1_000))  # that one watch holds at once
+TAKE_OFF_DISTANCE_M = number("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
 # by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
-TAKE_OFF_HEIGHT_M = min(_float("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
-RESUME_DISTANCE_M = _float("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would go on with
+TAKE_OFF_HEIGHT_M = min(number("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
+RESUME_DISTANCE_M = number("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would go on with
 TRANSFER_RULES = TransferRules(
-    timeout_s=_float("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
-    item_timeout_s=_float("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),
-    retries=int(_float("SPANWISE_TRANSFER_RETRIES", TransferRules.retries)),
-    attempts=int(_float("SPANWISE_TRANSFER_ATTEMPTS", TransferRules.attempts)),
+    timeout_s=number("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
+    item_timeout_s=number("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),
+    retries=int(number("SPANWISE_TRANSFER_RETRIES", TransferRules.retries)),
+    attempts=int(number("SPANWISE_TRANSFER_ATTEMPTS", TransferRules.attempts)),
 )
 VEHICLE_COMMAND_RULES = VehicleCommandRules(
-    timeout_s=_float("SPANWISE_VEHICLE_COMMAND_TIMEOUT_S", VehicleCommandRules.timeout_s),
-    retries=int(_float("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
+    timeout_s=number("SPANWISE_VEHICLE_COMMAND_TIMEOUT_S", VehicleCommandRules.timeout_s),
+    retries=int(number("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
 )
-TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
-MAX_SYSTEM_IDS = int(_float("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
-DATA_WORKERS = int(_float("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
+TELEMETRY_DAYS = number("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
+MAX_SYSTEM_IDS = int(number("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
+DATA_WORKERS = int(number("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
 READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # that reading a file may use, by its size
-MAX_OPEN_PLANS = int(_float("SPANWISE_MAX_OPEN_PLANS", 4))  # large plans of one user, waiting and running
-MAX_OPEN_REHEARSALS = int(_float("SPANWISE_MAX_OPEN_REHEARSALS", 4))  # of one user, waiting and running
+MAX_OPEN_PLANS = int(number("SPANWISE_MAX_OPEN_PLANS", 4))  # large plans of one user, waiting and running
+MAX_OPEN_REHEARSALS = int(number("SPANWISE_MAX_OPEN_REHEARSALS", 4))  # of one user, waiting and running
 # Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.
 SIMULATOR_NAME = os.environ.get("SPANWISE_SIMULATOR_NAME", "")
-SIMULATOR_MAX_UAVS = int(_float("SPANWISE_SIMULATOR_MAX_UAVS", 60))  # of one simulator; each counts as often as its speed
+SIMULATOR_MAX_UAVS = int(number("SPANWISE_SIMULATOR_MAX_UAVS", 60))  # of one simulator; each counts as often as its speed
 SIMULATOR_GATEWAY = os.environ.get("SPANWISE_SIMULATOR_GATEWAY", "")  # HOST:PORT; empty: the first of SPANWISE_GATEWAY_UDP
 SIMULATOR_HOST = os.environ.get("SPANWISE_SIMULATOR_HOST", "127.0.0.1")
 SIMULATOR_PORTS = os.environ.get("SPANWISE_SIMULATOR_PORTS", "14600-14799")
-MAX_SIMULATED_UAVS = int(_float("SPANWISE_MAX_SIMULATED_UAVS", 20))  # of one organisation at once
-MAX_SIMULATION_H = _float("SPANWISE_MAX_SIMULATION_H", 8.0)
-MAX_WAIT_S = _float("SPANWISE_MAX_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
+MAX_SIMULATED_UAVS = int(number("SPANWISE_MAX_SIMULATED_UAVS", 20))  # of one organisation at once
+MAX_SIMULATION_H = number("SPANWISE_MAX_SIMULATION_H", 8.0)
+MAX_WAIT_S = number("SPANWISE_MAX_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 
 # Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")
-OVERPASS_MAX_KM2 = _float("SPANWISE_OVERPASS_MAX_KM2", 5_000.0)
+OVERPASS_MAX_KM2 = number("SPANWISE_OVERPASS_MAX_KM2", 5_000.0)
 
 # Raster tiles under the map: addresses only; the page works without them on a quiet background.
 BASE_MAP_TILES = os.environ.get("SPANWISE_BASE_MAP_TILES", "https://tile.openstreetmap.org/{z}/{x}/{y}.png")
@@ -424,7 +408,7 @@ SATELLITE_TILES = os.environ.get("SPANWISE_SATELLITE_TILES", "")
 SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 
 # Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
-OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
+OUTGOING_ALLOWED_HOSTS = entries("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
-LOG_REQUESTS = _flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
+LOG_REQUESTS = flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
 LOGGING = log_settings(os.environ)

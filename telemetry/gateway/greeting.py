@@ -34,7 +34,7 @@ def heartbeat() -> Message:
 
 
 def intervals_s(flavour: Flavour, budget_bytes_s: float) -> dict[int, float]:
-    """For the messages that telemetry is made of, by their ids; stretched alike, to MAX_STRETCH_LENGTH at most, to fit a budget (0: none)."""
+    """For the messages of telemetry, by their ids; stretched alike, by MAX_STRETCH_LENGTH at most, to fit a budget (0: none)."""
     wanted = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
     load_bytes_s = sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
     stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), MAX_STRETCH_LENGTH)
