@@ -26,7 +26,7 @@ from workspace.services import create_job, fail_job, finish_job, record_change
 SILENCE_S = 20.0
 TOTAL_S = 120.0
 FIRST_RETRY = timedelta(minutes=15)  # doubled with each failure that follows
-MAX_RETRY_LENGTH = timedelta(days=1)  # or the interval, if that is longer
+MAX_RETRY_DELAY = timedelta(days=1)  # or the interval, if that is longer
 MAX_CONCURRENT = 20  # fetches that one look at the clock starts
 _FOLDER_PREFIX = "spanwise-upload-"  # what a killed worker leaves is removed with the uploads
 _CHANGEABLE = ("address", "source_format", "licence", "attribution", "interval_h", "is_active")
@@ -209,7 +209,7 @@ def _note_failure(subscription: ZoneSubscription, job: Job, error: OutgoingError
         if held is not None:
             held.failures = min(held.failures + 1, 1_000)
             held.problem = str(error)[:500]
-            wait = min(FIRST_RETRY * 2 ** min(held.failures - 1, 20), max(MAX_RETRY_LENGTH, timedelta(hours=held.interval_h)))
+            wait = min(FIRST_RETRY * 2 ** min(held.failures - 1, 20), max(MAX_RETRY_DELAY, timedelta(hours=held.interval_h)))
             if isinstance(error, OutgoingFailed) and error.retry_after_s is not None:
                 wait = max(wait, timedelta(seconds=error.retry_after_s))
             held.next_fetch_at = timezone.now() + wait

@@ -13,7 +13,7 @@ from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import command_outcome_in_words
 from workspace import strict_serializers as serializers
 
-MAX_WHY_LENGTH = 300
+MAX_REASON_LENGTH = 300
 MAX_FLIGHTS = 100
 MAX_UAVS = 1_000
 PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"
@@ -59,11 +59,11 @@ class ApproveInputSerializer(KnownFieldsSerializer):
 
 
 class ReasonInputSerializer(KnownFieldsSerializer):
-    reason = serializers.CharField(max_length=MAX_WHY_LENGTH, help_text="kept in the mission's history")
+    reason = serializers.CharField(max_length=MAX_REASON_LENGTH, help_text="kept in the mission's history")
 
 
 class WhyInputSerializer(KnownFieldsSerializer):
-    why = serializers.CharField(max_length=MAX_WHY_LENGTH, required=False, allow_blank=True, default="")
+    why = serializers.CharField(max_length=MAX_REASON_LENGTH, required=False, allow_blank=True, default="")
 
 
 class DispatchInputSerializer(WhyInputSerializer):

@@ -8,7 +8,7 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 MAX_TOLD = 10
-MAX_TOLD_LENGTH = 80
+MAX_REPORTED_LENGTH = 80
 UNKNOWN_TOLD = "unknown_fields_told"
 
 
@@ -19,7 +19,7 @@ class KnownFieldsSerializer(serializers.Serializer):
 
     def to_internal_value(self, data: Any) -> Any:
         if isinstance(data, Mapping):
-            unknown = [str(name)[:MAX_TOLD_LENGTH] for name in data if name not in self.fields]
+            unknown = [str(name)[:MAX_REPORTED_LENGTH] for name in data if name not in self.fields]
             if unknown:
                 context = self.context
                 told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []

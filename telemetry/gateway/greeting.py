@@ -26,7 +26,7 @@ WIND_INTERVAL_S = 2.0
 ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
 STREAM_HZ = 4  # of all data streams, for autopilots that know no intervals
 FRAME_BYTES = 25  # of a signed frame of MAVLink 2 beside its payload
-MAX_STRETCH_LENGTH = 5.0  # by which a position comes once a second
+MAX_STRETCH_FACTOR = 5.0  # by which a position comes once a second
 
 
 def heartbeat() -> Message:
@@ -34,10 +34,10 @@ def heartbeat() -> Message:
 
 
 def intervals_s(flavour: Flavour, budget_bytes_s: float) -> dict[int, float]:
-    """For the messages of telemetry, by their ids; stretched alike, by MAX_STRETCH_LENGTH at most, to fit a budget (0: none)."""
+    """For the messages of telemetry, by their ids; stretched alike, by MAX_STRETCH_FACTOR at most, to fit a budget (0: none)."""
     wanted = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
     load_bytes_s = sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
-    stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), MAX_STRETCH_LENGTH)
+    stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), MAX_STRETCH_FACTOR)
     return {number: every_s * stretch for number, every_s in wanted.items()}
 
 

@@ -4,7 +4,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour
 from mavlink.vehicle_state import VehicleState
-from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, MAX_STRETCH_LENGTH, intervals_s
+from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, MAX_STRETCH_FACTOR, intervals_s
 from telemetry.gateway.questions import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
 
 POSITION, BATTERY = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS
@@ -97,4 +97,4 @@ def test_a_budget_is_kept_as_long_as_positions_come_once_a_second() -> None:
     assert intervals_s(Flavour.ARDUPILOT, 0.0)[POSITION] == INTERVALS_S[POSITION] == 0.2
     assert 600.0 < bytes_s(0.0) < 1_500.0
     assert bytes_s(400.0) <= 400.5
-    assert intervals_s(Flavour.ARDUPILOT, 1.0)[POSITION] == 0.2 * MAX_STRETCH_LENGTH == 1.0
+    assert intervals_s(Flavour.ARDUPILOT, 1.0)[POSITION] == 0.2 * MAX_STRETCH_FACTOR == 1.0
