@@ -13,7 +13,6 @@ from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import command_outcome_in_words
 from workspace import strict_serializers as serializers
 
-MAX_REASON_LENGTH = 300
 MAX_FLIGHTS = 100
 MAX_UAVS = 1_000
 PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"

@@ -9,7 +9,5 @@ export function voltsOf(words) {
     .map((part) => part.replace(/kv/i, "").trim())
     .filter(Boolean);
   const volts = parts.map((part) => (/^\d+(\.\d+)?$/.test(part) ? Math.round(Number(part) * 1000) : 0));
-  return volts.every((each) => each >= 1 && each <= MAX_KV * 1000)
-    ? [...new Set(volts)].sort((a, b) => b - a)
-    : null;
+  return volts.every((each) => each >= 1 && each <= MAX_KV * 1000) ? [...new Set(volts)].sort((a, b) => b - a) : null;
 }

@@ -81,8 +81,7 @@ export function scaleOf({ from_ms, to_ms }, width_px) {
 export function ticksOf({ from_ms, to_ms }, width_px, ahead_min) {
   const most = Math.max(1, Math.floor(width_px / TICK_PX));
   const step_ms =
-    STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ??
-    MAX_MS * Math.ceil((to_ms - from_ms) / MAX_MS / most);
+    STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ?? MAX_MS * Math.ceil((to_ms - from_ms) / MAX_MS / most);
   const ahead_ms = ahead_min * MINUTE;
   const moments = [];
   for (let at = Math.ceil((from_ms + ahead_ms) / step_ms) * step_ms - ahead_ms; at <= to_ms; at += step_ms)
