@@ -434,8 +434,7 @@ def test_an_alert_that_keeps_a_worse_level_keeps_its_words_and_is_answered_as_of
     for second in range(1, 9):
         in_flight(second, uav, approval, memories, battery_percent=15.0, mode="AUTO")
     words = Alert.objects.get(code="battery-short").message
-    for second in range(9, 12):
-        in_flight(second, uav, approval, memories, battery_percent=24.0, mode="RTL")
+    in_flight(9, uav, approval, memories, battery_percent=24.0, mode="RTL")
     alert = Alert.objects.get(code="battery-short")
     assert (alert.level, alert.message, alert.details["acts"], alert.details["own_act"]["kind"]) == ("critical", words, [], "return")
 
@@ -448,5 +447,4 @@ def test_of_a_uav_that_came_down_the_position_is_said_as_it_is_copied(uav, appro
         in_flight(second, uav, approval, memories, **(fallen if second > 3 else {}))
     alert = Alert.objects.get(code="down-off-plan")
     lon, lat = alert.details["position"]
-    assert (lat > 0.0, lon > 0.0) == (True, True)
     assert f"last at {lat:.5f}° N, {lon:.5f}° E:" in alert_words(alert.message, alert.values)

@@ -22,7 +22,20 @@ from workspace.services import create_api_token
 __all__ = ["closed_door", "door", "here", "live_program", "without_redis"]
 pytestmark = pytest.mark.django_db(transaction=True)
 DOCUMENT = Path(settings.BASE_DIR) / "docs" / "api.md"
-SECTIONS = ["Token", "Paging", "Errors", "Retries", "If-Match", "External ids", "Results", "Event log", "Jobs", "Uploads", "Live feed"]
+SECTIONS = [
+    "Token",
+    "Paging",
+    "Errors",
+    "Retries",
+    "If-Match",
+    "External ids",
+    "Results",
+    "Alerts",
+    "Event log",
+    "Jobs",
+    "Uploads",
+    "Live feed",
+]
 
 
 def examples() -> dict[str, str]:

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from telemetry.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from planning.clearance.lost_link import LostLink, LostLinkPlan
 from telemetry.alerting.advice import ADVICE
 from telemetry.alerting.detectors import link

@@ -1,21 +1,19 @@
 /** Alerts: the worst on top, each with one act and Acknowledge; filters, and what is over. */
 
-import { ApiError, get, post } from "../../api.js";
+import { get } from "../../api.js";
 import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
 import { alertsInOrder, downAt, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { feedBell, showAlertCount } from "../../page/bell.js";
-import { copyText } from "../../page/clipboard.js";
-import { confirmAct } from "../../page/confirm.js";
-import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
-import { exactClockText, exactText, positionText } from "../../units.js";
+import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
 import { actsNow, besideWords, createSeenLevels, isMoving, messageWords } from "../alert_words.js";
 import { isNone } from "../arrival.js";
+import { acknowledge, acknowledgeEnded, close, note, positionActs, takeOver, tried } from "./alert_acts.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { AlertLevel, AlertPage, EndedAlerts } from "../../api_types.d.ts" */
+/** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
 /** @import { Binding } from "../../page/keyboard.js" */
 /** @import { Alert, Commanding, LiveUav, MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
 
@@ -42,94 +40,6 @@ const ACT_WORDS = {
 const HISTORY_AT_ONCE = 50;
 const MAX_ACKNOWLEDGED = 500; // in one request, as the API takes them
 
-/** @param {() => Promise<void>} act @param {string} words once it is done */
-async function tried(act, words) {
-  try {
-    await act();
-    say(words);
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-  }
-}
-
-/**
- * At the level that was seen: the server refuses where it has risen since.
- *
- * @param {Alert} alert
- * @param {AlertLevel | undefined} seen_level
- * @param {string} [note]
- */
-const acknowledge = (alert, seen_level, note = "") =>
-  tried(
-    async () => void (await post(`/alerts/${alert.id}/acknowledge`, { note, ...(seen_level && { seen_level }) })),
-    t("Acknowledged."),
-  );
-
-/** One request for alerts that have ended, answered alert by alert. @param {Alert[]} ended */
-async function acknowledgeEnded(ended) {
-  try {
-    const answer = await post("/alerts/acknowledge-ended", { alerts: ended.map(({ id }) => id) });
-    const { results } = /** @type {Answer<EndedAlerts>} */ (answer).data;
-    const count = results.filter(({ outcome }) => outcome === "acknowledged").length;
-    toast(tn(count, "{count} ended alert acknowledged.", "{count} ended alerts acknowledged."));
-  } catch (error) {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-  }
-}
-
-/**
- * A pilot on site flies it from now on: said to all by a note.
- *
- * @param {Alert} alert
- * @param {string} name
- * @param {AlertLevel | undefined} seen_level
- * @param {HTMLElement} opener
- */
-async function takeOver(alert, name, seen_level, opener) {
-  const asked = await confirmAct({
-    title: t("Does a pilot on site fly {name} by hand?", { name }),
-    lines: [
-      alert.message,
-      t("Nothing is sent to the UAV. The pilot takes it by the remote control, in a mode that needs no position."),
-    ],
-    act: t("Pilot takes over"),
-    keep: t("Cancel"),
-    opener,
-  });
-  if (asked) await acknowledge(alert, seen_level, t("A pilot on site takes over {name}.", { name }));
-}
-
-/** @param {Alert} alert */
-async function note(alert) {
-  const asked = await confirmAct({
-    title: t("Add note"),
-    lines: [alert.message],
-    field: { name: "text", label: t("Note (cannot be changed later)"), isNeeded: true },
-    act: t("Save note"),
-    keep: t("Cancel"),
-  });
-  if (!asked?.text) return;
-  await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("Note saved."));
-}
-
-/** A UAV that is down where its flight does not end stays on the board until somebody says what became of it. @param {Alert} alert */
-async function close(alert) {
-  const asked = await confirmAct({
-    title: t("Close this alert"),
-    lines: [alert.message],
-    field: { name: "reason", label: t("What happened to the UAV (saved as a note)"), isNeeded: true },
-    act: t("Close"),
-    keep: t("Cancel"),
-  });
-  if (!asked?.reason) return;
-  await tried(
-    async () => void (await post(`/alerts/${alert.id}/close`, { reason: asked.reason })),
-    t("The alert is closed."),
-  );
-}
-
 /** @param {Alert} alert */
 const closeButton = (alert) =>
   h(
@@ -137,29 +47,6 @@ const closeButton = (alert) =>
     { type: "button", class: "button small quiet", "data-act": "close", onclick: () => void close(alert) },
     t("Close"),
   );
-
-/** @param {string} position */
-async function copyPosition(position) {
-  toast((await copyText(position)) ? t("Position copied: {position}", { position }) : position);
-}
-
-/** For the crew that recovers the UAV: its position to copy, and a link to a phone's navigation or to a map. @param {Alert} alert */
-function positionActs(alert) {
-  const position = downAt(alert);
-  if (!position) return [];
-  const [longitude, latitude] = position.map((degrees) => degrees.toFixed(6));
-  const address = matchMedia("(pointer: coarse)").matches
-    ? `geo:${latitude},${longitude}?q=${latitude},${longitude}`
-    : `https://www.openstreetmap.org/?mlat=${latitude}&mlon=${longitude}#map=18/${latitude}/${longitude}`;
-  return [
-    h(
-      "button",
-      { type: "button", class: "button small quiet", onclick: () => void copyPosition(positionText(position)) },
-      t("Copy position"),
-    ),
-    h("a", { class: "button small quiet", href: address, target: "_blank", rel: "noreferrer" }, t("Navigate")),
-  ];
-}
 
 /** What has become of an alert. @param {Alert} alert */
 function historyWords(alert) {
