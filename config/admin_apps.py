@@ -4,4 +4,4 @@ from django.contrib.admin.apps import SimpleAdminConfig
 
 
 class SpanwiseAdminConfig(SimpleAdminConfig):
-    default_site = "workspace.admin_site.SpanwiseAdminSite"
+    default_site = "workspace.admin_pages.site.SpanwiseAdminSite"

@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from workspace.api_headers import HEADERS
+from workspace.api.headers import HEADERS
 
 
 def _contact() -> dict[str, str]:
@@ -19,7 +19,7 @@ def openapi_settings() -> dict[str, Any]:
         "VERSION": "1",
         "LICENSE": {"name": "Apache-2.0", "url": "https://www.apache.org/licenses/LICENSE-2.0"},
         "CONTACT": _contact(),
-        "POSTPROCESSING_HOOKS": ["drf_spectacular.hooks.postprocess_schema_enums", "workspace.schema.name_etags"],
+        "POSTPROCESSING_HOOKS": ["drf_spectacular.hooks.postprocess_schema_enums", "workspace.api.schema.name_etags"],
         "APPEND_COMPONENTS": {"headers": HEADERS},
         "SERVE_INCLUDE_SCHEMA": False,
         "SWAGGER_UI_DIST": "SIDECAR",
@@ -40,7 +40,7 @@ def openapi_settings() -> dict[str, Any]:
             "Units": "workspace.models.Units",
             "Language": "workspace.models.Language",
             "SignInOutcome": "workspace.models.SignInOutcome",
-            "InvitationState": "workspace.people_serializers.InvitationState",
+            "InvitationState": "accounts.user_serializers.InvitationState",
             "ProposalState": "inspection.models.ProposalState",
             "GapState": "inspection.models.GapState",
             "MissionState": "missions.models.MissionState",

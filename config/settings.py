@@ -64,12 +64,12 @@ SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
 SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
 SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
-SESSION_ENGINE = "workspace.session_store"
+SESSION_ENGINE = "workspace.sessions.session_store"
 SESSION_COOKIE_AGE = int(number("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
 SESSION_IDLE_S = number("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
 SESSION_WATCHING_S = number("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
-PASSWORD_HASHERS = ["workspace.password_hashing.Argon2id", "django.contrib.auth.hashers.PBKDF2PasswordHasher"]  # new, old
+PASSWORD_HASHERS = ["accounts.password_hashing.Argon2id", "django.contrib.auth.hashers.PBKDF2PasswordHasher"]  # new, old
 MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
@@ -104,8 +104,8 @@ MIDDLEWARE = [
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",
     "django.contrib.auth.middleware.AuthenticationMiddleware",
-    "workspace.preferences.PreferencesMiddleware",
-    "workspace.query_parameters.KnownQueryParameters",
+    "workspace.sessions.preferences.PreferencesMiddleware",
+    "workspace.api.query_parameters.KnownQueryParameters",
     "django.contrib.messages.middleware.MessageMiddleware",
     "django.middleware.clickjacking.XFrameOptionsMiddleware",
 ]
@@ -138,7 +138,7 @@ _database = dj_database_url.parse(
     conn_max_age=60,
     conn_health_checks=True,
 )
-# Prepared by workspace/prepared.py alone: Django's own statements go as text. The name tells whose connection it is in pg_stat_activity.
+# Prepared by workspace/prepared_statements.py alone: Django's own statements go as text. The name tells whose connection it is in pg_stat_activity.
 _named = {"application_name": os.environ.get("SPANWISE_PROGRAM", "spanwise")}
 _database["OPTIONS"] = _named | _database.get("OPTIONS", {}) | {"prepare_threshold": 0}
 DATABASES = {"default": _database}
@@ -166,12 +166,12 @@ CHANNEL_LAYERS = {
 }
 
 AUTH_USER_MODEL = "workspace.User"
-AUTHENTICATION_BACKENDS = ["workspace.authentication.RoleBackend"]
+AUTHENTICATION_BACKENDS = ["workspace.api.authentication.RoleBackend"]
 CURATED_APPS = ["inspection"]  # what curators may change in the admin; administrators may change everything
 _DJANGOS_VALIDATORS = ("UserAttributeSimilarity", "MinimumLength", "CommonPassword", "NumericPassword")
 AUTH_PASSWORD_VALIDATORS = [
     *({"NAME": f"django.contrib.auth.password_validation.{name}Validator"} for name in _DJANGOS_VALIDATORS),
-    {"NAME": "workspace.password_words.ContextWordsValidator"},
+    {"NAME": "accounts.password_words.ContextWordsValidator"},
 ]
 PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
 REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
@@ -214,17 +214,17 @@ UPLOADS_BYTES = mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of on
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
-        "workspace.authentication.BearerTokenAuthentication",
+        "workspace.api.authentication.BearerTokenAuthentication",
         "rest_framework.authentication.SessionAuthentication",
     ],
-    "DEFAULT_PERMISSION_CLASSES": ["workspace.permissions.RolePermission"],
+    "DEFAULT_PERMISSION_CLASSES": ["workspace.api.permissions.RolePermission"],
     "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
-    "DEFAULT_PARSER_CLASSES": ["workspace.parsers.StrictJSONParser"],
-    "DEFAULT_CONTENT_NEGOTIATION_CLASS": "workspace.negotiation.ProblemNegotiation",
-    "DEFAULT_THROTTLE_CLASSES": ["workspace.throttling.ScopedRate"],
+    "DEFAULT_PARSER_CLASSES": ["workspace.api.parsers.StrictJSONParser"],
+    "DEFAULT_CONTENT_NEGOTIATION_CLASS": "workspace.api.negotiation.ProblemNegotiation",
+    "DEFAULT_THROTTLE_CLASSES": ["workspace.api.throttling.ScopedRate"],
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,
-    "DEFAULT_SCHEMA_CLASS": "workspace.schema.SpanwiseSchema",
+    "DEFAULT_SCHEMA_CLASS": "workspace.api.schema.SpanwiseSchema",
     "DEFAULT_THROTTLE_RATES": {
         "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
         "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
@@ -232,7 +232,7 @@ REST_FRAMEWORK: dict[str, Any] = {
         "scene": os.environ.get("SPANWISE_SCENE_RATE", "60/minute"),
         "exports": os.environ.get("SPANWISE_EXPORT_RATE", "30/minute"),
     },
-    "EXCEPTION_HANDLER": "workspace.errors.error_response",
+    "EXCEPTION_HANDLER": "workspace.api.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }
 

@@ -12,7 +12,7 @@ settings.ROOT_URLCONF = "config.uav_link_urls"
 settings.MIDDLEWARE = [
     "config.observed_requests.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
-    "workspace.query_parameters.KnownQueryParameters",
+    "workspace.api.query_parameters.KnownQueryParameters",
 ]
 begin_tracing("uav-link")  # before the middleware is put together, of which it is a part
 application = get_wsgi_application()

@@ -3,8 +3,7 @@
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
 from drf_spectacular.views import SpectacularSwaggerSplitView
-
-from workspace.api_document import api_document
+from workspace.api.api_document import api_document
 
 admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
@@ -15,7 +14,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("inspection.urls")),
     path("api/v1/", include("telemetry.urls")),
     path("api/v1/", include("simulation.urls")),
-    path("", include("workspace.page_urls")),
+    path("", include("accounts.page_urls")),
     path("", include("inspection.page_urls")),
     path("", include("missions.page_urls")),
     path("", include("telemetry.page_urls")),

@@ -33,7 +33,7 @@ SELECT EXISTS (
 
 @dataclass(frozen=True)
 class HeldBack:
-    """Why an import is not applied by itself. message is English; what it may say is listed in workspace/stored_words.py."""
+    """Why an import is not applied by itself. message is English; what it may say is listed in workspace/message_rendering.py."""
 
     code: str
     message: str

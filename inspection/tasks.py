@@ -5,6 +5,10 @@ from collections.abc import Callable
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.jobs.fair_queue import next_waiting, start_fair_job
+from workspace.jobs.job_watch import JobWatch
+from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
 
 from inspection import services
 from inspection.models import ImportProposal
@@ -12,11 +16,7 @@ from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
-from workspace.errors import DATABASE_UNAVAILABLE
-from workspace.fair_queue import next_waiting, start_fair_job
-from workspace.job_watch import JobWatch
 from workspace.models import Job
-from workspace.processor_time import ProcessorTimeExceeded, processor_limit
 from workspace.services import JobCancelled, confirm_cancelled, fail_job
 from workspace.tasks import send_job, send_job_on_commit
 

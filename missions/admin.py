@@ -2,10 +2,13 @@
 
 from typing import Any
 
+from accounts.admin import ReadOnlyAdmin
 from django.contrib import admin
 from django.contrib.gis.db import models
 from django.db.models import QuerySet
 from django.http import HttpRequest
+from workspace.admin_pages.history import HistoryAdmin
+from workspace.api.signed_in import user_of
 
 from inspection.admin_map import GeoJSONField
 from missions.models import (
@@ -23,10 +26,7 @@ from missions.models import (
     Waypoint,
 )
 from missions.services.link_changes import removal_reasons
-from workspace.admin import ReadOnlyAdmin
-from workspace.admin_history import HistoryAdmin
 from workspace.services import record_change
-from workspace.signed_in import user_of
 
 
 class _FleetAdmin(HistoryAdmin):

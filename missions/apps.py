@@ -1,8 +1,7 @@
 """Registers the app with Django."""
 
 from django.apps import AppConfig
-
-from workspace.field_labels import label
+from workspace.admin_pages.field_labels import label
 
 
 class MissionsConfig(AppConfig):

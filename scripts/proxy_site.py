@@ -17,7 +17,7 @@ FOR_PROGRAMS = "~^/(api/v[0-9]+|ws)/"  # they are not led from http to https: no
 
 
 def error_json(status: int, code: str, message: str) -> str:
-    """Return an error that nginx answers itself, in the shape of workspace.errors.error_body."""
+    """Return an error that nginx answers itself, in the shape of workspace.api.errors.error_body."""
     problem = {"type": f"urn:problem-type:spanwise:{code}", "title": HTTPStatus(status).phrase, "status": status, "detail": message}
     return json.dumps({"error": {"code": code, "message": message, "details": None}, **problem})
 

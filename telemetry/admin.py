@@ -1,10 +1,10 @@
 """The admin's pages for what came over the links: to be looked at only."""
 
+from accounts.admin import ReadOnlyAdmin
 from django.contrib import admin
 from django.db.models import Q
 
 from telemetry.models import UnknownVehicle
-from workspace.admin import ReadOnlyAdmin
 
 
 @admin.register(UnknownVehicle)

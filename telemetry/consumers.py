@@ -5,6 +5,8 @@ from uuid import UUID
 
 import orjson
 from channels.db import database_sync_to_async
+from workspace.live.sockets import NOTHING_TO_SAY, SignedInSocket
+from workspace.locale_negotiation import language_of_socket
 
 from missions.models import Mission
 from telemetry.live.feed import Feed
@@ -12,8 +14,6 @@ from telemetry.live.hub import hub_here
 from telemetry.live.messages import message
 from telemetry.live.reader import Reader, SaysNonsense
 from workspace.models import User
-from workspace.sockets import NOTHING_TO_SAY, SignedInSocket
-from workspace.spoken import language_of_socket
 
 MAX_WORD_LENGTH = 4_096  # characters that a page may say at once
 HEARTBEAT_INTERVAL_S = 2.0  # a page that hears nothing for 5 s says that it has no data (static/js/live/feed.js)

@@ -2,7 +2,7 @@
 
 from django.apps import AppConfig
 
-from workspace.field_labels import label
+from workspace.admin_pages.field_labels import label
 
 
 class WorkspaceConfig(AppConfig):

@@ -5,7 +5,7 @@ from django.db.models.functions import Now
 
 
 class SecondFactor(models.Model):
-    """Somebody's authenticator app. The seed is sealed (workspace/sealing.py): the database alone makes no codes."""
+    """Somebody's authenticator app. The seed is sealed (workspace/field_encryption.py): the database alone makes no codes."""
 
     user = models.OneToOneField("workspace.User", on_delete=models.CASCADE, related_name="second_factor")
     sealed_seed = models.CharField(max_length=200, editable=False)

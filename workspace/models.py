@@ -72,7 +72,7 @@ class UserManager(DjangoUserManager["User"]):
 
 
 class User(AbstractUser):
-    """Somebody who signs in, or a program (`is_service`). The role says what they may do: see workspace/permissions.py."""
+    """Somebody who signs in, or a program (`is_service`). The role says what they may do: see workspace/api/permissions.py."""
 
     groups = None  # type: ignore[assignment]
     user_permissions = None  # type: ignore[assignment]

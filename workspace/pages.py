@@ -6,8 +6,8 @@ from django.conf import settings
 from django.contrib.auth.mixins import LoginRequiredMixin
 from django.views.generic import TemplateView
 
-from workspace.browser_sessions import seconds_left
-from workspace.signed_in import SignedInPageRequest
+from workspace.api.signed_in import SignedInPageRequest
+from workspace.sessions.browser_sessions import seconds_left
 
 
 class SignedInPage(LoginRequiredMixin, TemplateView):

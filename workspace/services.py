@@ -15,7 +15,7 @@ from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from workspace.live import publish_job
+from workspace.live.changes import publish_job
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
     OPEN_STATES,
@@ -30,7 +30,7 @@ from workspace.models import (
     Role,
     User,
 )
-from workspace.prepared import prepared_rows
+from workspace.prepared_statements import prepared_rows
 
 LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
 QUEUE_TIMEOUT_S = 30  # a queued job that nobody took for so long is sent again

@@ -3,13 +3,15 @@
 import logging
 from functools import partial
 
+from accounts import second_factors, sign_in_log
 from celery import current_app, shared_task
 from django.db import transaction
 from kombu.exceptions import OperationalError
 from redis.exceptions import RedisError
 
-from workspace import browser_sessions, second_factors, services, sign_in_log
+from workspace import services
 from workspace.models import Job
+from workspace.sessions import browser_sessions
 
 logger = logging.getLogger(__name__)
 

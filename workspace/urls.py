@@ -1,8 +1,9 @@
 """Addresses of the workspace under /api/v1/."""
 
+from accounts import account_views, service_account_views, session_views, user_views
 from django.urls import path
 
-from workspace import account_views, people_views, service_account_views, session_views, views
+from workspace.jobs import views
 
 urlpatterns = [
     path("account", account_views.Account.as_view(), name="api-account"),
@@ -15,11 +16,11 @@ urlpatterns = [
     path("account/tokens", account_views.AccountTokens.as_view(), name="api-account-tokens"),
     path("account/tokens/<int:token_id>", account_views.AccountToken.as_view(), name="api-account-token"),
     path("account/sign-ins", account_views.AccountSignIns.as_view(), name="api-account-sign-ins"),
-    path("people", people_views.PersonList.as_view(), name="api-people"),
-    path("people/<int:user_id>", people_views.PersonDetail.as_view(), name="api-person"),
-    path("people/<int:user_id>/sign-out", people_views.PersonSessions.as_view(), name="api-person-sessions"),
-    path("people/<int:user_id>/tokens", people_views.PersonTokens.as_view(), name="api-person-tokens"),
-    path("people/<int:user_id>/second-factor", people_views.PersonSecondFactor.as_view(), name="api-person-second-factor"),
+    path("people", user_views.PersonList.as_view(), name="api-people"),
+    path("people/<int:user_id>", user_views.PersonDetail.as_view(), name="api-person"),
+    path("people/<int:user_id>/sign-out", user_views.PersonSessions.as_view(), name="api-person-sessions"),
+    path("people/<int:user_id>/tokens", user_views.PersonTokens.as_view(), name="api-person-tokens"),
+    path("people/<int:user_id>/second-factor", user_views.PersonSecondFactor.as_view(), name="api-person-second-factor"),
     path("service-accounts", service_account_views.ServiceAccountList.as_view(), name="api-service-accounts"),
     path("service-accounts/<int:account_id>", service_account_views.ServiceAccountDetail.as_view(), name="api-service-account"),
     path(
@@ -30,10 +31,10 @@ urlpatterns = [
         service_account_views.ServiceAccountToken.as_view(),
         name="api-service-account-token",
     ),
-    path("second-factor-rule", people_views.SecondFactorRule.as_view(), name="api-second-factor-rule"),
-    path("invitations", people_views.InvitationList.as_view(), name="api-invitations"),
-    path("invitations/<int:invitation_id>", people_views.InvitationDetail.as_view(), name="api-invitation"),
-    path("sign-ins", people_views.SignInList.as_view(), name="api-sign-ins"),
+    path("second-factor-rule", user_views.SecondFactorRule.as_view(), name="api-second-factor-rule"),
+    path("invitations", user_views.InvitationList.as_view(), name="api-invitations"),
+    path("invitations/<int:invitation_id>", user_views.InvitationDetail.as_view(), name="api-invitation"),
+    path("sign-ins", user_views.SignInList.as_view(), name="api-sign-ins"),
     path("jobs", views.JobList.as_view(), name="api-jobs"),
     path("jobs/<uuid:job_id>", views.JobDetail.as_view(), name="api-job"),
     path("jobs/<uuid:job_id>/cancel", views.JobCancel.as_view(), name="api-job-cancel"),

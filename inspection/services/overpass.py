@@ -9,6 +9,7 @@ from urllib.parse import urlencode
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from workspace.http_client import OutgoingError, OutgoingFailed, fetch
 
 from inspection.importers.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
 from inspection.importers.osm.records import Extent
@@ -16,7 +17,6 @@ from inspection.models import ImportKind, Upload
 from inspection.services.proposals.reading import Fault, FileRefused, Progress
 from inspection.services.uploads import private_folder, store_upload
 from workspace.models import User
-from workspace.outgoing import OutgoingError, OutgoingFailed, fetch
 
 TRIES = 3
 PAUSES_S = (5, 20)  # a question cannot be gone on with: after a cut it is asked again, whole

@@ -10,6 +10,11 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.schema import PAGE_PARAMETERS, several_of
+from workspace.api.signed_in import SignedInRequest
 
 from inspection.models import GapKind, GapState
 from inspection.selectors.gaps import WORST_FIRST, DrawnGap, gap_summary, gaps
@@ -31,12 +36,7 @@ from inspection.services.history import CannotUndo
 from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.views.parameters import BOX, box_of, invalid, text_of
-from workspace.errors import ApiProblem
 from workspace.models import User
-from workspace.paging import asked_choice, page_of
-from workspace.permissions import CURATORS
-from workspace.schema import PAGE_PARAMETERS, several_of
-from workspace.signed_in import SignedInRequest
 
 CANNOT = {409: OpenApiResponse(description="The ground has changed since, or somebody has decided already.")}
 

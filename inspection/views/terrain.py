@@ -9,6 +9,8 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.permissions import CURATORS
+from workspace.api.signed_in import SignedInRequest
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import DataImport, ImportKind
@@ -32,8 +34,6 @@ from inspection.terrain.heights import amsl_m, counted_from
 from inspection.terrain.profile import samples_along
 from inspection.views.parameters import LON_LAT, invalid
 from workspace.models import Role
-from workspace.permissions import CURATORS
-from workspace.signed_in import SignedInRequest
 
 EVERYBODY = frozenset(Role)
 

@@ -1,6 +1,8 @@
 """What goes out: plans and missions."""
 
 from rest_framework import serializers
+from workspace.api.external_data import AttributesField
+from workspace.jobs.serializers import Declared
 
 from missions.fields import ColoursField, PositionField
 from missions.fleet_selectors import FIGURES
@@ -9,8 +11,6 @@ from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializ
 from missions.serializers.commands import MissionApprovalSerializer
 from planning.clearance.lost_link import LostLink, Trouble
 from planning.problem import TaskKind
-from workspace.external_data import AttributesField
-from workspace.serializers import Declared
 
 
 class LineSerializer(serializers.Serializer):

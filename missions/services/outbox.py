@@ -15,6 +15,7 @@ from django.db import connection, transaction
 from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
+from workspace.live.changes import publish_live
 
 from missions.command_rules import ALONG_ROUTE, HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
@@ -31,7 +32,6 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.refused import refuse
-from workspace.live import publish_live
 from workspace.models import User
 from workspace.services import record_change
 

@@ -7,6 +7,8 @@ from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
 
 from missions import selectors, services
 from missions.leg_selectors import Leg, LegEnd, LegFlyer, faults_of_legs
@@ -15,8 +17,6 @@ from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
 from workspace.models import Role
-from workspace.signed_in import SignedInRequest
-from workspace.throttling import ScopedRate
 
 
 class RouteWaypoints(APIView):

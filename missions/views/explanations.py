@@ -10,6 +10,10 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
+from workspace.api.whole_numbers import WholeNumber
 
 from missions import services
 from missions.models import Mission, WaypointKind
@@ -23,11 +27,7 @@ from missions.services.wishes import stored_bases
 from missions.views.missions import mission_or_404
 from missions.views.plans import is_small
 from missions.views.problems import api_problems
-from workspace.errors import ApiProblem
 from workspace.models import Role
-from workspace.signed_in import SignedInRequest
-from workspace.throttling import ScopedRate
-from workspace.whole_numbers import WholeNumber
 
 MAX_EXPLAINED = 20  # routes, and targets, of one answer
 SHORTEST_WAYS = "shortest_ways"

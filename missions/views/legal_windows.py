@@ -11,16 +11,16 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
 
 from inspection.zones.activity import Span
 from missions.serializers.inputs import MAX_DAYS_AHEAD
 from missions.serializers.legal_windows import LegalWindowsInputSerializer, LegalWindowsSerializer, legal_windows_json
 from missions.views.missions import mission_or_404
 from missions.zone_selectors import flown_route, legal_windows
-from workspace.errors import ApiProblem
 from workspace.models import Role
-from workspace.signed_in import SignedInRequest
-from workspace.throttling import ScopedRate
 
 AHEAD_S = 48 * 3_600.0
 FROM = OpenApiParameter("from", datetime, description="the first departure that is asked about; else now")

@@ -7,6 +7,9 @@ from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.signed_in import SignedInRequest
 
 from inspection.selectors import ground_revision
 from missions import selectors, services
@@ -19,10 +22,7 @@ from missions.uav_change_selectors import uav_change_json, uav_changes
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
 from missions.views.problems import api_problems, refusals
-from workspace.errors import ApiProblem
-from workspace.idempotency import idempotent
 from workspace.models import Role
-from workspace.signed_in import SignedInRequest
 
 
 class MissionFilterChoices(APIView):

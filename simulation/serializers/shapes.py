@@ -1,11 +1,12 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared, JobErrorField
+
 from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
-from workspace import strict_serializers as serializers
 from workspace.models import JobState
-from workspace.serializers import Declared, JobErrorField
 
 MAX_CONDITIONS = 8
 LEVELS = VerdictLevel.choices

@@ -9,6 +9,12 @@ from django.urls import reverse
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
 
 from inspection.selectors import ground_revision
 from missions.models import Mission
@@ -24,15 +30,9 @@ from simulation.serializers.representations import planned_points, rehearsal_det
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, start_rehearsal
 from simulation.views.skies import skies_of
-from workspace.errors import ApiProblem
-from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import page_of
-from workspace.schema import PAGE_PARAMETERS
 from workspace.services import TooManyJobs
-from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
-from workspace.whole_numbers import WholeNumber
 
 NEWEST_FIRST = ("-created_at", "-pk")
 USUAL = (Named.AS_PLANNED,)

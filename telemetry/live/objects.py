@@ -8,6 +8,7 @@ from uuid import UUID
 import orjson
 from django.db.models import Count
 from django.utils import translation
+from workspace.message_rendering import in_words
 
 from missions.models import InspectionTarget, Mission, MissionUav, ReplanOffer, TargetState, UavCommand, Waypoint, WaypointKind
 from missions.serializers.commands import command_json
@@ -16,7 +17,6 @@ from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
-from workspace.stored_words import in_words
 
 SAME_IN_ALL = ""  # the language of what has no words
 

@@ -10,6 +10,7 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from missions.fleet_selectors import types_of_organisation
@@ -18,7 +19,6 @@ from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_lim
 from telemetry.serializers.alerts import AlertLimitsSerializer
 from workspace.models import User
 from workspace.services import record_change
-from workspace.signed_in import SignedInRequest
 
 DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
 

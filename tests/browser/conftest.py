@@ -16,6 +16,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
+from accounts.reauthentication import PROOF_S
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
@@ -23,7 +24,6 @@ from scripts.places import Places
 from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES
 from tests.browser.regions import region
-from workspace.proof import PROOF_S
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card

@@ -21,8 +21,8 @@ from telemetry.models import AlertLevel, AlertNote, InspectionResult, TelemetryR
 from telemetry.services.alerts import acknowledge_alert, note_alert, open_alert
 from telemetry.services.companion_reports import take_reports
 from telemetry.services.results import EndedFlight, NewResult, take_results
+from tests.accounts.users import somebody
 from tests.missions import flights, worlds
-from tests.workspace.people import somebody
 from workspace.models import AuditEntry, IdempotencyKey
 from workspace.services import create_job, finish_job, start_job
 

@@ -17,7 +17,7 @@ from django.conf import settings
 from scripts import container
 from scripts.places import PROJECT_DIR
 from tests.telemetry.gateway.program import free_port
-from tests.workspace.front_door import environment_of
+from tests.workspace.live.proxied_site import environment_of
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 

@@ -16,8 +16,8 @@ from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.selectors import ground_revision
 from inspection.services import WrongGeometry, save_asset
 from missions.models import InspectionTarget, Mission, Uav
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import bridge, line, railway, tower, zone
-from tests.workspace.people import client_of, somebody
 from workspace.models import ApiToken, AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -10,9 +10,9 @@ from django.utils import timezone
 from inspection.admin.curated import MAX_CONCURRENT
 from inspection.models import Asset, AssetSet, DataGap, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services import StaleRevision, save_asset, save_zone
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line, tower, zone
 from tests.inspection.test_admin import area, change_address, form_of, point
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -14,8 +14,8 @@ from inspection.selectors import current_graph, ground_revision
 from inspection.services import AssetFileError, UnfinishedMapping, build_graph, delete_asset, import_assets, save_asset
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
+from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.assets.made_files import geojson, line, point
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

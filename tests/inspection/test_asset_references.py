@@ -12,8 +12,8 @@ from django.test.utils import CaptureQueriesContext
 from inspection.models import Asset, AssetReference
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
+from tests.accounts.users import client_of, somebody
 from tests.inspection.osm_files import small_line, write_osm
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -10,8 +10,8 @@ from inspection.models import Asset, DataImport, GraphSnapshot, TerrainTile, Zon
 from inspection.network.snapshot_file import LAYOUT
 from inspection.selectors import asset_detail, asset_label
 from inspection.services import mark_ground_changed
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import bridge, line, railway, square, tower, zone
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -11,9 +11,9 @@ from django.utils import timezone
 from inspection.models import DataGap, DataImport, ImportProposal, NoFlyZone
 from inspection.services import find_gaps, save_zone
 from inspection.services.gaps import dismiss_gap
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.inspection.zone_sets import SETS, stored
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -11,7 +11,7 @@ from rest_framework.test import APIClient
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
-from tests.workspace.described_answers import openapi_document, validate
+from tests.workspace.api.described_answers import openapi_document, validate
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

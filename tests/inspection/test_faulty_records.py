@@ -10,8 +10,8 @@ from inspection.services import import_zones
 from inspection.services.proposals import pipeline
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
+from tests.accounts.users import client_of, somebody
 from tests.inspection.zone_sets import zone_file
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role, User
 
 pytestmark = pytest.mark.django_db

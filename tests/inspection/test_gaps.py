@@ -16,9 +16,9 @@ from inspection.services.gaps import SEARCH_LOCK, dismiss_gap, gaps_are_current
 from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.tasks import find_gaps as find_gaps_task
+from tests.accounts.users import somebody
 from tests.cases import long
 from tests.inspection.ground import bridge, line, tower
-from tests.workspace.people import somebody
 from workspace.models import AuditEntry, Role
 
 pytestmark = pytest.mark.django_db

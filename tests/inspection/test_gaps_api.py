@@ -4,8 +4,8 @@ import pytest
 
 from inspection.models import Asset, DataGap
 from inspection.services import find_gaps
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line, tower
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -15,7 +15,7 @@ from inspection.services import save_zone
 from inspection.services.proposals import pipeline
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 from workspace.models import AuditEntry, Job, JobState, Role, User
 from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs, start_job
 

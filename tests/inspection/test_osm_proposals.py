@@ -11,8 +11,8 @@ from inspection.services import delete_asset, import_osm, save_asset
 from inspection.services.osm_import import difference_of_osm
 from inspection.services.proposals import osm
 from inspection.services.proposals.reading import Change, FileRefused, Provenance, Reading
+from tests.accounts.users import somebody
 from tests.inspection.osm_files import small_line, write_osm
-from tests.workspace.people import somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -11,8 +11,8 @@ from inspection.importers.osm.overpass import WrongArea, area_km2, checked_box, 
 from inspection.models import Asset, DataImport
 from inspection.services import overpass
 from inspection.tasks import apply_proposal, read_proposal
+from tests.accounts.users import client_of, somebody
 from tests.workspace.loopback import Server, body, serving
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 BOX = [9.0, 47.0, 9.1, 47.1]

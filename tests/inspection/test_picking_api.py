@@ -8,8 +8,8 @@ from django.http import HttpResponse
 from django.test import Client
 
 from inspection.models import Asset
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import bridge, line, railway, tower
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

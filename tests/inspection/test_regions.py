@@ -12,8 +12,8 @@ from django.test import Client
 from inspection.models import Asset
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line, tower
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role
 
 pytestmark = pytest.mark.django_db

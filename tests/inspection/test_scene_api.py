@@ -21,9 +21,9 @@ from inspection.selectors import scene as selector
 from inspection.selectors.ground_data import ground_data
 from inspection.selectors.terrain import ground_heights_m
 from inspection.services import import_osm, import_terrain, import_zones, mark_ground_changed
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -18,9 +18,9 @@ from inspection.services.proposals import terrain
 from inspection.services.proposals.reading import FileRefused, Provenance, Reading
 from inspection.terrain.heights import REFERENCES, UnknownReference, amsl_m, counted_from
 from inspection.terrain.profile import MAX_SAMPLES, samples_along
+from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_hgt
 from tests.inspection.test_terrain_import import geotiff, plane, post
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role
 
 METRES = st.floats(-400, 8_800)

@@ -12,9 +12,9 @@ from django.utils import timezone
 from inspection.models import Ground, NoFlyZone
 from inspection.selectors import asset_detail, asset_label, tile_of_edition, vector_tile
 from inspection.services import mark_ground_changed
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.inspection.vector_tile import Feature, read_tile
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -18,7 +18,7 @@ from inspection.services.uploads import (
     upload_as_file,
     upload_folder,
 )
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -15,8 +15,8 @@ from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
+from tests.accounts.users import somebody
 from tests.inspection.zone_sets import zone_file
-from tests.workspace.people import somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -13,9 +13,9 @@ from django.utils import timezone
 from inspection.models import DataImport, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.selectors import ground_revision
 from inspection.services import save_zone
+from tests.accounts.users import client_of, somebody
 from tests.inspection.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, serving
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -11,17 +11,17 @@ import pytest
 from django.db import connections
 from django.test import Client
 from django.utils import timezone
+from workspace.http_client import Fetched, fetch
 
 from inspection.models import ImportProposal, NoFlyZone, Upload, ZoneSet, ZoneSubscription
 from inspection.services import delete_zone, subscriptions
 from inspection.services.subscriptions import start_due_fetches
 from inspection.services.uploads import upload_folder
 from inspection.tasks import fetch_due_subscriptions, fetch_subscription
+from tests.accounts.users import client_of, somebody
 from tests.inspection.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, body, serving
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Job, JobState, Role, User
-from workspace.outgoing import Fetched, fetch
 
 pytestmark = pytest.mark.django_db
 

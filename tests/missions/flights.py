@@ -13,10 +13,10 @@ from missions.services import PlanRequest, UavRequest, create_mission, plan_miss
 from missions.services.approval import approve_mission
 from missions.services.commands import note_applied, note_sent
 from missions.services.dispatch import dispatch_mission
+from tests.accounts.users import somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
 from tests.missions.outbox import a_uav, claim, fence
-from tests.workspace.people import somebody
 from workspace.models import User
 
 

@@ -14,11 +14,11 @@ from missions.services.dispatch import dispatch_mission
 from missions.services.steering import command_uav, mission_in_hand
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import BELIEVED_FOR
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, User
 
 pytestmark = pytest.mark.django_db

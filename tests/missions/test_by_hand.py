@@ -7,11 +7,11 @@ from django.test import Client
 
 from inspection.models import NoFlyZone
 from missions.models import Waypoint
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.missions.api import mission_body, patch, post
 from tests.missions.plane import apart_m
 from tests.missions.worlds import World, power_line, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db
 

@@ -8,9 +8,9 @@ from django.test import Client
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import Base, Mission, Uav, UavType
+from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation
 
 pytestmark = pytest.mark.django_db

@@ -26,8 +26,8 @@ from missions.services.commands import (
 )
 from missions.services.refused import Refused
 from missions.tasks import expire_commands
+from tests.accounts.users import somebody
 from tests.missions.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
-from tests.workspace.people import somebody
 from workspace.models import AuditEntry
 
 pytestmark = pytest.mark.django_db

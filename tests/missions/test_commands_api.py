@@ -8,11 +8,11 @@ from django.test import Client
 
 from missions.models import Mission, Uav, UavCommand
 from missions.services.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unheard
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.outbox import a_uav, claim, fence
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -9,8 +9,8 @@ from django.test import Client
 from missions.models import UavCredential
 from missions.services import mavlink_signing_key
 from missions.services.credentials import note_link_token_use, note_mavlink_key_use
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role
 
 pytestmark = pytest.mark.django_db

@@ -9,9 +9,9 @@ from django.conf import settings
 from redis import Redis
 
 from missions.models import Mission
+from tests.accounts.users import somebody
 from tests.missions.test_lost_planners import mission_to_plan, own_queue, wait_until, worker
 from tests.missions.worlds import world
-from tests.workspace.people import somebody
 from workspace import tasks
 from workspace.models import AuditEntry, Job, JobState, Role
 

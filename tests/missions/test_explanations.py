@@ -7,10 +7,10 @@ from django.test import Client
 
 from inspection.models import Asset
 from missions.models import Uav
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -7,9 +7,9 @@ from django.test import Client
 
 from missions.models import Mission, MissionState
 from missions.services.mission_copies import draft_follow_up, duplicate_mission
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import world
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -7,8 +7,8 @@ from django.test import Client
 
 from missions.models import Base, CommandKind, Mission, Uav, UavState, UavType
 from missions.services.commands import queue_command
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, post
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -18,6 +18,7 @@ from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Objective
+from tests.accounts.users import somebody
 from tests.inspection import ground
 from tests.missions.flight_judge import Judge
 from tests.missions.ground_judge import Hills
@@ -25,7 +26,6 @@ from tests.missions.hand_judge import HandJudge
 from tests.missions.random_flights import A_MONDAY, period, stored
 from tests.missions.schedule_judge import applies_at, sun
 from tests.missions.worlds import power_line, rebuild, request, uav, world, zone_around
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 

@@ -6,9 +6,9 @@ import pytest
 from django.test import Client
 
 from missions.models import Mission, MissionState, TargetState
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, post
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -6,9 +6,9 @@ import pytest
 from django.test import Client
 
 from missions.models import Uav, UavCredential
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

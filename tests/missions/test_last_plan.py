@@ -3,9 +3,9 @@
 import pytest
 from django.test import Client
 
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db
 

@@ -10,10 +10,10 @@ from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.services.later_departure import better_departure
 from planning.problem import Objective
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import plan_body, post
 from tests.missions.test_timed_zones import MONDAY_NOON, timed_zone
 from tests.missions.worlds import request, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

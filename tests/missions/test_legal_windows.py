@@ -9,10 +9,10 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Mission, Route, Waypoint
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, plan_body, post
 from tests.missions.test_stale_zones import hours
 from tests.missions.worlds import World, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

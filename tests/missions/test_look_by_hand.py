@@ -9,10 +9,10 @@ import pytest
 from django.test import Client
 
 from inspection.models import NoFlyZone
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, post
 from tests.missions.test_by_hand import as_wished, longest_leg, planned_with, put
 from tests.missions.worlds import World, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -9,10 +9,10 @@ from inspection.models import NoFlyZone
 from missions.models import Mission
 from missions.services import make_plan, request_of_mission, request_to_json
 from missions.services.mission_plans import PLANNING_TASK
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import World, power_line, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Job, JobState
 
 pytestmark = pytest.mark.django_db

@@ -25,8 +25,8 @@ from django.utils import timezone
 from missions.models import EndAction, Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission
 from planning.problem import Objective
+from tests.accounts.users import somebody
 from tests.missions.worlds import UAV_AT, World, world
-from tests.workspace.people import somebody
 from workspace import tasks
 from workspace.models import AuditEntry, Job, JobState, Role, User
 from workspace.services import LEASE_S, create_job

@@ -13,10 +13,10 @@ from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
 from missions.presence import MAX_PAGES
 from missions.selectors import mission_of_organisation
 from missions.services import duplicate_mission
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Job, JobState, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -16,9 +16,9 @@ from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
 from planning.energy.performance import Performance, performance_to_json
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Job, Organisation, Role
 
 pytestmark = pytest.mark.django_db
@@ -308,7 +308,7 @@ def test_a_mission_names_the_job_that_is_planning_it(here: World, client: Client
 def test_a_stopped_job_stores_the_best_plan_until_then(here: World, client: Client, settings: Any) -> None:
     settings.ROUTING_RULES = replace(settings.ROUTING_RULES, large_plan_search_s=0.3)
     mission, job = large_mission(here, client)
-    with mock.patch("workspace.job_watch.JobWatch.stop", return_value=True):
+    with mock.patch("workspace.jobs.job_watch.JobWatch.stop", return_value=True):
         tasks.plan_mission(str(job.pk))
     job.refresh_from_db()
     mission.refresh_from_db()

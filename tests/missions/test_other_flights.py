@@ -10,8 +10,8 @@ from missions.models import EndAction, Mission, MissionState, Waypoint
 from missions.services import create_mission, duplicate_mission, plan_mission
 from planning.rules import SeparationRules
 from planning.separation.separation import conflicts
+from tests.accounts.users import somebody
 from tests.missions import worlds
-from tests.workspace.people import somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -7,10 +7,10 @@ from django.test import Client
 
 from missions.models import LinkKind, Mission, Uav
 from missions.services.own_return import note_own_return
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import power_line, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation
 
 pytestmark = pytest.mark.django_db

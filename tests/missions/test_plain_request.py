@@ -7,8 +7,8 @@ import pytest
 
 from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.plain_request import plain_request
+from tests.accounts.users import somebody
 from tests.missions.api import TERN, plan_body
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 

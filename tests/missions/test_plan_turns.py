@@ -8,12 +8,12 @@ from unittest import mock
 
 import pytest
 from django.db import connections
+from workspace.jobs import planning_lock
+from workspace.jobs.planning_lock import in_turn
+from workspace.prepared_statements import prepared_rows
 
 from missions.services import make_plan, planning
 from tests.missions.worlds import World, request, uav, world
-from workspace import turns
-from workspace.prepared import prepared_rows
-from workspace.turns import in_turn
 
 PLANNERS = 4
 
@@ -27,7 +27,7 @@ def has_room() -> bool:
     had = []
 
     def look() -> None:
-        with mock.patch.object(turns, "TIMEOUT_S", 0.0), in_turn() as has_turn:
+        with mock.patch.object(planning_lock, "TIMEOUT_S", 0.0), in_turn() as has_turn:
             had.append(has_turn)
 
     another = threading.Thread(target=look)
@@ -38,7 +38,7 @@ def has_room() -> bool:
 
 @pytest.mark.django_db(transaction=True)
 def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(turns, "TIMEOUT_S", 60.0)
+    monkeypatch.setattr(planning_lock, "TIMEOUT_S", 60.0)
     here = world()
     inside, most, best_on = [0], [0], planning._Planner.best_on
     together = threading.Barrier(PLANNERS)
@@ -119,7 +119,7 @@ def test_a_plan_that_fails_gives_its_turn_up() -> None:
 
 
 def test_who_waits_too_long_goes_on_without_a_turn_and_gives_none_up(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(turns, "TIMEOUT_S", 0.05)
+    monkeypatch.setattr(planning_lock, "TIMEOUT_S", 0.05)
     holds, over = threading.Event(), threading.Event()
 
     def hold() -> None:

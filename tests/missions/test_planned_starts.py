@@ -12,12 +12,12 @@ from missions.services.planned_starts import LEAD_S, MAX_GAP_S, begin_planned_st
 from missions.services.refused import Refused
 from missions.services.steering import command_uav
 from telemetry.models import UavLink, UavWatch
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
 from tests.missions.outbox import claim, fence
 from tests.missions.worlds import world
 from tests.telemetry.records import heard
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

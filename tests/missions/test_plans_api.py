@@ -7,17 +7,17 @@ from unittest import mock
 import pytest
 from django.db import OperationalError
 from django.test import Client
+from workspace.jobs import job_watch
 
 from missions import tasks
 from missions.models import Mission
 from missions.services import NO_SHORTFALL
 from planning.solver import solver
 from planning.solver.progress import Progress
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts
-from tests.workspace.people import client_of, somebody
-from workspace import job_watch
 from workspace.models import Job, JobState, Organisation, Role
 from workspace.services import cancel_job
 
@@ -141,7 +141,7 @@ def test_while_the_zones_never_rest_the_answer_is_to_try_again(here: World, clie
 
 def test_the_rate_of_plans_is_limited_per_user(here: World, client: Client, settings: Any) -> None:
     forget_counts()
-    with mock.patch("workspace.throttling.ScopedRate.THROTTLE_RATES", {"plans": "3/hour"}):
+    with mock.patch("workspace.api.throttling.ScopedRate.THROTTLE_RATES", {"plans": "3/hour"}):
         answers = [post(client, "plans", plan_body(here.towers[0])).status_code for _ in range(4)]
         other = post(client_of(somebody()), "plans", plan_body(here.towers[0])).status_code
     assert answers == [200, 200, 200, 429]
@@ -187,7 +187,7 @@ def test_a_job_stopped_while_it_runs_ends_before_its_time_with_the_best_plan_unt
         original(job=job, progress=progress, **more)
 
     original = job_watch.report_progress
-    with mock.patch("workspace.job_watch.report_progress", report), mock.patch("missions.tasks.JobWatch", watching_often):
+    with mock.patch("workspace.jobs.job_watch.report_progress", report), mock.patch("missions.tasks.JobWatch", watching_often):
         tasks.solve_plan(str(job.pk))
     job.refresh_from_db()
     assert (job.state, job.message) == (JobState.DONE, "Stopped; the best plan until then is kept")
@@ -242,7 +242,7 @@ def test_a_stored_uav_brings_its_values_and_the_request_overrides_them(here: Wor
 def test_a_planner_whose_database_is_away_for_a_moment_goes_on(here: World, client: Client) -> None:
     job = large_job(here, client)
     away = mock.Mock(side_effect=[OperationalError("the server closed the connection"), None])
-    with mock.patch("workspace.job_watch.report_progress", away), job_watch.JobWatch(job, interval_s=0.0) as watch:
+    with mock.patch("workspace.jobs.job_watch.report_progress", away), job_watch.JobWatch(job, interval_s=0.0) as watch:
         watch.note(0.5, "half way")
         watch.note(0.6, "on the way again")
         assert watch.is_cancelled is False
@@ -271,7 +271,7 @@ def test_the_best_route_so_far_is_drawn_while_it_is_searched_for(here: World, cl
 
     original = solver.solve
     with (
-        mock.patch("workspace.job_watch.report_progress", report),
+        mock.patch("workspace.jobs.job_watch.report_progress", report),
         mock.patch("missions.tasks.JobWatch", watching_often),
         mock.patch("missions.services.assignment.solve", solve),
     ):

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 
 from missions.services import PlanRequest, make_plan
+from tests.accounts.users import somebody
 from tests.missions.flight_judge import Judge
 from tests.missions.hand_judge import HandJudge
 from tests.missions.random_flights import HILLY, airs, approve_some, bring_in, departures, flight, put_zones
 from tests.missions.random_missions import Region
 from tests.missions.refusal_judge import first_of_all, missing
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 

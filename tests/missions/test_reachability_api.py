@@ -9,9 +9,9 @@ from django.test import Client
 from inspection.models import Asset, NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Base, Uav, UavState
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, post
 from tests.missions.worlds import UAV_AT, World, island, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -7,9 +7,9 @@ from django.test import Client
 from django.utils import timezone
 
 from inspection.models import Asset
+from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line, tower
 from tests.missions.api import patch, post
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -12,17 +12,17 @@ from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone, translation
+from workspace.api.throttling import ScopedRate
 
 from inspection.models import GraphSnapshot
 from missions import services
 from missions.views.small_plans import small_plan
+from tests.accounts.users import somebody
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
 from tests.workspace.counters import forget_counts
-from tests.workspace.people import somebody
 from workspace.models import ApiToken, Role, User
 from workspace.services import create_api_token
-from workspace.throttling import ScopedRate
 
 pytestmark = pytest.mark.django_db
 SHORT_WAYS = ("missions.views.short_way.small_plan", "missions.views.plans.small_plan")
@@ -259,7 +259,7 @@ def test_without_the_database_the_view_says_so(here: World, where: str) -> None:
     client = program_of(somebody(Role.OPERATOR))
     with mock.patch(where, side_effect=OperationalError("away")):
         _, _, gone = both_ways(client, plan_body(here.towers[2]))
-    with mock.patch("workspace.authentication.prepared_rows", side_effect=OperationalError("away")):
+    with mock.patch("workspace.api.authentication.prepared_rows", side_effect=OperationalError("away")):
         answer = asked(client, plan_body(here.towers[2]))
     assert not gone
     assert (answer.status_code, answer.json()["error"]["code"]) == (503, "database_away")

@@ -11,9 +11,9 @@ from missions.services.own_return import note_own_return
 from missions.services.refused import Refused
 from missions.services.staggered_returns import stuck_returns
 from missions.services.steering import command_uav
+from tests.accounts.users import client_of
 from tests.missions.flights import an_operator, carry, fleet
 from tests.missions.outbox import claim, fence, now
-from tests.workspace.people import client_of
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db

@@ -9,9 +9,9 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Mission, Route, Waypoint
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, post
 from tests.missions.worlds import World, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

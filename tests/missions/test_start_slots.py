@@ -14,10 +14,10 @@ from missions.services.steering import command_uav
 from telemetry.models import UavLink, UavWatch
 from telemetry.services.latest import time_text
 from telemetry.services.uav_outbox import handed_to
+from tests.accounts.users import client_of
 from tests.missions.api import post
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import UAV_AT, world
-from tests.workspace.people import client_of
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db

@@ -15,11 +15,11 @@ from inspection.selectors.planning import Edition
 from inspection.services import import_terrain
 from inspection.services.terrain_import import remove_terrain
 from missions.services import make_plan, planning
+from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
 from tests.missions.test_planning import request
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

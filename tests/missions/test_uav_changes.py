@@ -8,9 +8,9 @@ from django.test import Client
 from django.utils.translation import override
 
 from missions.models import Mission, MissionState, MissionUav, Uav, UavState, UavType
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
-from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db
 

@@ -6,8 +6,8 @@ import pytest
 from django.test import Client
 
 from missions.models import Uav
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, post
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

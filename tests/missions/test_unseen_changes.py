@@ -7,10 +7,10 @@ from django.http import HttpResponse
 from django.test import Client
 
 from missions.models import MissionState, UavCommand
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db

@@ -7,9 +7,9 @@ import pytest
 from django.test import Client
 
 from missions.models import Base, InspectionTarget, Mission
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Job, JobState, Role
 
 pytestmark = pytest.mark.django_db

@@ -17,7 +17,7 @@ from operation import metrics
 from operation.exposition import metrics_text
 from simulation.simulator import figures as simulator_figures
 from telemetry.gateway import figures as gateway_figures
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 BOUNDED = {

@@ -14,8 +14,8 @@ from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.demo_missions import DEMO_MISSIONS, remove_demo_data, want_demo_missions
 from simulation.services.simulations import end_simulation
 from simulation.tasks import fly_demo_missions
+from tests.accounts.users import somebody
 from tests.missions.flights import carry
-from tests.workspace.people import somebody
 from workspace.models import Job, JobState, Role, User
 from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs
 

@@ -16,9 +16,9 @@ from simulation.services.demo_missions import (
     remove_demo_data,
     want_demo_missions,
 )
+from tests.accounts.users import client_of, somebody
 from tests.simulation.random_rehearsals import rehearse_mission
 from tests.simulation.test_random_rehearsals import faults_of
-from tests.workspace.people import client_of, somebody
 from workspace.models import Job, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -21,11 +21,11 @@ from telemetry.models import AlertLevel, FlightEvent, VehicleText
 from telemetry.selectors import events as telemetry_events
 from telemetry.services import NewRecord, store_records
 from telemetry.services.alerts import acknowledge_alert, close_alert, open_alert
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import carry, dispatched, fleet
 from tests.missions.worlds import world
 from tests.simulation.simulations import stand_ins
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -7,11 +7,11 @@ import pytest
 
 from missions.models import Mission, UavType
 from simulation.models import Rehearsal, RehearsalRule
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import world
 from tests.simulation.rehearsed import asked, rehearsed
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, JobState, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -30,11 +30,11 @@ from simulation.models import SimulatedVehicle, Simulation
 from simulation.services.green_verdict import set_rule
 from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.simulations import end_now
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import carry, fleet, ground, planned
 from tests.missions.outbox import give
 from tests.missions.worlds import world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

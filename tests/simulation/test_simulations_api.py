@@ -9,11 +9,11 @@ from django.test import Client
 
 from missions.models import CredentialKind, Uav, UavCredential
 from simulation.models import Simulation, SimulationChange
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, fleet
 from tests.missions.worlds import world
 from tests.simulation.simulations import pool
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

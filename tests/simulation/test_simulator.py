@@ -16,13 +16,13 @@ from missions.services.dispatch import abort_mission, dispatch_mission
 from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.simulations import change_simulation, end_simulation
 from telemetry.models import Alert, AlertLevel, TelemetryRecord, UavLink, UavWatch
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, fleet, ground
 from tests.missions.worlds import world
 from tests.simulation.simulations import fresh, pool, stand_ins
 from tests.telemetry.gateway.program import PROJECT_DIR, environment, free_port, gateway_program
 from tests.telemetry.gateway.station import TIMEOUT_S, wait_for
 from tests.telemetry.watch.program import watch_program
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 LONG_S = 90.0

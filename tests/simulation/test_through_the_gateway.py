@@ -11,12 +11,12 @@ from simulation.flight.ground import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
 from telemetry.models import TelemetryRecord, UavLink
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.simulation.fleets import flying, free_port
 from tests.telemetry.gateway.program import gateway_program
 from tests.telemetry.gateway.station import signed_uav, wait_for
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 GROUND_M = 100.0

@@ -5,9 +5,9 @@ from django.utils import timezone
 
 from missions.models import Approval, UavCommand
 from telemetry.models import UnknownVehicle
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -12,10 +12,10 @@ from django.utils import timezone
 
 from inspection.tasks import apply_proposal, read_proposal
 from missions.tasks import solve_plan
+from tests.accounts.users import somebody
 from tests.missions.worlds import world
 from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
-from tests.workspace.front_door import Door
-from tests.workspace.people import somebody
+from tests.workspace.live.proxied_site import Door
 from workspace.models import Role
 from workspace.services import create_api_token
 

@@ -18,8 +18,8 @@ from django.contrib.gis.geos import Point
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.refused import Refused
+from tests.accounts.users import somebody
 from tests.telemetry.command_carriers import Link, nursery
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -10,8 +10,8 @@ from missions.models import CommandKind, Uav, UavCredential
 from missions.services.commands import queue_command
 from missions.services.credentials import note_mavlink_key_use
 from telemetry.models import UavLink
+from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import linked_uav, report
-from tests.workspace.people import client_of, somebody
 from workspace.door_models import BrowserSession
 from workspace.models import AuditEntry, Role
 from workspace.services import create_api_token

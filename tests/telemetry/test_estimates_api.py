@@ -10,9 +10,9 @@ from missions.models import Mission, Uav
 from telemetry.models import PositionEstimate
 from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.services import retention, store_records
+from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import START, at, record
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -12,9 +12,9 @@ from django.test import Client
 from missions.models import Mission, Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
+from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import record
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -7,11 +7,11 @@ import pytest
 
 from inspection.services import import_terrain
 from missions.models import Uav
+from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.flights import an_operator, fleet, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.test_present_returns import EAST, HOME, estimated, flies
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, User
 
 pytestmark = pytest.mark.django_db

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from django.db import connection, transaction
 from django.utils import timezone
+from workspace.live.changes import changes
 
 from missions.models import Uav
 from telemetry.live.uavs import measured_json
@@ -15,7 +16,6 @@ from telemetry.models import UavWatch
 from telemetry.services import store_records
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import at, record
-from workspace import live
 from workspace.models import Organisation
 
 NOWHERE = {"longitude_deg": None, "latitude_deg": None}
@@ -160,11 +160,11 @@ def test_reports_and_estimates_of_the_same_uavs_lock_nobody_out() -> None:
 
 
 def test_nobody_waits_long_for_a_redis_that_is_away(settings: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live, "_live_quiet_until_s", 0.0)
+    monkeypatch.setattr(changes, "_live_quiet_until_s", 0.0)
     settings.REDIS_URL = "redis://127.0.0.1:1/0"
     tried: list[str] = []
-    away = live._redis
-    monkeypatch.setattr(live, "_redis", lambda address: tried.append(address) or away(address))
+    away = changes._redis
+    monkeypatch.setattr(changes, "_redis", lambda address: tried.append(address) or away(address))
     for _ in range(50):
-        live.publish_live(1)
+        changes.publish_live(1)
     assert len(tried) == 1  # and then not again for a while

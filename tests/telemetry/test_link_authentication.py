@@ -10,8 +10,8 @@ from missions.models import CredentialKind, UavCredential, UavState
 from missions.services import make_credential, revoke_credential
 from telemetry.models import TelemetryRecord, UavLink
 from telemetry.views import uav_authentication
+from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import LINK, linked_uav, report
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 from workspace.services import create_api_token
 

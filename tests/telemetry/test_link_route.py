@@ -19,7 +19,7 @@ from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.outbox import lose
 from tests.missions.worlds import World, world
 from tests.telemetry.uav_clients import UavClient, linked_uav
-from workspace import prepared
+from workspace import prepared_statements
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db
@@ -106,8 +106,8 @@ def test_a_poll_that_knows_the_answer_takes_three_small_statements(
     etag = kite.get("route")["ETag"]
     attempts = UavCommand.objects.get().attempts
     statements: list[str] = []
-    rows = prepared._rows
-    monkeypatch.setattr(prepared, "_rows", lambda statement, values: (statements.append(statement), rows(statement, values))[1])
+    rows = prepared_statements._rows
+    monkeypatch.setattr(prepared_statements, "_rows", lambda statement, values: (statements.append(statement), rows(statement, values))[1])
     with CaptureQueriesContext(connection) as asked:
         answer = kite.get("route", **{"If-None-Match": etag})
     assert (answer.status_code, answer.content) == (304, b"")

@@ -17,12 +17,12 @@ from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts import open_alert
 from telemetry.services.down_alerts import close_down_alert
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, fleet
 from tests.missions.outbox import claim, fence
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import heard
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

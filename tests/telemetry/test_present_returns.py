@@ -11,10 +11,10 @@ from inspection.models import NoFlyZone
 from missions.models import Mission, Uav
 from missions.services.own_return import note_own_return
 from telemetry.models import UavLink, UavWatch
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, approved, fleet
 from tests.missions.worlds import power_line, rebuild, world, zone_around
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, User
 
 pytestmark = pytest.mark.django_db

@@ -10,8 +10,8 @@ from django.db import connection, connections, transaction
 
 from missions.models import Uav
 from missions.services.uavs import change_uav
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 TIMEOUT_S = 60.0

@@ -9,9 +9,9 @@ from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
 from telemetry.models import AlertLevel
 from telemetry.services.alerts import open_alert
 from telemetry.services.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
+from tests.accounts.users import somebody
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
-from tests.workspace.people import somebody
 from workspace.services import create_job
 
 

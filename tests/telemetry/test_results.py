@@ -12,9 +12,9 @@ from inspection.models import AssetReference
 from missions.models import InspectionTarget, Mission, TargetState, Uav
 from missions.services.flying import mark_started
 from telemetry.models import InspectionResult, TelemetryStream
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

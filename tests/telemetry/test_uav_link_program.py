@@ -17,7 +17,7 @@ from scripts.places import WEB_PROGRAMS, Places
 from scripts.programs import web_programs
 from telemetry.models import TelemetryRecord
 from tests.telemetry.uav_clients import UavClient, linked_uav, report
-from tests.workspace.front_door import Door, front_door, redis_at, running, wait_until
+from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -8,9 +8,9 @@ from django.utils import timezone
 from missions.models import CommandKind, Uav
 from missions.services.commands import queue_command
 from telemetry.models import UavLink
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch
 from tests.missions.outbox import a_uav
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

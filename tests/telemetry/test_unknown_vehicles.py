@@ -10,12 +10,12 @@ from django.utils import timezone
 
 from missions.models import TargetState, Uav, UavType
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import world
 from tests.telemetry.uav_clients import linked_uav, report, seconds_ago
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -9,8 +9,8 @@ from django.test import Client
 
 from missions.models import CredentialKind, LinkKind, Uav
 from missions.services import make_credential
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
-from tests.workspace.people import somebody
 from workspace.models import Organisation
 
 LINK = "/api/v1/uav-link"

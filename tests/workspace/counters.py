@@ -1,6 +1,6 @@
 """The counts of requests in Redis, which outlive a test and its users."""
 
-from workspace.throttling import _counters
+from workspace.api.throttling import _counters
 
 
 def forget_counts() -> None:

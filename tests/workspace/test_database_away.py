@@ -7,7 +7,7 @@ import pytest
 from django.db import connection
 from django.test import Client
 
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db(transaction=True)

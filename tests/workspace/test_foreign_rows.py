@@ -7,6 +7,7 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
+from accounts.service_accounts import make_service_account
 from django.apps import apps
 from django.contrib.gis.geos import Point
 from django.contrib.sessions.models import Session
@@ -31,12 +32,11 @@ from missions.models import (
 from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
+from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
-from tests.workspace.people import client_of, somebody
-from tests.workspace.test_roles import SAFE, stand_in
+from tests.workspace.sessions.test_roles import SAFE, stand_in
 from workspace.models import ApiToken, BrowserSession, Invitation, Organisation, Role, User
-from workspace.service_accounts import make_service_account
 from workspace.services import create_job
 
 pytestmark = pytest.mark.django_db

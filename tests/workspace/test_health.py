@@ -10,7 +10,7 @@ from django.db.migrations.recorder import MigrationRecorder
 from django.test import Client, override_settings
 
 from inspection.models import Asset, GraphSnapshot
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 
 DEAD_REDIS = {"default": {"BACKEND": "django.core.cache.backends.redis.RedisCache", "LOCATION": "unix:///nonexistent/redis.sock"}}
 pytestmark = pytest.mark.django_db
@@ -74,7 +74,7 @@ def test_not_ready_without_the_database(monkeypatch: pytest.MonkeyPatch) -> None
 
 
 @pytest.mark.usefixtures("ground")
-@pytest.mark.urls("tests.workspace.echo_urls")
+@pytest.mark.urls("tests.workspace.api.echo_urls")
 def test_without_redis_the_api_goes_on_and_ready_says_so() -> None:
     client = client_of(somebody())
     with override_settings(CACHES=DEAD_REDIS):

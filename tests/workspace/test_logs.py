@@ -21,8 +21,8 @@ from config.log_settings import log_settings
 from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
 from operation.redaction import without_secrets
+from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import LINK, linked_uav, report
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role, User
 from workspace.services import create_api_token
 

@@ -5,7 +5,7 @@ import re
 import pytest
 from django.test import Client
 
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -11,7 +11,7 @@ from django.conf import settings
 from django.test import override_settings
 
 from config.private_servers import broker_url
-from tests.workspace.people import client_of, somebody
+from tests.accounts.users import client_of, somebody
 
 
 @pytest.mark.parametrize(

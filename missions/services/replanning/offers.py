@@ -8,12 +8,12 @@ from uuid import UUID
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from workspace.live.changes import publish_live
 
 from missions.models import Mission, MissionState, OfferState, ReplanOffer, Uav
 from missions.services.missions import note
 from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
-from workspace.live import publish_live
 from workspace.models import Job, User
 from workspace.services import create_job
 

@@ -15,10 +15,10 @@ from missions.services.flying import ON_ITS_WAY, FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
 from missions.services.steering import command_uav
+from tests.accounts.users import somebody
 from tests.missions.flights import ground
 from tests.missions.outbox import claim, fence
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
-from tests.workspace.people import somebody
 from workspace.models import Job, JobState
 
 pytestmark = pytest.mark.django_db

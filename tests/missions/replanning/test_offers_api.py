@@ -11,9 +11,9 @@ from missions.models import MissionState, OfferState, ReplanOffer
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.replanning import suggest
 from missions.tasks import look_after_offers, replan_mission
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db

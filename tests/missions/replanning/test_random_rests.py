@@ -17,6 +17,7 @@ from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.replanning import accept_offer
 from planning.problem import Objective
+from tests.accounts.users import somebody
 from tests.cases import long
 from tests.inspection import ground as ground_rows
 from tests.missions.flights import fleet
@@ -24,7 +25,6 @@ from tests.missions.plane import apart_m
 from tests.missions.random_flights import bring_in
 from tests.missions.replanning.in_flight import Flight, started
 from tests.missions.zone_judge import ZoneJudge, legs_of
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03

@@ -14,13 +14,13 @@ from missions.services.dispatch import dispatch_mission, load_of
 from telemetry.gateway import carriage
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_words import alert_words
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import TIMEOUT_S, gateway_at_work, port_of, wait_for
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT

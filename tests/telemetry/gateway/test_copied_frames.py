@@ -13,10 +13,10 @@ from missions.services.commands import queue_command
 from telemetry.gateway import addresses, belief
 from telemetry.gateway.addresses import MAX_ADDRESSES, Addresses
 from telemetry.models import Alert, TelemetryRecord, UavLink
+from tests.accounts.users import somebody
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
 from tests.telemetry.vehicles.px4 import HOLD, MISSION, Px4
-from tests.workspace.people import somebody
 
 db = pytest.mark.django_db(transaction=True)
 

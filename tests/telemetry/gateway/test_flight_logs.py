@@ -13,8 +13,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from telemetry.gateway.flights import DISARMED_FOR_S, FlightRecorder, Flights
 from telemetry.gateway.options import Options
 from telemetry.models import FlightLog
+from tests.accounts.users import somebody
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, unsigned_uav, wait_for
-from tests.workspace.people import somebody
 
 
 @pytest.fixture(autouse=True)

@@ -14,12 +14,12 @@ from missions.services.approval import held_mission
 from missions.services.commands import queue_command
 from missions.services.dispatch import dispatch_mission
 from telemetry.gateway.process import Gateway
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav, wait_for
 from tests.telemetry.vehicles.px4 import HOLD, Px4
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 LONGER_THAN_A_LEASE_IS_SURE_S = 5.0

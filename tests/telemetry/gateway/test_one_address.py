@@ -8,12 +8,12 @@ import pytest
 from missions.models import CommandKind, CommandState, Uav, UavCommand
 from missions.services.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream, UavLink
+from tests.accounts.users import somebody
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.one_address import Backend, OneAddress
 from tests.telemetry.gateway.program import free_port, gateway_program
 from tests.telemetry.gateway.station import signed_uav, wait_for
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.people import somebody
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 

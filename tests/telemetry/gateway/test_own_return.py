@@ -6,11 +6,11 @@ from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, Uav
 from missions.services.own_return import return_checks
 from missions.services.steering import command_uav
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import FLAVOURS, dispatch, ended, flyer
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 TOLD = {

@@ -14,13 +14,13 @@ from missions.serializers.commands import command_json
 from missions.services.dispatch import dispatch_mission
 from telemetry.models import UavLink
 from telemetry.services.loads import Doubt
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended, flyer
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 CORNER, GLOBAL = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_FRAME_GLOBAL

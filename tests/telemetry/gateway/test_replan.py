@@ -17,6 +17,7 @@ from missions.services.replanning import accept_offer
 from missions.services.steering import command_uav
 from telemetry.models import Alert, UavLink
 from telemetry.services.command_alerts import settle_command_alerts
+from tests.accounts.users import somebody
 from tests.cases import long
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, planned_over_a_line
@@ -24,7 +25,6 @@ from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav, wait_for
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}

@@ -13,11 +13,11 @@ from missions.services.steering import command_uav
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
 from telemetry.services.command_alerts import settle_command_alerts
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import FLAVOURS, begin, dispatch, ended, flyer
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 HEIGHT = {Flavour.PX4: "RTL_RETURN_ALT", Flavour.ARDUPILOT: "RTL_ALT"}

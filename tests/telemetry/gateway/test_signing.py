@@ -11,8 +11,8 @@ from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.credentials import make_credential
 from telemetry.gateway import belief
 from telemetry.models import TelemetryRecord, UavLink
+from tests.accounts.users import somebody
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -12,12 +12,12 @@ from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
 from telemetry.gateway.carriage import UNTOLD
 from telemetry.models import UavLink
+from tests.accounts.users import somebody
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import dispatch, ended, flyer, holds
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 ASIDE = LonLat(UAV_AT.lon + 0.001, UAV_AT.lat)  # some 60 m

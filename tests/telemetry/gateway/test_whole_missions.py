@@ -11,12 +11,12 @@ from missions.services.commands import queue_command
 from missions.services.dispatch import load_of
 from planning.problem import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended, flyer, holds
 from tests.telemetry.vehicles.ardupilot import ArduPilot
-from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 PLANE, ROVER = 1, 10

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.workspace.front_door import Door, front_door, redis_at, running, through_its_redis, wait_until
+from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, through_its_redis, wait_until
 
 
 @pytest.fixture(scope="package")

@@ -17,7 +17,7 @@ from scripts.places import WEB_PROGRAMS, Places
 from scripts.programs import Program, web_programs
 from scripts.proxy import configuration
 from tests.telemetry.gateway.program import free_port
-from tests.workspace.front_door import environment_of, redis_at
+from tests.workspace.live.proxied_site import environment_of, redis_at
 
 STARTED_AGAIN_AFTER_S = 0.3
 NAMES = (*WEB_PROGRAMS, "uav-link", "live", "gateway", "estimator", "proxy")

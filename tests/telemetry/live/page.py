@@ -9,7 +9,7 @@ from typing import Any
 
 from websocket import ABNF, WebSocket, WebSocketException, WebSocketTimeoutException
 
-from tests.workspace.front_door import TIMEOUT_S
+from tests.workspace.live.proxied_site import TIMEOUT_S
 
 KINDS = ("uavs", "missions", "alerts", "commands", "offers")
 

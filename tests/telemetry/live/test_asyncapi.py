@@ -13,11 +13,11 @@ from websocket import WebSocket
 
 from config.websocket_urls import websocket_urlpatterns
 from telemetry.services import store_records
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import record
-from tests.workspace.described_answers import openapi_document, validate
-from tests.workspace.front_door import Door, close_code
-from tests.workspace.people import somebody
+from tests.workspace.api.described_answers import openapi_document, validate
+from tests.workspace.live.proxied_site import Door, close_code
 from workspace.models import User
 from workspace.services import create_api_token, create_job, finish_job, start_job
 

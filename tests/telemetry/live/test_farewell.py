@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
+from workspace.live.graceful_shutdown import RESTARTS, Farewell
+from workspace.live.timed_waits import wait_for_event
 
 from missions.models import Uav
 from scripts import commands
@@ -18,14 +20,12 @@ from scripts.proxy import site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
 from telemetry.services import store_records
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.gateway.program import free_port
 from tests.telemetry.live.page import HungUp, Page
 from tests.telemetry.records import record
-from tests.workspace.front_door import Door, front_door, redis_at, running, wait_until
-from tests.workspace.people import somebody
-from workspace.farewell import RESTARTS, Farewell
-from workspace.timed_waits import wait_for_event
+from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -26,6 +26,7 @@ from missions.models import OPEN_COMMANDS, CommandState, CredentialKind, LinkKin
 from missions.services.credentials import make_credential
 from scripts.places import WEB_PROGRAMS
 from telemetry.models import TelemetryRecord
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import UAV_AT, world
@@ -33,8 +34,7 @@ from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.live.installation import Installation, installation
 from tests.telemetry.live.page import Page
 from tests.telemetry.vehicles.px4 import Px4
-from tests.workspace.front_door import wait_until
-from tests.workspace.people import client_of, somebody
+from tests.workspace.live.proxied_site import wait_until
 from workspace.models import User
 from workspace.services import create_api_token
 

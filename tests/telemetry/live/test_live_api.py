@@ -16,11 +16,11 @@ from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
 from telemetry.selectors.live import MAX_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import approved, carry, dispatched, fleet, ground
 from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import world
 from tests.telemetry.records import record
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation
 
 pytestmark = pytest.mark.django_db

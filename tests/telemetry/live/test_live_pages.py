@@ -3,11 +3,11 @@
 import pytest
 
 from telemetry.services import store_records
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
-from tests.workspace.front_door import Door
-from tests.workspace.people import somebody
+from tests.workspace.live.proxied_site import Door
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -14,12 +14,12 @@ from websocket import WebSocketBadStatusException, WebSocketException
 from missions.models import Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.gateway.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
-from tests.workspace.front_door import Door, redis_at, running, wait_until
-from tests.workspace.people import somebody
+from tests.workspace.live.proxied_site import Door, redis_at, running, wait_until
 from workspace.models import User
 from workspace.services import create_api_token
 

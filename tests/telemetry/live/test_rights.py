@@ -9,15 +9,15 @@ import pytest
 from django.contrib.sessions.models import Session
 from django.utils import timezone
 from websocket import WebSocket, WebSocketBadStatusException
+from workspace.live.changes import sockets
 
 from config.websocket_urls import websocket_urlpatterns
 from missions.models import CredentialKind, Mission
 from missions.services.credentials import make_credential
+from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.live.page import Page
-from tests.workspace.front_door import Door, close_code
-from tests.workspace.people import somebody
-from workspace import sockets
+from tests.workspace.live.proxied_site import Door, close_code
 from workspace.models import ApiToken, Organisation, Role, User
 from workspace.services import create_api_token, create_job
 

@@ -5,9 +5,9 @@ from django.test import Client
 
 from missions.models import Approval, Mission, Uav
 from missions.services.flying import mark_started
+from tests.accounts.users import client_of, somebody
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
-from tests.workspace.people import client_of, somebody
 from workspace.models import Role, User
 
 

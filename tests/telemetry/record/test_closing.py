@@ -10,10 +10,10 @@ from missions.models import Mission, MissionState, TargetState, Uav
 from missions.services.dispatch import abort_mission
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started
 from telemetry.models import UavLink
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import dispatched, fleet
 from tests.missions.worlds import World
-from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

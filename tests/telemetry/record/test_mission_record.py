@@ -17,8 +17,8 @@ from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
 from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks, store_missing_visits
+from tests.accounts.users import client_of, somebody
 from tests.telemetry.flown import fly, record_of, route_of
-from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -14,6 +14,7 @@ from missions.services import TargetRequest
 from missions.services.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.problem import Task, TaskKind
+from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import unsigned_uav
@@ -21,7 +22,6 @@ from tests.telemetry.scenarios.emulated import Emulated
 from tests.telemetry.scenarios.firmware import Firmware
 from tests.telemetry.scenarios.lossy_link import LossyLink
 from tests.telemetry.scenarios.vehicle import HOME_AMSL_M, RALLY_AT, ScenarioVehicle
-from tests.workspace.people import somebody
 
 BINARY = "SPANWISE_SITL"
 MAX_FIRMWARES = 10  # of one process of pytest

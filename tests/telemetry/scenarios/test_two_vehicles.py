@@ -19,6 +19,7 @@ from missions.services.commands import queue_command
 from missions.services.dispatch import dispatch_mission
 from telemetry.alerting.detectors.converging import CODE
 from telemetry.models import Alert
+from tests.accounts.users import somebody
 from tests.missions import worlds
 from tests.missions.flights import approved
 from tests.missions.worlds import UAV_AT
@@ -27,7 +28,6 @@ from tests.telemetry.gateway.test_commands import ended
 from tests.telemetry.scenarios.flights import FLIGHT_S, wait_until_ready
 from tests.telemetry.scenarios.vehicle import ScenarioVehicle
 from tests.telemetry.watch.program import watch_program
-from tests.workspace.people import somebody
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 LOOK_S = 0.05

@@ -13,9 +13,9 @@ from telemetry.selectors.watched import watched_flights
 from telemetry.services import NewRecord, store_records
 from telemetry.watch.options import Options
 from telemetry.watch.process import Watch
+from tests.accounts.users import somebody
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 

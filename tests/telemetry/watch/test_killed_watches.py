@@ -11,11 +11,11 @@ from mavlink.decoding.measurement import Measurement
 from missions.models import Mission, MissionState, Uav
 from telemetry.models import PositionEstimate, UavWatch
 from telemetry.services import NewRecord, store_records
+from tests.accounts.users import somebody
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.station import wait_for
 from tests.telemetry.watch.program import watch_program
-from tests.workspace.people import somebody
 
 MAX_GAP_S = 8.0  # a lease, a round, and what a busy machine takes longer
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]

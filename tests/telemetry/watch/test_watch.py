@@ -14,9 +14,9 @@ from telemetry.services import NewRecord, store_records
 from telemetry.watch import process
 from telemetry.watch.options import Options
 from telemetry.watch.process import Watch
+from tests.accounts.users import somebody
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
-from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db
 

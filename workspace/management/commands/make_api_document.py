@@ -4,7 +4,7 @@ from typing import Any
 
 from django.core.management.base import BaseCommand
 
-from workspace.api_document import FORMS, stored
+from workspace.api.api_document import FORMS, stored
 
 
 class Command(BaseCommand):

@@ -1,0 +1,106 @@
+"""Pages of somebody's own account: a new password, by mail for whoever has lost it."""
+
+import logging
+from threading import Thread
+from typing import Any
+
+from accounts.invitations import mail_leaves_here
+from accounts.public_address import public_address
+from accounts.services import revoke_tokens
+from django.contrib.auth import views
+from django.contrib.auth.forms import PasswordChangeForm, PasswordResetForm, SetPasswordForm
+from django.core.exceptions import ValidationError
+from django.http import HttpResponse
+from django.urls import reverse_lazy
+from django.utils import translation
+from django.utils.translation import gettext as _
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
+from workspace.sessions.trusted_devices import remember
+
+logger = logging.getLogger(__name__)
+
+
+class LostPasswordForm(PasswordResetForm):
+    """Django's form with a limit: a few mails to one account, and from one address, in a quarter of an hour."""
+
+    def __init__(self, *args: Any, address: str = "", **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.address = address
+
+    def clean_email(self) -> str:
+        email: str = self.cleaned_data["email"]
+        try:
+            take_turn("mails to", email)
+            take_turn("mails from", network_of(self.address))
+        except HeldBack as error:
+            raise ValidationError(_("Too many mails were asked for. Wait 15 min, then try again."), code="locked") from error
+        return email
+
+    def send_mail(self, *args: Any, **options: Any) -> None:
+        """Beside the answer: how long a mail server takes would tell who has an account. In the language of the page that asked.
+
+        On the console the link would stand in a log, for whoever reads it to set the password: there nothing is sent.
+        """
+        if not mail_leaves_here():
+            logger.warning("a link to a new password was asked for, and SPANWISE_EMAIL_URL names no way for mail")
+            return
+        in_its_language = translation.override(translation.get_language())(super().send_mail)
+        Thread(target=in_its_language, args=args, kwargs=options, name="mail with a link", daemon=True).start()
+
+
+class LostPasswordPage(views.PasswordResetView):
+    """Sends a link if somebody has this address. The answer is the same if nobody has."""
+
+    template_name = "account/lost_password.html"
+    email_template_name = "account/lost_password_mail.txt"
+    subject_template_name = "account/lost_password_subject.txt"
+    form_class = LostPasswordForm
+    success_url = reverse_lazy("lost-password-sent")
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        scheme, _separator, host = public_address(self.request).partition("://")
+        self.extra_email_context = {"protocol": scheme, "domain": host}
+        return super().get_form_kwargs() | {"address": address_of(self.request)}
+
+
+class LostPasswordSentPage(views.PasswordResetDoneView):
+    template_name = "account/lost_password_sent.html"
+
+
+class NewPasswordPage(views.PasswordResetConfirmView):
+    """Behind the link of the mail, which works once and for an hour."""
+
+    template_name = "account/new_password.html"
+    success_url = reverse_lazy("new-password-set")
+
+    def form_valid(self, form: SetPasswordForm) -> HttpResponse:
+        """Whoever reads the account's mail is its owner: limits that strangers cause do not hold them back in this browser."""
+        response = super().form_valid(form)
+        revoke_tokens(user=form.user, actor=form.user)  # whoever knew the old password may have made some
+        remember(self.request, response, form.user.get_username())
+        return response
+
+
+class NewPasswordSetPage(views.PasswordResetCompleteView):
+    template_name = "account/new_password_set.html"
+
+
+class ChangePasswordForm(PasswordChangeForm):
+    """Django's form with a limit: somebody at an open browser cannot guess on."""
+
+    def clean_old_password(self) -> str:
+        try:
+            take_turn(PASSWORD_CHANGES, str(self.user.pk))
+        except HeldBack as error:
+            raise ValidationError(_("Too many tries. Wait 15 min, then try again."), code="locked") from error
+        return str(super().clean_old_password())
+
+
+class ChangePasswordPage(views.PasswordChangeView):
+    template_name = "account/change_password.html"
+    form_class = ChangePasswordForm
+    success_url = reverse_lazy("password-changed")
+
+
+class PasswordChangedPage(views.PasswordChangeDoneView):
+    template_name = "account/password_changed.html"

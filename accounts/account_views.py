@@ -1,0 +1,143 @@
+"""The API's doors to one's own account."""
+
+from accounts import services
+from accounts.reauthentication import PASSWORD_NEEDED, require_proof
+from accounts.sign_in_log import record_sign_in
+from accounts.user_serializers import (
+    AccountChangeSerializer,
+    AccountSerializer,
+    NewTokenSerializer,
+    PasswordChangeSerializer,
+    SignInPageSerializer,
+    SignInSerializer,
+    TokenInputSerializer,
+    TokenListSerializer,
+    TokenSerializer,
+    with_secret,
+)
+from django.contrib.auth import update_session_auth_hash
+from django.db.models import F
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import page_of
+from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
+
+from workspace.models import SignInOutcome
+
+
+def check_password(request: SignedInRequest, name: str, password: str) -> None:
+    """Of whoever is signed in. Raises ApiProblem: 400 where it is another one, 429 after too many tries."""
+    try:
+        take_turn(PASSWORD_CHANGES, str(request.user.pk))
+    except HeldBack as held:
+        raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
+    if not request.user.check_password(password):
+        message = _("This is not your password.")
+        record_sign_in(request, SignInOutcome.WRONG, user=request.user)
+        raise ApiProblem(400, "invalid", message, details={name: [message]})
+
+
+class Account(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(operation_id="get_account", summary="Who is signed in, and what they prefer", responses=AccountSerializer)
+    def get(self, request: SignedInRequest) -> Response:
+        return Response(AccountSerializer(request.user).data)
+
+    @extend_schema(
+        operation_id="change_account",
+        summary="Change one's own name and preferences",
+        description="Not with a token.",
+        request=AccountChangeSerializer,
+        responses=AccountSerializer,
+    )
+    def patch(self, request: SignedInRequest) -> Response:
+        body = AccountChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        return Response(AccountSerializer(services.change_account(user=request.user, **body.validated_data)).data)
+
+
+class AccountPassword(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="change_password",
+        summary="Change one's own password",
+        description="All other sessions end, with `end_tokens` all tokens, too. Not with a token."
+        " Five wrong tries in a quarter of an hour.",
+        request=PasswordChangeSerializer,
+        responses={204: OpenApiResponse(description="Changed.")},
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
+        body.is_valid(raise_exception=True)
+        check_password(request, "old_password", body.validated_data["old_password"])
+        services.change_password(
+            user=request.user, password=body.validated_data["new_password"], ends_tokens=body.validated_data["end_tokens"]
+        )
+        update_session_auth_hash(request, request.user)
+        return Response(status=204)
+
+
+class AccountTokens(APIView):
+    """A token is answered once and not kept, so that the same request sent again makes another one."""
+
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="list_tokens", summary="One's own tokens, those that work first, then the newest", responses=TokenListSerializer
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        tokens = request.user.api_tokens.order_by(F("revoked_at").desc(nulls_first=True), "-created_at")[:200]
+        return Response({"results": TokenSerializer(tokens, many=True).data})
+
+    @extend_schema(
+        operation_id="make_token",
+        summary="Make a token; only this answer shows it",
+        description="Not with a token, and within 15 min of saying one's password.",
+        request=TokenInputSerializer,
+        responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        require_proof(request)
+        body = TokenInputSerializer(data=request.data, context={"user": request.user})
+        body.is_valid(raise_exception=True)
+        try:
+            row, token = services.make_token(user=request.user, **body.validated_data)
+        except services.TooManyTokens as error:
+            message = _("You have {count} tokens that work. Revoke one that is not needed any more.").format(count=services.MAX_TOKENS)
+            raise ApiProblem(409, "too_many_tokens", message) from error
+        return Response(with_secret(NewTokenSerializer, row, token=token), status=201)
+
+
+class AccountToken(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(operation_id="revoke_token", summary="Revoke one of one's own tokens", responses=TokenSerializer)
+    def delete(self, request: SignedInRequest, token_id: int) -> Response:
+        token = request.user.api_tokens.filter(pk=token_id).first()
+        if token is None:
+            raise ApiProblem(404, "not_found", _("You have no such token."))
+        return Response(TokenSerializer(services.revoke_token(token=token, actor=request.user)).data)
+
+
+class AccountSignIns(APIView):
+    @extend_schema(
+        operation_id="list_own_sign_ins",
+        summary="When and from where somebody signed in, or tried to, with one's own name; newest first",
+        parameters=PAGE_PARAMETERS,
+        responses=SignInPageSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        page = page_of(request, request.user.sign_ins.select_related("user"), order=("-recorded_at", "-pk"))
+        return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})

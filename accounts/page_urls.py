@@ -1,0 +1,36 @@
+"""Addresses of the account's pages."""
+
+from accounts.account_pages import (
+    ChangePasswordPage,
+    LostPasswordPage,
+    LostPasswordSentPage,
+    NewPasswordPage,
+    NewPasswordSetPage,
+    PasswordChangedPage,
+)
+from accounts.second_factor_pages import CodePage, NewCodesPage, RemovePage, SetUpPage
+from accounts.sign_in_pages import SignInPage, SignOutPage
+from accounts.user_pages import AccountPage, AdministrationPage, InvitationPage
+from django.urls import path
+
+from workspace.offline_pages import OfflinePage, service_worker
+
+urlpatterns = [
+    path("service-worker.js", service_worker, name="service-worker"),
+    path("offline", OfflinePage.as_view(), name="offline"),
+    path("sign-in", SignInPage.as_view(), name="sign-in"),
+    path("sign-in/code", CodePage.as_view(), name="sign-in-code"),
+    path("sign-out", SignOutPage.as_view(), name="sign-out"),
+    path("account", AccountPage.as_view(), name="account"),
+    path("administration", AdministrationPage.as_view(), name="administration"),
+    path("invitation/<str:token>", InvitationPage.as_view(), name="invitation"),
+    path("second-factor", SetUpPage.as_view(), name="second-factor"),
+    path("second-factor/codes", NewCodesPage.as_view(), name="second-factor-codes"),
+    path("second-factor/remove", RemovePage.as_view(), name="second-factor-remove"),
+    path("lost-password", LostPasswordPage.as_view(), name="lost-password"),
+    path("lost-password/sent", LostPasswordSentPage.as_view(), name="lost-password-sent"),
+    path("new-password/<uidb64>/<token>", NewPasswordPage.as_view(), name="new-password"),
+    path("new-password/set", NewPasswordSetPage.as_view(), name="new-password-set"),
+    path("change-password", ChangePasswordPage.as_view(), name="change-password"),
+    path("change-password/done", PasswordChangedPage.as_view(), name="password-changed"),
+]

@@ -1,0 +1,215 @@
+"""Pages of the second factor: the code at the door, setting it up there or later, other recovery codes, taking it away."""
+
+from typing import Any
+
+import segno
+from accounts import second_factors
+from accounts.login import sign_in, who_is_half_in
+from accounts.one_time_codes import address_for_apps, new_seed
+from accounts.second_factors import TooManyCodes, WrongCode
+from accounts.sign_in_log import record_sign_in
+from django import forms
+from django.contrib.auth.mixins import AccessMixin, LoginRequiredMixin
+from django.http import Http404, HttpRequest, HttpResponse, HttpResponseRedirect
+from django.shortcuts import render, resolve_url
+from django.utils.decorators import method_decorator
+from django.utils.translation import gettext as _
+from django.utils.translation import gettext_lazy, ngettext
+from django.views.decorators.cache import never_cache
+from django.views.generic import FormView
+from workspace.api.signed_in import SignedInPageRequest
+from workspace.field_encryption import CannotUnseal, seal, unseal
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
+
+from workspace.models import SignInOutcome, User
+
+SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
+MAX_CODE_LENGTH = 60
+
+
+class CodeForm(forms.Form):
+    code = forms.CharField(max_length=MAX_CODE_LENGTH, error_messages={"required": gettext_lazy("Type the code.")})
+
+
+class CodeAndPasswordForm(CodeForm):
+    """For what somebody at an open browser must not do."""
+
+    password = forms.CharField(strip=False, max_length=4_096, error_messages={"required": gettext_lazy("Type your password.")})
+
+    def __init__(self, *args: Any, user: User, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.user = user
+
+    def clean_password(self) -> str:
+        try:
+            take_turn(PASSWORD_CHANGES, str(self.user.pk))
+        except HeldBack as error:
+            raise forms.ValidationError(_("Too many tries. Wait 15 min, then try again.")) from error
+        password: str = self.cleaned_data["password"]
+        if not self.user.check_password(password):
+            raise forms.ValidationError(_("This is not your password."))
+        return password
+
+
+def words_of(error: Exception) -> str:
+    """Why a code was not taken."""
+    if isinstance(error, TooManyCodes):
+        return _("Too many wrong codes. Wait 15 min, then try again.")
+    left = error.left if isinstance(error, WrongCode) else 0
+    words = ngettext(
+        "This is no code of now, or it was used already. {count} try left for 15 min.",
+        "This is no code of now, or it was used already. {count} tries left for 15 min.",
+        left,
+    )
+    return words.format(count=left)
+
+
+@method_decorator(never_cache, name="dispatch")
+class CodePage(FormView):
+    """After the password. Who has not shown one here is led to the door."""
+
+    template_name = "account/sign_in_code.html"
+    form_class = CodeForm
+
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
+        half_in = who_is_half_in(request)
+        if half_in is None or not second_factors.has_second_factor(half_in.user):
+            return HttpResponseRedirect(resolve_url("sign-in"))
+        self.half_in = half_in
+        return super().dispatch(request, *args, **kwargs)
+
+    def form_valid(self, form: CodeForm) -> HttpResponse:
+        user = self.half_in.user
+        try:
+            second_factors.try_code(user=user, code=form.cleaned_data["code"])
+        except (WrongCode, TooManyCodes) as error:
+            outcome = SignInOutcome.HELD_BACK if isinstance(error, TooManyCodes) else SignInOutcome.WRONG_CODE
+            record_sign_in(self.request, outcome, user=user, name=user.username)
+            form.add_error("code", words_of(error))
+            return self.form_invalid(form)
+        response = HttpResponseRedirect(self.half_in.wanted)
+        sign_in(self.request, response, user)
+        return response
+
+
+@method_decorator(never_cache, name="dispatch")
+class SetUpPage(AccessMixin, FormView):
+    """A QR code for an app, and a code of it to show that it was read. At the door for whoever has to, else from the account."""
+
+    template_name = "account/second_factor.html"
+
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
+        self.half_in = None if request.user.is_authenticated else who_is_half_in(request)
+        if self.half_in is not None:
+            self.person = self.half_in.user
+        elif isinstance(request.user, User):
+            self.person = request.user
+        else:
+            return self.handle_no_permission()
+        if second_factors.has_second_factor(self.person):
+            return HttpResponseRedirect(resolve_url("sign-in-code" if self.half_in else "second-factor-codes"))
+        return super().dispatch(request, *args, **kwargs)
+
+    def get_form_class(self) -> type[CodeForm]:
+        return CodeForm if self.half_in else CodeAndPasswordForm
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        return super().get_form_kwargs() | ({} if self.half_in else {"user": self.person})
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        text = second_factors.seed_text(self._seed())
+        address = address_for_apps(text, self.person.username)
+        return super().get_context_data(**kwargs) | {
+            "person": self.person,
+            "is_required": self.half_in is not None,
+            "qr_code": segno.make(address, error="m", micro=False).svg_inline(border=3, light="#fff", omitsize=True),
+            "address": address,
+            "seed_groups": [text[place : place + 4] for place in range(0, len(text), 4)],
+        }
+
+    def form_valid(self, form: CodeForm) -> HttpResponse:
+        try:
+            codes = second_factors.set_up(user=self.person, seed=self._seed(), code=form.cleaned_data["code"])
+        except WrongCode:
+            form.add_error("code", _("This is not the app’s code of now. Wait for the next one. The telephone’s clock has to be right."))
+            return self.form_invalid(form)
+        del self.request.session[SEED]
+        response = show_codes(self.request, codes, self.half_in.wanted if self.half_in else resolve_url("account"))
+        if self.half_in:
+            sign_in(self.request, response, self.person)
+        return response
+
+    def _seed(self) -> bytes:
+        """The same one for as long as the page is looked at: an app may have read it."""
+        name = f"new second factor of {self.person.pk}"
+        try:
+            return unseal(self.request.session[SEED], of=name)
+        except (KeyError, CannotUnseal):
+            seed = new_seed()
+            self.request.session[SEED] = seal(seed, of=name)
+            return seed
+
+
+class _OwnCodePage(LoginRequiredMixin, FormView):
+    """Something that wants the password and a code of the app once more; not there for whoever has none."""
+
+    request: SignedInPageRequest
+    form_class = CodeAndPasswordForm
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        return super().get_form_kwargs() | {"user": self.request.user}
+
+    def get(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        self._or_404()
+        return super().get(request, *args, **kwargs)
+
+    def post(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
+        self._or_404()
+        return super().post(request, *args, **kwargs)
+
+    def form_valid(self, form: CodeAndPasswordForm) -> HttpResponse:
+        try:
+            second_factors.try_code(user=form.user, code=form.cleaned_data["code"])
+        except (WrongCode, TooManyCodes) as error:
+            form.add_error("code", words_of(error))
+            return self.form_invalid(form)
+        return self.done(form.user)
+
+    def done(self, user: User) -> HttpResponse:
+        raise NotImplementedError
+
+    def _or_404(self) -> None:
+        if not second_factors.has_second_factor(self.request.user):
+            raise Http404
+
+
+@method_decorator(never_cache, name="dispatch")
+class NewCodesPage(_OwnCodePage):
+    """Other recovery codes; those of before count no more."""
+
+    template_name = "account/second_factor_codes.html"
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"left": second_factors.recovery_codes_left(self.request.user)}
+
+    def done(self, user: User) -> HttpResponse:
+        return show_codes(self.request, second_factors.renew_recovery_codes(user=user), resolve_url("account"))
+
+
+@method_decorator(never_cache, name="dispatch")
+class RemovePage(_OwnCodePage):
+    """Where the organisation asks for a second factor, the next sign-in asks to set up another one."""
+
+    template_name = "account/second_factor_remove.html"
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"is_required": second_factors.is_required_of(self.request.user)}
+
+    def done(self, user: User) -> HttpResponse:
+        second_factors.take_away(user=user, actor=user)
+        return HttpResponseRedirect(resolve_url("account"))
+
+
+def show_codes(request: HttpRequest, codes: list[str], go_on: str) -> HttpResponse:
+    """Once; only their hashes are kept."""
+    return render(request, "account/recovery_codes.html", {"codes": codes, "go_on": go_on})

@@ -1,0 +1,192 @@
+"""Second factors: setting one up, trying a code, recovery codes, taking one away. Each change stands in the history."""
+
+from base64 import b32encode
+from datetime import timedelta
+
+from accounts.one_time_codes import bare, is_of_an_app, matching_step, new_recovery_codes
+from accounts.services import end_sessions
+from django.conf import settings
+from django.db import transaction
+from django.utils import timezone
+from workspace.field_encryption import CannotUnseal, seal, unseal
+
+from workspace.models import Organisation, RecoveryCode, SecondFactor, User
+from workspace.services import hash_token, person_facts, record_change
+
+TRIES = 5  # wrong codes of one person, from wherever: who comes so far knows the password
+WINDOW = timedelta(minutes=15)
+
+
+class WrongCode(Exception):
+    """It is no code of now, or was used before. `left` says how many tries there are in the window."""
+
+    def __init__(self, left: int) -> None:
+        super().__init__(f"wrong code, {left} left")
+        self.left = left
+
+
+class TooManyCodes(Exception):
+    """No code is looked at for now."""
+
+
+class SetUpFirst(Exception):
+    """Whoever asks everybody for a second factor has one."""
+
+
+def has_second_factor(user: User) -> bool:
+    return SecondFactor.objects.filter(user=user).exists()
+
+
+def is_required_of(user: User) -> bool:
+    """By their organisation, or by whoever runs the installation."""
+    return bool(settings.REQUIRES_SECOND_FACTOR or user.organisation.requires_second_factor)
+
+
+def seed_text(seed: bytes) -> str:
+    """As people type it, and apps read it."""
+    return b32encode(seed).decode()
+
+
+def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
+    """Keep the seed, whose code shows that an app has it. Returns the recovery codes, which cannot be shown again. Raises WrongCode."""
+    step = matching_step(bare(code), seed, at_s=timezone.now().timestamp(), after=-1)
+    if step is None:
+        raise WrongCode(TRIES)
+    with transaction.atomic():
+        SecondFactor.objects.filter(user=user).delete()
+        factor = SecondFactor.objects.create(user=user, sealed_seed=seal(seed, of=_name_of(user)), last_step=step)
+        codes = _keep_recovery_codes(factor)
+        record(user, user, "second factor set up")
+    return codes
+
+
+def try_code(*, user: User, code: str) -> None:
+    """A code of the app, or a recovery code; either is taken once. Raises WrongCode, TooManyCodes; SecondFactor.DoesNotExist.
+
+    After too many wrong ones no code of the app counts for a while; a recovery code, which nobody guesses, lets its owner in even then.
+    """
+    with transaction.atomic():  # one try at a time: many at once gain nothing
+        factor = SecondFactor.objects.select_for_update().select_related("user").get(user=user)
+        is_held_back = _is_in_window(factor) and factor.wrong_tries >= TRIES
+        is_right = (not is_held_back and _take_code(factor, bare(code))) or _take_recovery_code(factor, bare(code))
+        if is_right:
+            factor.wrong_tries, factor.wrong_since = 0, None
+        elif not is_held_back:
+            _count_wrong(factor)
+        factor.save(update_fields=["last_step", "wrong_tries", "wrong_since"])
+    if is_held_back and not is_right:
+        raise TooManyCodes
+    if not is_right:
+        raise WrongCode(TRIES - factor.wrong_tries)
+
+
+def renew_recovery_codes(*, user: User) -> list[str]:
+    """Eight new ones; the old ones count no more."""
+    with transaction.atomic():
+        factor = SecondFactor.objects.select_for_update().get(user=user)
+        factor.recovery_codes.all().delete()
+        codes = _keep_recovery_codes(factor)
+        record(user, user, "recovery codes made")
+    return codes
+
+
+def recovery_codes_left(user: User) -> int:
+    return RecoveryCode.objects.filter(second_factor__user=user, used_at=None).count()
+
+
+def take_away(*, user: User, actor: User | None) -> bool:
+    """Somebody's own, or by an administrator for whoever has lost theirs: then all their sessions end, too. False if there was none."""
+    with transaction.atomic():
+        deleted, _ = SecondFactor.objects.filter(user=user).delete()
+        if not deleted:
+            return False
+        record(user, actor, "second factor removed" if actor == user else "second factor reset")
+        if actor != user:
+            end_sessions(user=user, actor=actor)
+    return True
+
+
+def require_second_factor(*, actor: User, required: bool) -> None:
+    """Of everybody in the organisation, from their next sign-in on. Raises SetUpFirst."""
+    if required and not has_second_factor(actor):
+        raise SetUpFirst
+    with transaction.atomic():
+        organisation = Organisation.objects.select_for_update().get(pk=actor.organisation_id)
+        before = organisation.requires_second_factor
+        if before != required:
+            organisation.requires_second_factor = required
+            organisation.save(update_fields=["requires_second_factor"])
+            record_change(
+                organisation=organisation,
+                actor=actor,
+                action="second factor rule",
+                subject_type="organisation",
+                subject_id=organisation.pk,
+                before={"requires_second_factor": before},
+                after={"requires_second_factor": required},
+            )
+
+
+def seal_with_the_key_of_today() -> int:
+    """Seeds that were sealed with an old secret key, so that it can be taken away. Returns how many were looked at."""
+    if not settings.SECRET_KEY_FALLBACKS:
+        return 0
+    factors = SecondFactor.objects.select_related("user")
+    count = 0
+    for factor in factors:
+        name = _name_of(factor.user)
+        try:
+            sealed = seal(unseal(factor.sealed_seed, of=name), of=name)
+        except CannotUnseal:
+            continue
+        count += SecondFactor.objects.filter(pk=factor.pk, sealed_seed=factor.sealed_seed).update(sealed_seed=sealed)
+    return count
+
+
+def record(user: User, actor: User | None, action: str) -> None:
+    facts = person_facts(user)
+    record_change(
+        organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
+    )
+
+
+def _name_of(user: User) -> str:
+    return f"second factor of {user.pk}"
+
+
+def _is_in_window(factor: SecondFactor) -> bool:
+    return factor.wrong_since is not None and timezone.now() - factor.wrong_since < WINDOW
+
+
+def _count_wrong(factor: SecondFactor) -> None:
+    if not _is_in_window(factor):
+        factor.wrong_tries, factor.wrong_since = 0, timezone.now()
+    factor.wrong_tries += 1
+
+
+def _take_code(factor: SecondFactor, code: str) -> bool:
+    if not is_of_an_app(code):
+        return False
+    try:
+        seed = unseal(factor.sealed_seed, of=_name_of(factor.user))
+    except CannotUnseal:
+        return False
+    step = matching_step(code, seed, at_s=timezone.now().timestamp(), after=factor.last_step)
+    if step is None:
+        return False
+    factor.last_step = step
+    return True
+
+
+def _take_recovery_code(factor: SecondFactor, code: str) -> bool:
+    unused = factor.recovery_codes.filter(code_sha256=hash_token(code), used_at=None)
+    if not unused.update(used_at=timezone.now()):
+        return False
+    record(factor.user, factor.user, "recovery code used")
+    return True
+
+
+def _keep_recovery_codes(factor: SecondFactor) -> list[str]:
+    codes = new_recovery_codes()
+    RecoveryCode.objects.bulk_create([RecoveryCode(second_factor=factor, code_sha256=hash_token(bare(code))) for code in codes])
+    return codes

@@ -1,0 +1,97 @@
+"""Pages of one's own account, of the administration of everybody's, and the one behind an invitation's link."""
+
+from typing import Any
+
+from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
+from accounts.login import let_in
+from accounts.second_factors import has_second_factor, is_required_of, recovery_codes_left
+from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
+from django.contrib.auth.mixins import UserPassesTestMixin
+from django.db import IntegrityError, transaction
+from django.http import HttpRequest, HttpResponse
+from django.shortcuts import render, resolve_url
+from django.utils.decorators import method_decorator
+from django.utils.translation import gettext as _
+from django.views.decorators.cache import never_cache
+from django.views.generic import FormView
+from workspace.sessions.preferences import TIME_ZONES
+
+from workspace.models import SCOPES_OF_ROLE, User
+from workspace.pages import SignedInPage
+
+
+class AccountPage(SignedInPage):
+    template_name = "account.html"
+    extra_context = {"section": "account", "time_zones": sorted(zone for zone in TIME_ZONES if "/" in zone or zone == "UTC")}
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        user = self.request.user
+        has_one = has_second_factor(user)
+        return super().get_context_data(**kwargs) | {
+            "has_second_factor": has_one,
+            "second_factor_is_required": is_required_of(user),
+            "codes_left": recovery_codes_left(user) if has_one else 0,
+            "token_scopes": [(scope.value, scope.label) for scope in SCOPES_OF_ROLE[user.role]],
+        }
+
+
+class AdministrationPage(UserPassesTestMixin, SignedInPage):
+    """People, invitations and the sign-in log: for administrators."""
+
+    template_name = "administration.html"
+    extra_context = {"section": "administration"}
+
+    def test_func(self) -> bool:
+        return bool(self.request.user.is_authenticated and self.request.user.is_superuser)
+
+    def page(self, **kwargs: Any) -> dict[str, Any]:
+        return {"mailLeavesHere": mail_leaves_here()}
+
+
+class NewAccountForm(UserCreationForm):
+    """The role and the organisation are the invitation's."""
+
+    class Meta(BaseUserCreationForm.Meta):
+        model = User
+        fields = ("username", "first_name", "last_name", "email")
+
+
+@method_decorator(never_cache, name="dispatch")
+class InvitationPage(FormView):
+    """Makes the account and signs in. A link that works no more says so, whatever the reason."""
+
+    template_name = "account/invitation.html"
+    form_class = NewAccountForm
+
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
+        try:
+            self.invitation = open_invitation(kwargs["token"])
+        except InvitationGone:
+            return self._gone()
+        if request.user.is_authenticated:
+            return render(request, "account/invitation_signed_in.html")
+        return super().dispatch(request, *args, **kwargs)
+
+    def get_initial(self) -> dict[str, Any]:
+        return {"email": self.invitation.email}
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        newcomer = User(organisation=self.invitation.organisation)  # whose name is no password
+        return super().get_form_kwargs() | {"instance": newcomer}
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"invitation": self.invitation}
+
+    def form_valid(self, form: NewAccountForm) -> HttpResponse:
+        try:
+            with transaction.atomic():
+                user = accept_invitation(token=self.kwargs["token"], user=form.save(commit=False))
+        except InvitationGone:
+            return self._gone()
+        except IntegrityError:  # of two that chose the same name at the same moment
+            form.add_error("username", _("Somebody has this name already."))
+            return self.form_invalid(form)
+        return let_in(self.request, user, resolve_url("missions"))
+
+    def _gone(self) -> HttpResponse:
+        return render(self.request, "account/invitation_gone.html", status=410)

@@ -1,0 +1,294 @@
+"""The API's doors for administrators: people of one's organisation, invitations, the log of sign-ins."""
+
+from datetime import timedelta
+from typing import Any
+
+from accounts import invitations, second_factors, services
+from accounts.invitations import InvitationState
+from accounts.public_address import public_address
+from accounts.user_serializers import (
+    InvitationInputSerializer,
+    InvitationPageSerializer,
+    InvitationSerializer,
+    NewInvitationSerializer,
+    PersonChangeSerializer,
+    PersonPageSerializer,
+    PersonSerializer,
+    SecondFactorRuleSerializer,
+    SignInPageSerializer,
+    SignInSerializer,
+    with_secret,
+)
+from django.conf import settings
+from django.db.models import Count, Exists, OuterRef, Q, QuerySet
+from django.http import Http404
+from django.urls import reverse
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
+
+from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
+from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
+
+HERE_WITHIN = timedelta(minutes=5)
+DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)
+
+
+def _people(request: SignedInRequest) -> QuerySet[User]:
+    valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
+    return User.objects.filter(organisation_id=request.user.organisation_id, is_service=False).annotate(
+        valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
+    )
+
+
+def _person(request: SignedInRequest, user_id: int) -> User:
+    try:
+        return _people(request).get(pk=user_id)
+    except User.DoesNotExist as error:
+        raise Http404 from error
+
+
+def _named(text: str, before: str = "") -> Q:
+    """Each word somewhere in the name or the address."""
+    wanted = Q()
+    for word in text.split():
+        names = ("username", "first_name", "last_name", "email")
+        found = Q()
+        for name in names:
+            found |= Q(**{f"{before}{name}__icontains": word})
+        wanted &= found
+    return wanted
+
+
+class PersonList(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="list_people",
+        summary="People of one's organisation by user name",
+        parameters=[
+            OpenApiParameter("text", str, description="words of the user name, the name or the e-mail address"),
+            OpenApiParameter("role", str, enum=Role.values),
+            OpenApiParameter("access", str, enum=["in", "out", "here"], description="may sign in; is kept out; was here in the last 5 min"),
+            *PAGE_PARAMETERS,
+        ],
+        responses=PersonPageSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        people = _people(request).filter(_named(request.query_params.get("text", "")[:200]))
+        if role := asked_choice(request, "role", Role.values):
+            people = people.filter(role=role)
+        if access := asked_choice(request, "access", ["in", "out", "here"]):
+            wanted: dict[str, dict[str, Any]] = {
+                "in": {"is_active": True},
+                "out": {"is_active": False},
+                "here": {"is_active": True, "last_seen_at__gt": timezone.now() - HERE_WITHIN},
+            }
+            people = people.filter(**wanted[access])
+        page = page_of(request, people, order=("username",))
+        return Response({"results": PersonSerializer(page.rows, many=True).data, "next": page.next})
+
+
+class PersonDetail(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(operation_id="get_person", summary="One person", responses=PersonSerializer)
+    def get(self, request: SignedInRequest, user_id: int) -> Response:
+        return self._answer(request, user_id)
+
+    @extend_schema(
+        operation_id="change_person",
+        summary="Change somebody's name, address, role or access",
+        description="One administrator who can sign in is always left.",
+        parameters=[IF_MATCH_REQUIRED],
+        request=PersonChangeSerializer,
+        responses={200: PersonSerializer, 409: OpenApiResponse(description="No administrator would be left."), **PRECONDITION_ANSWERS},
+    )
+    def patch(self, request: SignedInRequest, user_id: int) -> Response:
+        body = PersonChangeSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        _person(request, user_id)
+        try:
+            services.change_person(user_id=user_id, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
+        except services.ChangedMeanwhile as error:
+            current = PersonSerializer(_person(request, user_id)).data
+            words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=error.person.username)
+            raise ApiProblem(412, "changed", words, details={"current": current}) from error
+        except NoAdministratorLeft as error:
+            raise ApiProblem(409, "no_administrator_left", str(error)) from error
+        except OperatorsAlone as error:
+            raise ApiProblem(403, "operators_alone", str(error)) from error
+        return self._answer(request, user_id)
+
+    @staticmethod
+    def _answer(request: SignedInRequest, user_id: int) -> Response:
+        person = _person(request, user_id)
+        return Response(PersonSerializer(person).data, headers=etag_of(services.revision_of_person(person)))
+
+
+class PersonSessions(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="sign_person_out",
+        summary="End all sessions of somebody",
+        description="Their tokens stay. Not with a token.",
+        request=None,
+        responses={204: OpenApiResponse(description="Ended.")},
+    )
+    def post(self, request: SignedInRequest, user_id: int) -> Response:
+        services.end_sessions(user=_person(request, user_id), actor=request.user)
+        return Response(status=204)
+
+
+class PersonTokens(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="revoke_tokens_of_person",
+        summary="Revoke all tokens of somebody",
+        responses={204: OpenApiResponse(description="Revoked.")},
+    )
+    def delete(self, request: SignedInRequest, user_id: int) -> Response:
+        services.revoke_tokens(user=_person(request, user_id), actor=request.user)
+        return Response(status=204)
+
+
+class PersonSecondFactor(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="reset_second_factor_of_person",
+        summary="Take the second factor away from somebody who has lost it",
+        description="Their sessions end. Where the organisation asks for one, their next sign-in sets another one up. Not with a token.",
+        responses={204: OpenApiResponse(description="There is none any more.")},
+    )
+    def delete(self, request: SignedInRequest, user_id: int) -> Response:
+        person = _person(request, user_id)
+        if person.pk == request.user.pk:
+            raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
+        if not may_change(request.user, person):
+            raise ApiProblem(403, "operators_alone", str(OperatorsAlone()))
+        second_factors.take_away(user=person, actor=request.user)
+        return Response(status=204)
+
+
+class SecondFactorRule(APIView):
+    write_roles = ADMINISTRATORS
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="get_second_factor_rule",
+        summary="Whether everybody of one's organisation signs in with a second factor",
+        responses=SecondFactorRuleSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        return self._answer(request)
+
+    @extend_schema(
+        operation_id="set_second_factor_rule",
+        summary="Say whether everybody signs in with a second factor",
+        description="Who has none sets one up at the next sign-in. Administrators alone, with one of their own. Not with a token.",
+        request=SecondFactorRuleSerializer,
+        responses={200: SecondFactorRuleSerializer, 409: OpenApiResponse(description="The administrator has none.")},
+    )
+    def put(self, request: SignedInRequest) -> Response:
+        body = SecondFactorRuleSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            second_factors.require_second_factor(actor=request.user, required=body.validated_data["required"])
+        except second_factors.SetUpFirst as error:
+            raise ApiProblem(409, "set_up_first", _("Set up a second factor for yourself first, under Account.")) from error
+        request.user.organisation.refresh_from_db(fields=["requires_second_factor"])
+        return self._answer(request)
+
+    @staticmethod
+    def _answer(request: SignedInRequest) -> Response:
+        required = second_factors.is_required_of(request.user)
+        return Response({"required": required, "is_of_the_installation": settings.REQUIRES_SECOND_FACTOR})
+
+
+class InvitationList(APIView):
+    """A link is answered once and not kept, so that the same request sent again makes another one."""
+
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="list_invitations",
+        summary="Invitations, newest first",
+        parameters=[OpenApiParameter("state", str, enum=[state.value for state in InvitationState]), *PAGE_PARAMETERS],
+        responses=InvitationPageSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        rows = invitations.invitations_of(request.user).select_related("invited_by", "accepted_by")
+        if state := asked_choice(request, "state", [state.value for state in InvitationState]):
+            rows = rows.filter(invitations.in_state(InvitationState(state)))
+        page = page_of(request, rows, order=("-created_at", "-pk"))
+        return Response({"results": InvitationSerializer(page.rows, many=True).data, "next": page.next})
+
+    @extend_schema(
+        operation_id="invite",
+        summary="Make a link for a new account; only this answer shows it",
+        request=InvitationInputSerializer,
+        responses={201: NewInvitationSerializer},
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = InvitationInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        invitation, token = invitations.invite(organisation=request.user.organisation, actor=request.user, **body.validated_data)
+        link = public_address(request) + reverse("invitation", args=[token])
+        was_mailed = invitations.send_invitation(invitation=invitation, link=link)
+        return Response(with_secret(NewInvitationSerializer, invitation, link=link, was_mailed=was_mailed), status=201)
+
+
+class InvitationDetail(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}
+    )
+    def delete(self, request: SignedInRequest, invitation_id: int) -> Response:
+        try:
+            invitation = invitations.invitations_of(request.user).get(pk=invitation_id)
+        except Invitation.DoesNotExist as error:
+            raise Http404 from error
+        return Response(InvitationSerializer(invitations.revoke_invitation(invitation=invitation, actor=request.user)).data)
+
+
+class SignInList(APIView):
+    permission_classes = [AdministratorsAlone]
+
+    @extend_schema(
+        operation_id="list_sign_ins",
+        summary="Sign-ins, tries and sign-outs, newest first",
+        description="Those of one's organisation, and tries with names that nobody has.",
+        parameters=[
+            OpenApiParameter("text", str, description="words of the person's name or e-mail address"),
+            OpenApiParameter("outcome", str, enum=SignInOutcome.values),
+            OpenApiParameter("address", str, description="beginning of the IP address"),
+            DAYS.documented,
+            *PAGE_PARAMETERS,
+        ],
+        responses=SignInPageSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        entries = SignInEntry.objects.filter(Q(user__organisation_id=request.user.organisation_id) | Q(user=None)).select_related("user")
+        if text := request.query_params.get("text", "")[:200].strip():
+            entries = entries.filter(_named(text, "user__"))
+        if outcome := asked_choice(request, "outcome", SignInOutcome.values):
+            entries = entries.filter(outcome=outcome)
+        if address := request.query_params.get("address", "")[:45].strip():
+            entries = entries.filter(address__istartswith=address)
+        if days := DAYS.asked(request):
+            entries = entries.filter(recorded_at__gt=timezone.now() - timedelta(days=days))
+        page = page_of(request, entries, order=("-recorded_at", "-pk"))
+        return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})

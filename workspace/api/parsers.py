@@ -1,0 +1,102 @@
+"""Reading request bodies: JSON as the standard has it, and no more than a request needs."""
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from typing import IO, Any
+
+from django.conf import settings
+from django.utils.translation import gettext as _
+from rest_framework.exceptions import ParseError
+from rest_framework.parsers import BaseParser
+from workspace.api.errors import ApiProblem
+
+MAX_NESTING_DEPTH = 32
+_UNSTORABLE = re.compile("[\0\ud800-\udfff]")
+# People put in lines and tabs. Other control characters, and those that turn the direction of writing, make one name look like another.
+_REFUSED = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+
+
+class StrictJSONParser(BaseParser):
+    """Refuses NaN and infinities, deep nesting, characters that cannot be stored, and bodies over the limit."""
+
+    media_type = "application/json"
+    finite_only = True
+    takes_control_characters = False
+
+    def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: Mapping[str, Any] | None = None) -> Any:
+        limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
+        body = stream.read(limit + 1)
+        if len(body) > limit:
+            raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
+        return read_json(body, finite_only=self.finite_only, takes_control_characters=self.takes_control_characters)
+
+
+class UavJSONParser(StrictJSONParser):
+    """Lets control characters pass: what a UAV says of a command counts, however garbled its reason is."""
+
+    takes_control_characters = True
+
+
+class MeasuredJSONParser(UavJSONParser):
+    """Lets NaN and infinities pass as well, for views that name the record that holds them and take the others of the body."""
+
+    finite_only = False
+
+
+def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters: bool = False) -> Any:
+    """What a body says. Raises ParseError."""
+    rules: dict[str, Any] = {"parse_constant": _refuse_constant, "parse_float": _finite_float} if finite_only else {}
+    try:
+        value = json.loads(body.decode(), **rules)
+    except UnicodeDecodeError as error:
+        raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
+    except RecursionError as error:
+        raise ParseError(
+            _("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": MAX_NESTING_DEPTH}
+        ) from error
+    except ValueError as error:
+        raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
+    _check(value, _UNSTORABLE if takes_control_characters else _REFUSED)
+    return value
+
+
+class OctetParser(BaseParser):
+    """The raw bytes of a part of a file, never more than one request may have."""
+
+    media_type = "application/octet-stream"
+
+    def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: Mapping[str, Any] | None = None) -> Any:
+        limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
+        body = stream.read(limit + 1)
+        if len(body) > limit:
+            raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
+        return body
+
+
+def _refuse_constant(name: str) -> float:
+    raise ValueError(_("%(name)s is not a number") % {"name": name})
+
+
+def _finite_float(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(_("%(value)s is too large a number") % {"value": text[:20]})
+    return value
+
+
+def _check(root: Any, refused: re.Pattern[str]) -> None:
+    """Walk level by level, so that depth costs no stack."""
+    level = [root]
+    for _depth in range(MAX_NESTING_DEPTH + 1):
+        holders = []
+        for value in level:
+            if isinstance(value, dict | list):
+                holders.append(value)
+            elif isinstance(value, str) and refused.search(value):
+                raise ParseError(_("A text holds a control character or half a surrogate pair."))
+        if not holders:
+            return
+        level = [inner for holder in holders for inner in ((*holder.keys(), *holder.values()) if isinstance(holder, dict) else holder)]
+    raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": MAX_NESTING_DEPTH})

@@ -1,0 +1,76 @@
+"""Shapes of the workspace's API."""
+
+from typing import Any, TypeAlias
+
+from drf_spectacular.utils import extend_schema_field
+from rest_framework import serializers
+from workspace.message_rendering import in_words
+
+from workspace.models import Job, JobState
+
+# A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared
+# fields out of the class, so neither overrides anything.
+Declared: TypeAlias = Any
+
+
+class ErrorDetailSerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same")
+    message = serializers.CharField(help_text="for people: one sentence")
+    details = serializers.JSONField(allow_null=True, help_text='for invalid input: {"place.in.the.body": ["what is wrong"]}')
+
+
+class ErrorSerializer(serializers.Serializer):
+    """Every error of the API has this shape: `error`, and beside it a problem of RFC 9457."""
+
+    error = ErrorDetailSerializer()
+    type = serializers.CharField(help_text="`urn:problem-type:spanwise:` and the error's code")
+    title = serializers.CharField(help_text="the status in words")
+    status = serializers.IntegerField(help_text="the HTTP status")
+    detail = serializers.CharField(help_text="as `error.message`")
+    instance = serializers.CharField(required=False, help_text="path of the request, where it is known")
+
+
+class JobErrorSerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same")
+    message = serializers.CharField(help_text="for people: one sentence")
+
+
+@extend_schema_field(JobErrorSerializer(allow_null=True))
+class JobErrorField(serializers.JSONField):
+    """Why a job failed, as it is stored."""
+
+
+class JobSerializer(serializers.ModelSerializer):
+    """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`.
+
+    While a plan is being searched for, `best` is the best until now, at most once a second: `value` and the lower `bound` in `unit`
+    (metres, or seconds where the longest route counts), how many targets are left out, and the `routes` as lines.
+    """
+
+    state = serializers.ChoiceField(choices=JobState.choices)
+    error = JobErrorField(allow_null=True, read_only=True)
+
+    class Meta:
+        model = Job
+        fields = ["id", "task", "state", "progress", "message", "best", "result", "error", "created_at", "started_at", "finished_at"]
+        read_only_fields = fields
+
+    def to_representation(self, instance: Job) -> dict[str, Any]:
+        shown = super().to_representation(instance)
+        shown["message"] = in_words(instance.message)
+        if instance.error:
+            shown["error"] = instance.error | {"message": in_words(str(instance.error.get("message", "")))}
+        return shown
+
+
+class ListedJobSerializer(JobSerializer):
+    """A job in a list: without what may be large."""
+
+    class Meta(JobSerializer.Meta):
+        fields = [name for name in JobSerializer.Meta.fields if name not in {"best", "result"}]
+        read_only_fields = fields
+
+
+class JobPageSerializer(serializers.Serializer):
+    results = ListedJobSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")

@@ -1,0 +1,160 @@
+"""What every websocket of a signed-in person has in common: who is there, for how long they may be, and how it is hung up."""
+
+import asyncio
+import logging
+from collections.abc import Coroutine
+from contextlib import suppress
+from importlib import import_module
+from typing import Any
+
+from channels.auth import get_user
+from channels.db import database_sync_to_async
+from channels.exceptions import StopConsumer
+from channels.generic.websocket import AsyncWebsocketConsumer
+from django.conf import settings
+from django.db import Error as DatabaseError
+from workspace.api.authentication import bearer_token, reader_of_token
+from workspace.live.graceful_shutdown import farewell_here
+from workspace.live.socket_places import socket_places_here
+from workspace.sessions.browser_sessions import note_session
+from workspace.sessions.sign_in_attempts import network_of
+from workspace.sessions.visitors import visitor_address
+
+from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
+from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
+from workspace.models import User
+
+logger = logging.getLogger(__name__)
+
+CHECK_PERSON_INTERVAL_S = 4.0
+KEEPALIVE_INTERVAL_S = 20.0  # a proxy between here and the page closes what is silent
+
+RETRY_AFTER = b"2"  # seconds
+ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY, TOO_MANY = 1000, 1011, 4401, 4400, 4429
+
+
+class SignedInSocket(AsyncWebsocketConsumer):
+    """For browsers by their session, for programs by `Authorization: Bearer`."""
+
+    channel_layer_alias = "none"  # it listens by itself: a socket lives on while Redis is away
+    _counted_as: str | None = None  # once it is accepted
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
+        self._tasks: list[asyncio.Task[None]] = []
+        self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._place: str | None = None  # among the open websockets of its user and its network
+        with about(**_facts_of(scope)):  # whatever is begun here knows it, too
+            spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
+        try:
+            await asyncio.wait({spoken, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
+            if spoken.done():
+                return await spoken
+            spoken.cancel()
+            with suppress(asyncio.CancelledError):
+                await spoken
+            await send({"type": "websocket.close", "code": self._hung_up.result()})
+        finally:
+            for task in (spoken, *self._tasks):
+                task.cancel()
+            if self._counted_as is not None:
+                farewell_here().forget(self)
+                WEBSOCKETS.labels(self._counted_as).dec()
+            if self._place is not None:
+                await socket_places_here().give_back(self._place)
+
+    def kind(self) -> str:
+        """What its page follows, one of a few words."""
+        raise NotImplementedError
+
+    async def websocket_connect(self, message: Any) -> None:
+        """Without the database nobody knows who comes: they are told to try again, which pages do by themselves."""
+        try:
+            await super().websocket_connect(message)
+        except DatabaseError as error:
+            logger.warning("a websocket is refused while the database is away: %s", type(error).__name__)
+            await self.base_send({"type": "websocket.http.response.start", "status": 503, "headers": [(b"retry-after", RETRY_AFTER)]})
+            await self.base_send({"type": "websocket.http.response.body", "body": b""})
+            raise StopConsumer from error
+
+    async def accept(self, *arguments: Any, **named: Any) -> None:
+        await super().accept(*arguments, **named)
+        self._counted_as = self.kind()
+        WEBSOCKETS.labels(self._counted_as).inc()
+        farewell_here().expect(self)
+        self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
+
+    async def is_one_too_many(self, user: User) -> bool:
+        """Take a place among the open websockets of this user and this network, or tell the page by a close code that none is left."""
+        network = network_of(_address_of(self.scope))
+        wanted = {f"user {user.pk}": settings.SOCKETS_PER_USER, f"network {network}": settings.SOCKETS_PER_ADDRESS}
+        self._place = await socket_places_here().take(wanted)
+        if self._place is None:
+            await AsyncWebsocketConsumer.accept(self)  # a refused handshake shows a page no reason
+            await self.close(TOO_MANY)
+        return self._place is None
+
+    async def send(self, *arguments: Any, **named: Any) -> None:
+        await super().send(*arguments, **named)
+        self._messages.inc()
+
+    def hang_up(self, code: int) -> None:
+        """Once nobody waits any more for what the browser says. The first code counts."""
+        if not self._hung_up.done():
+            self._hung_up.set_result(code)
+
+    def _start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Beside the socket, and no longer than it. Work that fails takes the socket with it: nobody stays in unwatched."""
+        task = asyncio.create_task(work)
+        self._tasks.append(task)
+        task.add_done_callback(self._look_how_it_ended)
+
+    def _look_how_it_ended(self, task: asyncio.Task[None]) -> None:
+        if not task.cancelled() and (error := task.exception()) is not None:
+            logger.error("a websocket is closed: %r", error, exc_info=error)
+            self.hang_up(FAILED)
+
+    async def _user(self) -> User | None:
+        """Whoever listens, if they still may."""
+        token = bearer_token(self.scope)
+        if token is not None:
+            return await database_sync_to_async(reader_of_token)(token)
+        key = await database_sync_to_async(lambda: self.scope["session"].session_key)()
+        if key is None:
+            return None
+        store = import_module(settings.SESSION_ENGINE).SessionStore
+        session = store(session_key=key)  # of its own: the first one keeps what it has read
+        user = await get_user({"session": session})
+        if not (isinstance(user, User) and user.is_active):
+            return None
+        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page is somebody's presence
+        return user
+
+    async def _same_user(self, before: User) -> User | None:
+        """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""
+        now = await self._user()
+        is_same = now is not None and (now.pk, now.organisation_id) == (before.pk, before.organisation_id)
+        return now if is_same else None
+
+    async def _watch_person(self, user: User) -> None:
+        """Until they may not be there any more: then the socket is closed. Somebody whose role has changed comes in again."""
+        while True:
+            await asyncio.sleep(CHECK_PERSON_INTERVAL_S)
+            with suppress(DatabaseError):  # away for a moment: the next look tells
+                now = await self._same_user(user)
+                if now is None or now.role != user.role:
+                    return self.hang_up(SIGNED_OUT)
+
+
+def _address_of(scope: Any) -> str:
+    """Return where it came from."""
+    told = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
+    client = scope.get("client")
+    return visitor_address(client[0] if client else "", told[-1] if told else "")
+
+
+def _facts_of(scope: Any) -> dict[str, Any]:
+    told = next((value for name, value in scope["headers"] if name == REQUEST_ID_HEADER.lower().encode()), None)
+    named = scope.get("url_route", {}).get("kwargs", {})
+    request = sane_request_id(None if told is None else told.decode("latin-1"))
+    return {"request": request, "mission": named.get("mission_id"), "job": named.get("job_id")}

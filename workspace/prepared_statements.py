@@ -1,0 +1,92 @@
+"""Small reads and writes of the busiest paths: statements that the server has parsed and planned once per connection.
+
+Django's own cursor sends each statement as text, to be parsed and planned again, and looks first whether the connection still lives.
+Here the statement itself is that look: a connection that turns out to be dead is replaced, and the statement sent once more. Outside of
+transactions it goes to the server with libpq's own call, which costs half of a cursor.
+"""
+
+from collections.abc import Sequence
+from functools import lru_cache
+from hashlib import sha256
+from typing import Any
+from weakref import WeakKeyDictionary
+
+import psycopg
+from django.db import InterfaceError, OperationalError, connection
+from psycopg import pq
+from psycopg.adapt import PyFormat, Transformer
+
+from workspace.jobs.planning_lock import waiting
+
+_known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = WeakKeyDictionary()  # names of statements its server has
+
+
+def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+    """The rows of a statement that may be sent twice; `%s` are its parameters, cast in SQL where their type is not plain.
+
+    Inside a transaction it is part of it. Raises what Django's own cursor raises.
+    """
+    try:
+        return _rows(statement, parameters)
+    except (OperationalError, InterfaceError):
+        if connection.in_atomic_block or connection.is_usable():
+            raise
+        connection.close()
+        return _rows(statement, parameters)
+
+
+def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
+    connection.ensure_connection()
+    server: psycopg.Connection[Any] = connection.connection
+    with connection.wrap_database_errors:
+        if server.autocommit and server.pgconn.transaction_status == pq.TransactionStatus.IDLE:
+            return _rows_at_once(server, statement, parameters)
+        with psycopg.Cursor(server) as cursor:  # which begins the transaction where it has not begun
+            cursor.execute(statement, parameters, prepare=True)
+            return cursor.fetchall() if cursor.pgresult and cursor.pgresult.nfields else []
+
+
+def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
+    name = _name(statement)
+    transformer = Transformer(server)
+    values = transformer.dump_sequence(parameters, [PyFormat.TEXT] * len(parameters))
+    known = _known.setdefault(server, set())
+    result = None
+    if name in known:
+        result = waiting(server.pgconn.exec_prepared, name, values)
+        state = result.error_field(pq.DiagnosticField.SQLSTATE)
+        if state == _TYPES_CHANGED:  # a migration beside us
+            _checked(server.pgconn.exec_(b"DEALLOCATE " + name), server)
+        if state in (_NOT_PREPARED, _TYPES_CHANGED):
+            result = None
+    if result is None:
+        _checked(server.pgconn.prepare(name, _numbered(statement).encode()), server)
+        known.add(name)
+        result = waiting(server.pgconn.exec_prepared, name, values)
+    transformer.set_pgresult(_checked(result, server))
+    return transformer.load_rows(0, result.ntuples, tuple)
+
+
+_NOT_PREPARED = b"26000"  # invalid_sql_statement_name: somebody made the server forget: DEALLOCATE ALL
+_TYPES_CHANGED = b"0A000"  # feature_not_supported: "cached plan must not change result type"
+
+
+@lru_cache(maxsize=64)
+def _name(statement: str) -> bytes:
+    """The same for a statement in every process, and another one for every other statement."""
+    return b"spanwise_" + sha256(statement.encode()).hexdigest()[:16].encode()
+
+
+def _numbered(statement: str) -> str:
+    """With libpq's $1, $2 for each `%s`."""
+    first, *rest = statement.split("%s")
+    return first + "".join(f"${number}{text}" for number, text in enumerate(rest, start=1))
+
+
+def _checked(result: pq.abc.PGresult, server: psycopg.Connection[Any]) -> pq.abc.PGresult:
+    if result.status in (pq.ExecStatus.TUPLES_OK, pq.ExecStatus.COMMAND_OK):
+        return result
+    error = psycopg.errors.error_from_result(result)
+    if server.pgconn.status == pq.ConnStatus.BAD:
+        raise psycopg.OperationalError(str(error)) from error
+    raise error

@@ -1,0 +1,55 @@
+"""Middleware: each request in the language and the time zone of whoever asks, and a note that they were here."""
+
+from collections.abc import Callable
+from datetime import timedelta
+from zoneinfo import available_timezones
+
+from django.conf import settings
+from django.http import HttpRequest, HttpResponse
+from django.utils import timezone, translation
+from django.utils.cache import patch_vary_headers
+from workspace.sessions.browser_sessions import note_session
+
+from workspace.models import User
+
+TIME_ZONES = frozenset(available_timezones())
+SEEN_EVERY = timedelta(minutes=1)
+ASKS_HOW_LONG = "/api/v1/account/session"  # no sign of anybody being there
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+
+
+class PreferencesMiddleware:
+    """After the one that knows the session. The API writes times in UTC for everybody: there only the language counts."""
+
+    def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
+        self.get_response = get_response
+
+    def __call__(self, request: HttpRequest) -> HttpResponse:
+        user = _whoever_has_signed_in(request)
+        own_language = user.language if user else ""
+        zone = user.time_zone if user and not request.path.startswith("/api/") else ""
+        with (
+            translation.override(own_language or translation.get_language_from_request(request)),
+            timezone.override(zone if zone in TIME_ZONES else None),
+        ):
+            response = self.get_response(request)
+        if user is not None and "Cache-Control" not in response:
+            response["Cache-Control"] = "no-store"  # what is not meant to be kept by the browser, is not
+        if not own_language and response.get("Content-Type", "").startswith("text/html"):
+            patch_vary_headers(response, ("Accept-Language",))
+        return response
+
+
+def _whoever_has_signed_in(request: HttpRequest) -> User | None:
+    if settings.SESSION_COOKIE_NAME not in request.COOKIES or not isinstance(request.user, User):
+        return None
+    is_read = request.method in SAFE_METHODS
+    if is_read and request.path == ASKS_HOW_LONG:
+        return request.user
+    is_act = not is_read or not request.path.startswith("/api/")  # what pages read by themselves is none
+    note_session(request.session, request.user, is_act=is_act, user_agent=request.headers.get("User-Agent", ""))
+    now = timezone.now()
+    if request.user.last_seen_at is None or now - request.user.last_seen_at >= SEEN_EVERY:
+        User.objects.filter(pk=request.user.pk).update(last_seen_at=now)
+        request.user.last_seen_at = now
+    return request.user
