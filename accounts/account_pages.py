@@ -4,9 +4,6 @@ import logging
 from threading import Thread
 from typing import Any
 
-from accounts.invitations import mail_leaves_here
-from accounts.public_address import public_address
-from accounts.services import revoke_tokens
 from django.contrib.auth import views
 from django.contrib.auth.forms import PasswordChangeForm, PasswordResetForm, SetPasswordForm
 from django.core.exceptions import ValidationError
@@ -14,6 +11,10 @@ from django.http import HttpResponse
 from django.urls import reverse_lazy
 from django.utils import translation
 from django.utils.translation import gettext as _
+
+from accounts.invitations import mail_leaves_here
+from accounts.public_address import public_address
+from accounts.services import revoke_tokens
 from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
 from workspace.sessions.trusted_devices import remember
 

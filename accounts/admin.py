@@ -3,7 +3,6 @@
 from typing import Any
 
 import django.contrib.auth.admin  # noqa: F401 - registers groups, also where this module is the first to be loaded
-from accounts.invitations import InvitationState, in_state, revoke_invitation
 from django.contrib import admin, messages
 from django.contrib.auth.models import Group
 from django.db import transaction
@@ -11,12 +10,14 @@ from django.db.models import Count, QuerySet
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.utils import timezone
 from django.utils.safestring import SafeString
+
+from accounts.invitations import InvitationState, in_state, revoke_invitation
+from accounts.users import NoAdministratorLeft, OperatorsAlone, change_people, delete_person, save_person
 from workspace.admin_pages.history import HistoryAdmin, as_table, what_changed
 from workspace.admin_pages.scope import OrganisationScopedAdmin
+from workspace.api.permissions import may_change
 from workspace.api.signed_in import user_of
-
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
-from workspace.services import NoAdministratorLeft, OperatorsAlone, change_people, delete_person, may_change, save_person
 
 admin.site.unregister(Group)  # what somebody may do follows from the role
 

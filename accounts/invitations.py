@@ -12,8 +12,10 @@ from django.template.loader import render_to_string
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from accounts.users import save_person
+from workspace.api_tokens import hash_token
+from workspace.audit import record_change
 from workspace.models import Invitation, Organisation, Role, User
-from workspace.services import hash_token, record_change, save_person
 
 MAX_DAYS = 30
 MAX_TOKEN_LENGTH = 200

@@ -3,16 +3,16 @@
 import time
 from dataclasses import dataclass
 
-from accounts.second_factors import has_second_factor, is_required_of
-from accounts.sign_in_log import record_sign_in
 from django.contrib.auth import login
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.shortcuts import resolve_url
 from django.utils.crypto import constant_time_compare
+
+from accounts.second_factors import has_second_factor, is_required_of
+from accounts.sign_in_log import record_sign_in
+from workspace.models import SignInOutcome, User
 from workspace.sessions.browser_sessions import note_session
 from workspace.sessions.trusted_devices import remember
-
-from workspace.models import SignInOutcome, User
 
 BACKEND = "workspace.api.authentication.RoleBackend"
 HALF_IN = "workspace.half_in"  # in the session: who has shown the password, when, and where they wanted to go

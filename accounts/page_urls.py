@@ -1,5 +1,7 @@
 """Addresses of the account's pages."""
 
+from django.urls import path
+
 from accounts.account_pages import (
     ChangePasswordPage,
     LostPasswordPage,
@@ -11,8 +13,6 @@ from accounts.account_pages import (
 from accounts.second_factor_pages import CodePage, NewCodesPage, RemovePage, SetUpPage
 from accounts.sign_in_pages import SignInPage, SignOutPage
 from accounts.user_pages import AccountPage, AdministrationPage, InvitationPage
-from django.urls import path
-
 from workspace.offline_pages import OfflinePage, service_worker
 
 urlpatterns = [

@@ -7,6 +7,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse
 from rest_framework.request import Request
+
 from workspace.api.errors import ApiProblem
 
 PROVED_AT = "workspace.proved_at"  # in the session, beside its beginning

@@ -3,11 +3,6 @@
 from typing import Any
 
 import segno
-from accounts import second_factors
-from accounts.login import sign_in, who_is_half_in
-from accounts.one_time_codes import address_for_apps, new_seed
-from accounts.second_factors import TooManyCodes, WrongCode
-from accounts.sign_in_log import record_sign_in
 from django import forms
 from django.contrib.auth.mixins import AccessMixin, LoginRequiredMixin
 from django.http import Http404, HttpRequest, HttpResponse, HttpResponseRedirect
@@ -17,11 +12,16 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_lazy, ngettext
 from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
+
+from accounts import second_factors
+from accounts.login import sign_in, who_is_half_in
+from accounts.one_time_codes import address_for_apps, new_seed
+from accounts.second_factors import TooManyCodes, WrongCode
+from accounts.sign_in_log import record_sign_in
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.field_encryption import CannotUnseal, seal, unseal
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
-
 from workspace.models import SignInOutcome, User
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
 
 SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
 MAX_CODE_LENGTH = 60

@@ -3,15 +3,16 @@
 from base64 import b32encode
 from datetime import timedelta
 
-from accounts.one_time_codes import bare, is_of_an_app, matching_step, new_recovery_codes
-from accounts.services import end_sessions
 from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
-from workspace.field_encryption import CannotUnseal, seal, unseal
 
+from accounts.one_time_codes import bare, is_of_an_app, matching_step, new_recovery_codes
+from accounts.services import end_sessions
+from workspace.api_tokens import hash_token
+from workspace.audit import person_facts, record_change
+from workspace.field_encryption import CannotUnseal, seal, unseal
 from workspace.models import Organisation, RecoveryCode, SecondFactor, User
-from workspace.services import hash_token, person_facts, record_change
 
 TRIES = 5  # wrong codes of one person, from wherever: who comes so far knows the password
 WINDOW = timedelta(minutes=15)

@@ -7,8 +7,8 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count, F, Max, Q, QuerySet
 from django.utils import timezone
 
+from accounts.users import save_person
 from workspace.models import ApiToken, Role, User
-from workspace.services import save_person
 
 
 class NameTaken(ValueError):

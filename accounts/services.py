@@ -10,8 +10,10 @@ from django.db import transaction
 from django.db.models import F
 from django.utils import timezone
 
+from accounts.users import save_person
+from workspace.api_tokens import create_api_token
+from workspace.audit import person_facts, record_change
 from workspace.models import ApiToken, User
-from workspace.services import create_api_token, person_facts, record_change, save_person
 
 MAX_TOKENS = 50  # of one person, valid at the same time
 CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")

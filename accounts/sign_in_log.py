@@ -5,9 +5,9 @@ from datetime import timedelta
 from django.conf import settings
 from django.http import HttpRequest
 from django.utils import timezone
-from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of
 
 from workspace.models import SignInEntry, SignInOutcome, User
+from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of
 
 HELD_BACK_INTERVAL_S = 60  # of one name from one network: a flood of tries is no flood of rows
 

@@ -2,18 +2,18 @@
 
 from typing import Any
 
-from accounts.login import let_in
-from accounts.sign_in_log import record_sign_in
 from django.contrib.auth import views
 from django.contrib.auth.forms import AuthenticationForm
 from django.core.exceptions import ValidationError
 from django.http import HttpRequest, HttpResponse
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
+
+from accounts.login import let_in
+from accounts.sign_in_log import record_sign_in
+from workspace.models import SignInOutcome, User
 from workspace.sessions.sign_in_attempts import HeldBack, address_of, try_to_sign_in
 from workspace.sessions.trusted_devices import mark_of
-
-from workspace.models import SignInOutcome, User
 
 
 class SignInForm(AuthenticationForm):

@@ -2,9 +2,6 @@
 
 from typing import Any
 
-from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
-from accounts.login import let_in
-from accounts.second_factors import has_second_factor, is_required_of, recovery_codes_left
 from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
 from django.contrib.auth.mixins import UserPassesTestMixin
 from django.db import IntegrityError, transaction
@@ -14,10 +11,13 @@ from django.utils.decorators import method_decorator
 from django.utils.translation import gettext as _
 from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
-from workspace.sessions.preferences import TIME_ZONES
 
+from accounts.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
+from accounts.login import let_in
+from accounts.second_factors import has_second_factor, is_required_of, recovery_codes_left
 from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
+from workspace.sessions.preferences import TIME_ZONES
 
 
 class AccountPage(SignedInPage):

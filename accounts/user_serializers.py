@@ -3,18 +3,16 @@
 from datetime import datetime
 from typing import Any, ClassVar
 
+from django.contrib.auth.password_validation import validate_password
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
 from accounts.invitations import MAX_DAYS, state_of
 from accounts.invitations import InvitationState as State
 from accounts.service_accounts import name_of
 from accounts.services import revision_of_person
-from django.contrib.auth.password_validation import validate_password
-from django.utils import timezone
-from django.utils.translation import gettext as _
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
-from workspace.sessions.browser_sessions import session_ends_at
-from workspace.sessions.preferences import TIME_ZONES
-
 from workspace.models import (
     SCOPES_OF_ROLE,
     ApiToken,
@@ -29,6 +27,8 @@ from workspace.models import (
     Units,
     User,
 )
+from workspace.sessions.browser_sessions import session_ends_at
+from workspace.sessions.preferences import TIME_ZONES
 
 InvitationState = [state.value for state in State]
 MAX_TOKEN_DAYS = 365

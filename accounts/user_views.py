@@ -3,6 +3,16 @@
 from datetime import timedelta
 from typing import Any
 
+from django.conf import settings
+from django.db.models import Count, Exists, OuterRef, Q, QuerySet
+from django.http import Http404
+from django.urls import reverse
+from django.utils import timezone
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
 from accounts import invitations, second_factors, services
 from accounts.invitations import InvitationState
 from accounts.public_address import public_address
@@ -19,25 +29,15 @@ from accounts.user_serializers import (
     SignInSerializer,
     with_secret,
 )
-from django.conf import settings
-from django.db.models import Count, Exists, OuterRef, Q, QuerySet
-from django.http import Http404
-from django.urls import reverse
-from django.utils import timezone
-from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework.response import Response
-from rest_framework.views import APIView
+from accounts.users import NoAdministratorLeft, OperatorsAlone
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of
-from workspace.api.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
+from workspace.api.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone, may_change
 from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
-
 from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
-from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
 
 HERE_WITHIN = timedelta(minutes=5)
 DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)

@@ -11,7 +11,6 @@ from uuid import UUID
 import numpy as np
 from django.contrib.gis.geos import Point
 from django.db import connection
-from tests.workspace.live.proxied_site import environment_of
 
 from inspection.models import Asset
 from inspection.services import import_terrain
@@ -23,6 +22,7 @@ from telemetry.models import UavLink
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
+from tests.workspace.live.proxied_site import environment_of
 from workspace.models import Organisation, User
 
 UAVS_A_MISSION = 10

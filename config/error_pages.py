@@ -8,6 +8,7 @@ from django.db import DataError
 from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.template import TemplateDoesNotExist
 from django.template.loader import render_to_string
+
 from workspace.api.errors import DATABASE_UNAVAILABLE, RETRY_AFTER_S, error_body, error_content_type
 
 API_MESSAGES = {

@@ -9,11 +9,11 @@ from channels.security.websocket import WebsocketDenier
 from django.conf import settings
 from django.db import connections
 from django.http.request import split_domain_port, validate_host
+
+from operation.readiness import Readiness
 from workspace.api.authentication import bearer_token
 from workspace.api.errors import error_body
 from workspace.live.graceful_shutdown import farewell_here
-
-from operation.readiness import Readiness
 
 _readiness = Readiness()
 

@@ -90,6 +90,7 @@ INSTALLED_APPS = [
     "drf_spectacular",
     "drf_spectacular_sidecar",
     "workspace",
+    "accounts",
     "inspection",
     "missions",
     "telemetry",
@@ -138,7 +139,7 @@ _database = dj_database_url.parse(
     conn_max_age=60,
     conn_health_checks=True,
 )
-# Prepared by workspace/prepared_statements.py alone: Django's own statements go as text. The name tells whose connection it is in pg_stat_activity.
+# Prepared by workspace/prepared_statements.py alone: Django sends its own as text. The name is shown in pg_stat_activity.
 _named = {"application_name": os.environ.get("SPANWISE_PROGRAM", "spanwise")}
 _database["OPTIONS"] = _named | _database.get("OPTIONS", {}) | {"prepare_threshold": 0}
 DATABASES = {"default": _database}
@@ -296,9 +297,9 @@ CELERY_BEAT_SCHEDULE = {
         "options": {"expires": 60},
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
-    "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
+    "forget old sign-ins": {"task": "accounts.tasks.forget_old_sign_ins", "schedule": 3_600.0},
     "forget ended sessions": {"task": "workspace.tasks.forget_ended_sessions", "schedule": 3_600.0},
-    "seal second factors with the key of today": {"task": "workspace.tasks.seal_second_factors", "schedule": 3_600.0},
+    "seal second factors with the key of today": {"task": "accounts.tasks.seal_second_factors", "schedule": 3_600.0},
     "store when targets were reached that no watch has looked at": {"task": "telemetry.tasks.store_visits", "schedule": 3_600.0},
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},

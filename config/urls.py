@@ -3,6 +3,7 @@
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
 from drf_spectacular.views import SpectacularSwaggerSplitView
+
 from workspace.api.api_document import api_document
 
 admin.autodiscover()
@@ -11,6 +12,7 @@ urlpatterns: list[URLPattern | URLResolver] = [
     path("api/schema", api_document, name="schema"),
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
+    path("api/v1/", include("accounts.urls")),
     path("api/v1/", include("inspection.urls")),
     path("api/v1/", include("telemetry.urls")),
     path("api/v1/", include("simulation.urls")),

@@ -1,7 +1,6 @@
 """Every address of a websocket."""
 
-from workspace.live.websocket_urls import websocket_urlpatterns as of_the_workspace
-
 from telemetry.websocket_urls import websocket_urlpatterns as of_telemetry
+from workspace.live.websocket_urls import websocket_urlpatterns as of_the_workspace
 
 websocket_urlpatterns = [*of_telemetry, *of_the_workspace]

@@ -1,6 +1,7 @@
 """Registers the app with Django."""
 
 from django.apps import AppConfig
+
 from workspace.admin_pages.field_labels import label
 
 

@@ -5,10 +5,6 @@ from collections.abc import Callable
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
-from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.jobs.fair_queue import next_waiting, start_fair_job
-from workspace.jobs.job_watch import JobWatch
-from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
 
 from inspection import services
 from inspection.models import ImportProposal
@@ -16,8 +12,12 @@ from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.jobs.fair_queue import next_waiting, start_fair_job
+from workspace.jobs.job_watch import JobWatch
+from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
+from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job
 from workspace.models import Job
-from workspace.services import JobCancelled, confirm_cancelled, fail_job
 from workspace.tasks import send_job, send_job_on_commit
 
 SOFT_LIMIT_S = 870

@@ -2,14 +2,12 @@
 
 from typing import Any
 
-from accounts.admin import ReadOnlyAdmin
 from django.contrib import admin
 from django.contrib.gis.db import models
 from django.db.models import QuerySet
 from django.http import HttpRequest
-from workspace.admin_pages.history import HistoryAdmin
-from workspace.api.signed_in import user_of
 
+from accounts.admin import ReadOnlyAdmin
 from inspection.admin_map import GeoJSONField
 from missions.models import (
     Approval,
@@ -26,7 +24,9 @@ from missions.models import (
     Waypoint,
 )
 from missions.services.link_changes import removal_reasons
-from workspace.services import record_change
+from workspace.admin_pages.history import HistoryAdmin
+from workspace.api.signed_in import user_of
+from workspace.audit import record_change
 
 
 class _FleetAdmin(HistoryAdmin):

@@ -5,9 +5,9 @@ from typing import Any
 from django.utils.translation import gettext_lazy as _
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
-from workspace.api.fields import FiniteFloatField, is_number
 
 from inspection.geodesy import LonLat
+from workspace.api.fields import FiniteFloatField, is_number
 
 
 @extend_schema_field(

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from uuid import UUID
 
 from django.db.models import Q
-from workspace.prepared_statements import prepared_rows
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, MissionState, Route, UavCommand
+from workspace.prepared_statements import prepared_rows
 
 FLOWN_IN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 

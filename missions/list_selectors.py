@@ -29,13 +29,13 @@ from django.db.models import (
     Value,
 )
 from django.db.models.functions import Coalesce, Lower
-from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
 from missions.stale_selectors import landing_routes_without_base
 from missions.uav_change_selectors import missions_with_other_uavs
+from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.models import Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from uuid import UUID
 
 from django.core.cache import cache
-from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
+from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.models import User
 
 FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at

@@ -5,8 +5,6 @@ from collections.abc import Callable
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 from django.conf import settings
-from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.jobs.job_watch import JobWatch
 
 from inspection.selectors import NoGraph
 from missions import services
@@ -14,8 +12,10 @@ from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands, replanning
 from missions.services.best_so_far import OnPlanProgress, PlanProgress
 from missions.services.planned_starts import carry_on_planned_starts
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.jobs.job_watch import JobWatch
+from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
 from workspace.models import Job, JobState
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
 from workspace.tasks import send_job
 
 SOFT_LIMIT_S = 540

@@ -15,7 +15,6 @@ from datetime import UTC, datetime
 from typing import NoReturn
 
 from config.environment import secret
-
 from config.private_servers import state_directory
 from operation.json_lines import is_asked_for, write_json_lines
 from scripts import commands, container_health, container_proxy

@@ -1,6 +1,7 @@
 """Registers the app with Django, what it asks of a mission before it is approved, and what it adds to event logs."""
 
 from django.apps import AppConfig
+
 from workspace.admin_pages.field_labels import label
 
 

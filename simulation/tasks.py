@@ -2,8 +2,6 @@
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
-from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.jobs.job_watch import JobWatch
 
 from inspection.selectors import NoGraph
 from missions.models import Mission
@@ -11,7 +9,9 @@ from missions.services.refused import Refused
 from simulation.models import Rehearsal
 from simulation.services.demo_missions import NotThere, make_demo_missions, missions_made
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, pause_job, start_job
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.jobs.job_watch import JobWatch
+from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, finish_job, pause_job, start_job
 
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900

@@ -1,9 +1,9 @@
 """The admin's pages for what came over the links: to be looked at only."""
 
-from accounts.admin import ReadOnlyAdmin
 from django.contrib import admin
 from django.db.models import Q
 
+from accounts.admin import ReadOnlyAdmin
 from telemetry.models import UnknownVehicle
 
 

@@ -1,6 +1,7 @@
 """Registers the app with Django, and with the missions: what it knows of UAVs, and what it asks before a mission is approved."""
 
 from django.apps import AppConfig
+
 from workspace.admin_pages.field_labels import label
 
 

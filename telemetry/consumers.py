@@ -5,14 +5,14 @@ from uuid import UUID
 
 import orjson
 from channels.db import database_sync_to_async
-from workspace.live.sockets import NOTHING_TO_SAY, SignedInSocket
-from workspace.locale_negotiation import language_of_socket
 
 from missions.models import Mission
 from telemetry.live.feed import Feed
 from telemetry.live.hub import hub_here
 from telemetry.live.messages import message
 from telemetry.live.reader import Reader, SaysNonsense
+from workspace.live.sockets import NOTHING_TO_SAY, SignedInSocket
+from workspace.locale_negotiation import language_of_socket
 from workspace.models import User
 
 MAX_WORD_LENGTH = 4_096  # characters that a page may say at once

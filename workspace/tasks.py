@@ -3,13 +3,12 @@
 import logging
 from functools import partial
 
-from accounts import second_factors, sign_in_log
 from celery import current_app, shared_task
 from django.db import transaction
 from kombu.exceptions import OperationalError
 from redis.exceptions import RedisError
 
-from workspace import services
+from workspace.jobs import services
 from workspace.models import Job
 from workspace.sessions import browser_sessions
 
@@ -39,16 +38,6 @@ def forget_old_idempotency_keys() -> None:
     services.forget_old_idempotency_keys()
 
 
-@shared_task(time_limit=30, soft_time_limit=25)
-def forget_old_sign_ins() -> None:
-    sign_in_log.forget_old_sign_ins()
-
-
 @shared_task(time_limit=60, soft_time_limit=50)
 def forget_ended_sessions() -> None:
     browser_sessions.forget_ended_sessions()
-
-
-@shared_task(time_limit=60, soft_time_limit=50)
-def seal_second_factors() -> None:
-    second_factors.seal_with_the_key_of_today()

@@ -44,8 +44,8 @@ from missions.services.fleet import create_uav_type  # noqa: E402
 from missions.services.refused import Refused  # noqa: E402
 from missions.services.uavs import create_uav  # noqa: E402
 from planning.problem import Objective  # noqa: E402
+from workspace.api_tokens import create_api_token  # noqa: E402
 from workspace.models import Organisation, Role, User  # noqa: E402
-from workspace.services import create_api_token  # noqa: E402
 
 UAVS_A_MISSION = 9
 FIRST_SYSTEM = 2

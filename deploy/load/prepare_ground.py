@@ -45,8 +45,8 @@ from inspection.network.snapshot_file import to_bytes  # noqa: E402
 from inspection.selectors.graph import rules_of_snapshots  # noqa: E402
 from inspection.selectors.ground import ground_revision  # noqa: E402
 from inspection.services.ground import mark_ground_changed  # noqa: E402
+from workspace.api_tokens import hash_token  # noqa: E402
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, Role, User  # noqa: E402
-from workspace.services import hash_token  # noqa: E402
 
 TOWER, RAILWAY, BRIDGE = 0, 1, 2  # kinds of make_graph.py
 BRIDGE_HALF_DEG = 1e-4

@@ -10,7 +10,6 @@ from django.db.models import Field, QuerySet
 from django.http import HttpRequest
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
-from workspace.api.signed_in import user_of
 
 from inspection import services
 from inspection.admin.curated import CuratedAdmin, CuratedForm, expected_revision
@@ -20,6 +19,7 @@ from inspection.importers.osm.tags import MAX_HEIGHT_M
 from inspection.models import Asset, AssetKind, Bridge, DataImport, ImportKind, PowerLine, PowerTower, Railway
 from inspection.selectors import asset_label
 from inspection.services.curation import many_edits
+from workspace.api.signed_in import user_of
 
 FORM_FIELDS: dict[type[Field], dict[str, Any]] = {
     models.GeometryField: {"form_class": GeoJSONField},

@@ -3,18 +3,18 @@
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
-from accounts.admin import ReadOnlyAdmin
 from django import forms
 from django.contrib import messages
 from django.core.exceptions import ValidationError
 from django.db.models import QuerySet
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
+
+from accounts.admin import ReadOnlyAdmin
+from inspection.services import StaleRevision
+from inspection.services.curation import many_edits
 from workspace.admin_pages.author_names import author_name
 from workspace.admin_pages.history import HistoryAdmin
 from workspace.api.signed_in import user_of
-
-from inspection.services import StaleRevision
-from inspection.services.curation import many_edits
 from workspace.models import AuditEntry, User
 
 MAX_CONCURRENT = 500  # rows that one bulk action changes in a request

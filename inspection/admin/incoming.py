@@ -8,7 +8,6 @@ from django.http import HttpRequest
 from django.urls import reverse
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
-from workspace.api.signed_in import user_of
 
 from inspection.admin.curated import CommonGroundAdmin
 from inspection.models import (
@@ -23,6 +22,7 @@ from inspection.models import (
     Upload,
 )
 from inspection.services.gaps import dismiss_gap, reopen_gap
+from workspace.api.signed_in import user_of
 
 
 @admin.register(ImportProposal)

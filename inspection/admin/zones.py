@@ -7,7 +7,6 @@ from django.contrib.gis.db import models
 from django.core.exceptions import ValidationError
 from django.db.models import Count, Field, QuerySet
 from django.http import HttpRequest
-from workspace.api.signed_in import user_of
 
 from inspection import services
 from inspection.admin.curated import CommonGroundAdmin, CuratedAdmin, CuratedForm, expected_revision
@@ -17,6 +16,7 @@ from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.subscriptions import change_subscription
 from inspection.zones.schedule import checked_schedule
+from workspace.api.signed_in import user_of
 
 FORM_FIELDS: dict[type[Field], dict[str, Any]] = {
     models.GeometryField: {"form_class": GeoJSONField},

@@ -3,9 +3,9 @@
 from django.db import models
 from django.db.models import Q
 from django.db.models.functions import Now
-from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 
 from inspection.models.assets import Asset
+from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import Organisation
 
 

@@ -7,7 +7,6 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from django.db import DEFAULT_DB_ALIAS
-from workspace.prepared_statements import prepared_rows
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
@@ -20,6 +19,7 @@ from inspection.selectors.ground import Edition
 from inspection.selectors.terrain import FloatArray, ground_heights_m, has_terrain, terrain_edition
 from inspection.selectors.zone_table import zone_table_of_edition
 from inspection.zones.reach import BoolArray, ZoneTable
+from workspace.prepared_statements import prepared_rows
 
 _GROUND = "(SELECT revision, changed_at FROM inspection_ground ORDER BY id LIMIT 1)"
 _EDITION = f"SELECT revision, changed_at FROM {_GROUND} AS ground"  # noqa: S608 - no value of anybody's

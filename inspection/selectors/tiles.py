@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from django.core.cache import cache
 from django.db import connection
-from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
+from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600

@@ -4,13 +4,13 @@ import json
 from typing import Any
 
 from rest_framework import serializers
-from workspace.api.external_data import AttributesField
-from workspace.jobs.serializers import Declared
 
 from inspection.models import AssetKind, AssetReference
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.assets import DrawnAsset
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+from workspace.api.external_data import AttributesField
+from workspace.jobs.serializers import Declared
 
 
 class AssetPropertiesSerializer(serializers.Serializer):

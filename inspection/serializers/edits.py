@@ -3,14 +3,14 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.api.errors import ApiProblem
-from workspace.api.external_data import AttributesField, ExternalIdField
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind, HeightReference
 from inspection.services.geometry_input import asset_shape, bridge_stored, stored, zone_shape
 from inspection.zones.schedule import checked_schedule
+from workspace.api import strict_serializers as serializers
+from workspace.api.errors import ApiProblem
+from workspace.api.external_data import AttributesField, ExternalIdField
 
 HIGHEST_VOLTAGE_V = 2_000_000  # the highest line in service has 1,150 kV
 MAX_VOLTAGES = 12

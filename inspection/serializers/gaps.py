@@ -3,16 +3,15 @@
 import json
 from typing import Any
 
-from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
-from workspace.api import strict_serializers as serializers
-from workspace.jobs.serializers import Declared
-
 from inspection.models import Asset, AssetKind, GapKind, GapState
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.gaps import DrawnGap, GapSummary
 from inspection.serializers.features import collection_serializer, feature_serializer
 from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
+from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared
 from workspace.models import User
 
 MAX_NOTE_LENGTH = 500

@@ -3,12 +3,11 @@
 from collections.abc import Iterable
 from typing import Any
 
-from workspace.api import strict_serializers as serializers
-from workspace.jobs.serializers import Declared
-
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_detail, asset_label
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared
 
 MAX_REFS = 2_000
 MAX_REF_LENGTH = 255

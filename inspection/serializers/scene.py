@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 import shapely
 from rest_framework import serializers
-from workspace.jobs.serializers import Declared
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset
@@ -17,6 +16,7 @@ from inspection.selectors import asset_label
 from inspection.selectors.scene import Scene, SceneBridge, SceneZone
 from inspection.serializers.terrain import PositionField
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json, schedule_words
+from workspace.jobs.serializers import Declared
 
 DEGREE_DIGITS, METRE_DIGITS = 7, 2
 OPEN_TOP_AGL_M = 180.0  # a zone without an upper limit is drawn as high: half as much again as anything flies

@@ -4,8 +4,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.jobs.serializers import Declared
 
 from inspection.selectors.terrain_models import TerrainModel
 from inspection.selectors.zones_along import ZoneStretch
@@ -13,6 +11,8 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json
 from inspection.services.facts import geojson
 from inspection.terrain.heights import REFERENCES
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared
 
 MAX_VERTICES = 2_000
 MAX_PLACES = 5_000

@@ -5,7 +5,6 @@ from typing import Any
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
-from workspace.jobs.serializers import Declared
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import HeightReference
@@ -13,6 +12,7 @@ from inspection.selectors.assets import DrawnZone
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
+from workspace.jobs.serializers import Declared
 
 
 class ScheduleEntrySerializer(serializers.Serializer):

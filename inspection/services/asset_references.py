@@ -8,8 +8,8 @@ from django.db.models.functions import Now
 
 from inspection.models import Asset, AssetReference
 from inspection.services.curation import check_revision
+from workspace.audit import record_change
 from workspace.models import AuditEntry, User
-from workspace.services import record_change
 
 REFERENCE_FIELDS = ("external_id", "attributes")
 

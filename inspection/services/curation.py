@@ -17,8 +17,8 @@ from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.services.facts import asset_facts, says_the_same, take_asset_facts, zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.supports import number_supports
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 GEOMETRY_TYPES = {
     AssetKind.TOWER: {"Point"},

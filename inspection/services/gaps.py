@@ -14,8 +14,8 @@ from inspection.quality.issue import Gap
 from inspection.quality.search import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.selectors.ground import ground_edition
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 logger = logging.getLogger(__name__)
 

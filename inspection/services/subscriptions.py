@@ -10,7 +10,6 @@ from django.conf import settings
 from django.db import IntegrityError, transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from workspace.http_client import Fetched, OutgoingError, OutgoingFailed, fetch
 
 from inspection.importers.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
 from inspection.models import ImportKind, ImportProposal, ProposalOrigin, ProposalState, ZoneSet, ZoneSubscription
@@ -20,8 +19,10 @@ from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import plain_name, store_upload, upload_folder
 from inspection.services.zone_import import read_zone_file, stated_validity
 from inspection.services.zone_sets import difference_of
+from workspace.audit import record_change
+from workspace.http_client import Fetched, OutgoingError, OutgoingFailed, fetch
+from workspace.jobs.services import create_job, fail_job, finish_job
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
-from workspace.services import create_job, fail_job, finish_job, record_change
 
 SILENCE_S = 20.0
 TOTAL_S = 120.0

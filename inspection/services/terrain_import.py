@@ -17,8 +17,8 @@ from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Provenance
 from inspection.terrain.height_grid import HeightGrid, packed
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 ONLY_VOIDS = "The file has no heights, only voids."
 _BATCH = 64

@@ -15,8 +15,8 @@ from inspection.importers.zones.texts import MAX_IDENTIFIER
 from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.facts import zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
+from workspace.audit import record_change
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
-from workspace.services import record_change
 
 _BATCH = 1_000
 _COLUMNS = (

@@ -9,13 +9,6 @@ from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.external_data import EXTERNAL_ID, asked_external_id
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_flag, changed_since, page_of
-from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
-from workspace.api.signed_in import SignedInRequest
 
 from inspection import selectors
 from inspection.models import Asset, AssetKind
@@ -32,6 +25,13 @@ from inspection.services.asset_references import REFERENCE_FIELDS, save_asset_re
 from inspection.views.edits import edits
 from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
+from workspace.api.external_data import EXTERNAL_ID, asked_external_id
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import asked_flag, changed_since, page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
+from workspace.api.signed_in import SignedInRequest
 
 BEST_FIRST = ("match_rank", "pk")
 EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}

@@ -5,13 +5,13 @@ from contextlib import contextmanager
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.admin_pages.author_names import author_name
-from workspace.api.errors import ApiProblem
 
 from inspection.selectors.history import NEWEST_FIRST, changes_of
 from inspection.services import StaleRevision, WrongGeometry
 from inspection.services.asset_references import ExternalIdTaken
 from inspection.services.history import CannotUndo
+from workspace.admin_pages.author_names import author_name
+from workspace.api.errors import ApiProblem
 from workspace.models import User
 
 

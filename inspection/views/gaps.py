@@ -10,11 +10,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.paging import asked_choice, page_of
-from workspace.api.permissions import CURATORS
-from workspace.api.schema import PAGE_PARAMETERS, several_of
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.models import GapKind, GapState
 from inspection.selectors.gaps import WORST_FIRST, DrawnGap, gap_summary, gaps
@@ -36,6 +31,11 @@ from inspection.services.history import CannotUndo
 from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.views.parameters import BOX, box_of, invalid, text_of
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.schema import PAGE_PARAMETERS, several_of
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 CANNOT = {409: OpenApiResponse(description="The ground has changed since, or somebody has decided already.")}

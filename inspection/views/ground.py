@@ -15,8 +15,6 @@ from rest_framework import serializers
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.negotiation import OneAnswer
-from workspace.api.permissions import CURATORS
 
 from inspection import selectors
 from inspection.geodesy.geometry_validator import GeometryFault
@@ -27,6 +25,8 @@ from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdic
 from inspection.serializers.scene import SceneSerializer, scene_json
 from inspection.services.geometry_input import area_m2, asset_shape, length_m, zone_shape
 from inspection.views.parameters import BOX_TEXT, box_of, invalid
+from workspace.api.negotiation import OneAnswer
+from workspace.api.permissions import CURATORS
 
 TILE_TYPE = "application/vnd.mapbox-vector-tile"
 

@@ -8,13 +8,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, Polymorphic
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
-from workspace.api import strict_serializers as serializers
-from workspace.api.paging import asked_choice, page_of
-from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import asset_with_geometry, references_of, zones
@@ -25,6 +18,13 @@ from inspection.services.facts import differing
 from inspection.services.history import follow_source, revert_asset, revert_zone, undo
 from inspection.views.edits import edits
 from inspection.views.parameters import invalid
+from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
+from workspace.api import strict_serializers as serializers
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import AuditEntry, User
 
 OF_THE_SOURCE = {"node_osm_ids", "parts", "content_hash", "data_import_id", "asset_set_id", "zone_set_id", "source_heights", "properties"}

@@ -13,12 +13,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.admin_pages.author_names import author_name
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_choice, page_of
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.importers.osm.overpass import WrongArea
 from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
@@ -38,6 +32,12 @@ from inspection.services.uploads import UploadTooLarge, check_size_for
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
+from workspace.admin_pages.author_names import author_name
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 IN_ANOTHER_STATE = {409: OpenApiResponse(description="It is in another state; somebody else may have been faster.")}

@@ -5,10 +5,10 @@ from math import isfinite
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
-from workspace.api.errors import ApiProblem
 
 from inspection.models import AssetKind
 from inspection.selectors import Box
+from workspace.api.errors import ApiProblem
 
 MAX_TEXT_LENGTH = 100
 _LON, _LAT = r"-?(180|(1[0-7][0-9]|[0-9]{1,2})(\.[0-9]+)?)", r"-?(90|[0-8]?[0-9](\.[0-9]+)?)"

@@ -9,9 +9,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.paging import asked_choice, asked_flag
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import picking
@@ -27,6 +24,9 @@ from inspection.serializers.picking import (
     picked_assets,
 )
 from inspection.views.parameters import invalid
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import asked_choice, asked_flag
+from workspace.api.whole_numbers import WholeNumber
 from workspace.models import Role
 
 MAX_CHOICES = 20

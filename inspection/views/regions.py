@@ -6,14 +6,14 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api import strict_serializers as serializers
-from workspace.api.permissions import CURATORS
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import MAX_NUMBER
 
 from inspection.models import AssetSet, DataImport
 from inspection.services.regions import Region, counts_of_region, delete_region
 from inspection.views.parameters import invalid
+from workspace.api import strict_serializers as serializers
+from workspace.api.permissions import CURATORS
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import MAX_NUMBER
 
 
 class RegionInputSerializer(serializers.Serializer):

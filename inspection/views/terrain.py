@@ -9,8 +9,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.permissions import CURATORS
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import DataImport, ImportKind
@@ -33,6 +31,8 @@ from inspection.services.terrain_import import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from
 from inspection.terrain.profile import samples_along
 from inspection.views.parameters import LON_LAT, invalid
+from workspace.api.permissions import CURATORS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import Role
 
 EVERYBODY = frozenset(Role)

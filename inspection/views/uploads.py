@@ -8,10 +8,6 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.parsers import OctetParser
-from workspace.api.permissions import CURATING, CURATORS, RolePermission
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.models import Upload
 from inspection.selectors.imports import upload_of_id
@@ -26,6 +22,10 @@ from inspection.services.uploads import (
     delete_upload,
     receive_part,
 )
+from workspace.api.errors import ApiProblem
+from workspace.api.parsers import OctetParser
+from workspace.api.permissions import CURATING, CURATORS, RolePermission
+from workspace.api.signed_in import SignedInRequest
 
 
 class CuratorsAlone(RolePermission):

@@ -8,12 +8,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import page_of
-from workspace.api.permissions import CURATORS
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.models import ImportKind, ProposalOrigin, ZoneSet, ZoneSubscription
 from inspection.selectors.imports import proposal_of_id
@@ -39,6 +33,12 @@ from inspection.services.subscriptions import AlreadySubscribed, ask_to_fetch, c
 from inspection.services.zone_sets import empty_zone_set
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 

@@ -6,13 +6,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import changed_since, page_of
-from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection import selectors
 from inspection.models import NoFlyZone
@@ -22,6 +15,13 @@ from inspection.services import delete_zone, save_zone
 from inspection.views.edits import edits
 from inspection.views.history import answer, zone_now
 from inspection.views.parameters import BOX, box_of, text_of
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import changed_since, page_of
+from workspace.api.permissions import CURATORS
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
 
 ZONE_SET = WholeNumber("zone_set", "the id of a set")
 

@@ -5,8 +5,8 @@ from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
-from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 
+from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 
 

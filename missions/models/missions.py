@@ -7,10 +7,10 @@ from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
-from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 
 from inspection.models import Asset
 from missions.models.fleet import EndAction, Uav
+from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 MAX_NAME_LENGTH = 200

@@ -3,8 +3,6 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.api.fields import FiniteFloatField
 
 from missions.fields import AboveZeroField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,6 +11,8 @@ from missions.serializers.shapes import WaypointSerializer
 from missions.services.hand_checks import HandLook
 from missions.services.hand_points import MAX_WAYPOINTS, HandPoint
 from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
+from workspace.api import strict_serializers as serializers
+from workspace.api.fields import FiniteFloatField
 
 MAX_LEGS = 200
 MAX_AGL_M = 10_000.0

@@ -3,7 +3,6 @@
 from typing import Any
 
 from drf_spectacular.utils import extend_schema_field
-from workspace.api import strict_serializers as serializers
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -12,6 +11,7 @@ from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import command_outcome_in_words
+from workspace.api import strict_serializers as serializers
 
 MAX_FLIGHTS = 100
 MAX_UAVS = 1_000

@@ -3,10 +3,10 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
 
 from missions.fields import PositionField
 from missions.serializers.inputs import PlanInputSerializer
+from workspace.api import strict_serializers as serializers
 
 
 class WhyTargetInputSerializer(PlanInputSerializer):

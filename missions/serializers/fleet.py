@@ -3,7 +3,6 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.models import Base, CredentialKind, UavCredential, UavType
@@ -21,6 +20,7 @@ from planning.energy.performance import (
     InvalidPerformance,
     performance_from_json,
 )
+from workspace.api import strict_serializers as serializers
 
 MAX_SENSORS = 12
 

@@ -7,9 +7,6 @@ from typing import Any
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.api.external_data import AttributesField, ExternalIdField
-from workspace.api.fields import FiniteFloatField
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
@@ -59,6 +56,9 @@ from planning.energy.performance import (
 )
 from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from planning.problem import Objective as RoutingObjective
+from workspace.api import strict_serializers as serializers
+from workspace.api.external_data import AttributesField, ExternalIdField
+from workspace.api.fields import FiniteFloatField
 
 
 class TaskSerializer(KnownFieldsSerializer):

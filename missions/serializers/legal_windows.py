@@ -7,7 +7,6 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
-from workspace.api import strict_serializers as serializers
 
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.serializers.zones import ScheduleField
@@ -17,6 +16,7 @@ from missions.models import EndAction
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows
 from planning.clearance.zone_clearance import FlownRoute
+from workspace.api import strict_serializers as serializers
 
 MAX_WAYPOINTS = 20_000
 MAX_ROUTES = 50

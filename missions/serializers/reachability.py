@@ -3,15 +3,15 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.api.fields import FiniteFloatField
-from workspace.jobs.serializers import Declared
 
 from inspection.geodesy import LonLat
 from missions.fleet_selectors import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
 from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
 from missions.services.reachability import CODES, NO_UAV
+from workspace.api import strict_serializers as serializers
+from workspace.api.fields import FiniteFloatField
+from workspace.jobs.serializers import Declared
 
 MAX_FLIGHTS = 100  # a UAV from a base is one
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from rest_framework import serializers
-from workspace.message_rendering import in_words
 
 from missions.models import OfferState, ReplanOffer
+from workspace.message_rendering import in_words
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
 DECIDED = 3

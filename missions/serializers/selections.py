@@ -2,15 +2,14 @@
 
 from typing import Any
 
-from workspace.api import strict_serializers as serializers
-from workspace.jobs.serializers import Declared
-
 from inspection.selectors import asset_detail, asset_label
 from missions.fields import PositionField
 from missions.models import SavedSelection, TargetPriority
 from missions.selection_selectors import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared
 
 
 class SelectionInputSerializer(OptionsSerializer):

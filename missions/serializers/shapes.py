@@ -1,8 +1,6 @@
 """What goes out: plans and missions."""
 
 from rest_framework import serializers
-from workspace.api.external_data import AttributesField
-from workspace.jobs.serializers import Declared
 
 from missions.fields import ColoursField, PositionField
 from missions.fleet_selectors import FIGURES
@@ -11,6 +9,8 @@ from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializ
 from missions.serializers.commands import MissionApprovalSerializer
 from planning.clearance.lost_link import LostLink, Trouble
 from planning.problem import TaskKind
+from workspace.api.external_data import AttributesField
+from workspace.jobs.serializers import Declared
 
 
 class LineSerializer(serializers.Serializer):

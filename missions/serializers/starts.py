@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from workspace.api import strict_serializers as serializers
-
 from missions.models import PlannedStarts, Route, StartsEnd
 from missions.services.planned_starts import StartState
+from workspace.api import strict_serializers as serializers
 
 
 class PlannedStartSerializer(serializers.Serializer):

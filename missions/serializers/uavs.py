@@ -3,9 +3,6 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
-from workspace.api.external_data import AttributesField, ExternalIdField
-from workspace.api.fields import FiniteFloatField
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
@@ -21,6 +18,9 @@ from planning.energy.performance import (
     RESERVES_PERCENT,
     InvalidPerformance,
 )
+from workspace.api import strict_serializers as serializers
+from workspace.api.external_data import AttributesField, ExternalIdField
+from workspace.api.fields import FiniteFloatField
 
 OWN = (
     "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "heading_deg",

@@ -13,7 +13,6 @@ from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from workspace.live.changes import publish_live
 
 from inspection.selectors.ground import held_ground_revision
 from missions.approval_hooks import further_reasons
@@ -37,6 +36,7 @@ from missions.services.call_signs import give_call_sign
 from missions.services.missions import MissionChanged, note
 from missions.services.outbox import end_commands, queue_command
 from missions.services.refused import refuse, refuse_for
+from workspace.live.changes import publish_live
 from workspace.models import User
 
 REVOKED = "revoked"

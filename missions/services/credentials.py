@@ -12,13 +12,14 @@ from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 from django.utils.crypto import salted_hmac
-from workspace.prepared_statements import prepared_rows
 
 from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.fleet_rows import locked
 from missions.services.link_changes import refuse_while_needed
+from workspace.api_tokens import USE_NOTED_EVERY, hash_token
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import USE_NOTED_EVERY, hash_token, record_change
+from workspace.prepared_statements import prepared_rows
 
 KEY_PURPOSE = "missions.mavlink-signing-key"
 

@@ -8,8 +8,8 @@ from django.db.models import ProtectedError
 
 from missions.fleet_selectors import facts_when_deleted
 from missions.models import Base, Uav, UavType
+from workspace.audit import record_change
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 SUBJECTS: dict[type, str] = {Uav: "uav", UavType: "uav_type", Base: "base"}
 NAMES_TAKEN = {"uav_name_unique", "uav_type_name_unique", "base_name_unique"}

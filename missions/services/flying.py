@@ -12,12 +12,12 @@ from uuid import UUID
 from django.db import transaction
 from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
-from workspace.live.changes import publish_live
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
 from missions.selectors import approval_in_force
 from missions.services.approval import change_state
 from missions.services.missions import note
+from workspace.live.changes import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)

@@ -18,8 +18,9 @@ from missions.services.planning import make_plan
 from missions.services.requests import GO_ON, PlanRequest, request_from_json
 from missions.services.wishes import has_sensor, with_bases
 from planning.solver.solver import Stop
+from workspace.audit import record_change
+from workspace.jobs.services import JobCancelled, finish_job
 from workspace.models import Job, User
-from workspace.services import JobCancelled, finish_job, record_change
 
 PLANNING_TASK = "missions.tasks.solve_plan"
 QUALITY = (

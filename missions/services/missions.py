@@ -37,8 +37,8 @@ from missions.services.wishes import refuse_contradictions
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
 from planning.problem import Objective
+from workspace.audit import record_change
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
 MAX_NAMES = 5  # that an entry of the history keeps

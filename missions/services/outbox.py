@@ -15,7 +15,6 @@ from django.db import connection, transaction
 from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
-from workspace.live.changes import publish_live
 
 from missions.command_rules import ALONG_ROUTE, HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
@@ -32,8 +31,9 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.refused import refuse
+from workspace.audit import record_change
+from workspace.live.changes import publish_live
 from workspace.models import User
-from workspace.services import record_change
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"

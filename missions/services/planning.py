@@ -8,7 +8,6 @@ from typing import Any, ParamSpec
 
 import numpy as np
 from django.conf import settings
-from workspace.jobs.planning_lock import end_turn, in_turn
 
 from inspection.geodesy import LonLat
 from inspection.network.build.obstacles import at_all_heights, with_walls
@@ -37,6 +36,7 @@ from planning.problem import Objective, Priority
 from planning.separation.report import separation_json
 from planning.separation.separation import Separation
 from planning.solver.solver import Stop, never
+from workspace.jobs.planning_lock import end_turn, in_turn
 
 SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called

@@ -8,8 +8,8 @@ from django.db import IntegrityError, transaction
 from missions.models import SavedSelection
 from missions.services.places import places_of
 from missions.services.requests import TargetRequest, priority_to_json, task_to_json
+from workspace.audit import record_change
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 
 class SelectionNameTaken(Exception):

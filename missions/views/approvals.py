@@ -8,9 +8,6 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
-from workspace.api.permissions import FLYING
-from workspace.api.signed_in import SignedInRequest
 
 from missions import selectors
 from missions.command_selectors import commands_of_organisation
@@ -22,6 +19,9 @@ from missions.services.closing import close_mission
 from missions.services.dispatch import abort_mission, dispatch_mission
 from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, answer_mission, expected_revision, mission_or_404, stated_revision
 from missions.views.problems import api_problems, refusals
+from workspace.api.idempotency import idempotent
+from workspace.api.permissions import FLYING
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 REFUSED = {

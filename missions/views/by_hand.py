@@ -7,8 +7,6 @@ from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.throttling import ScopedRate
 
 from missions import selectors, services
 from missions.leg_selectors import Leg, LegEnd, LegFlyer, faults_of_legs
@@ -16,6 +14,8 @@ from missions.models import Mission
 from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
 from workspace.models import Role
 
 

@@ -8,11 +8,6 @@ from django.urls import reverse
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import page_of
-from workspace.api.permissions import FLYING
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.command_selectors import commands_of_mission, commands_of_organisation, commands_of_uav
 from missions.models import CommandKind, UavCommand
@@ -23,6 +18,11 @@ from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals
 from missions.views.uavs import uav_or_404
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.permissions import FLYING
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 
 NEWEST_FIRST = ("-created_at", "-pk")
 

@@ -2,18 +2,13 @@
 
 from typing import Any
 
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.paging import page_of
-from workspace.api.permissions import ADMINISTRATORS, InTheBrowserAlone
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
+from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from missions import fleet_selectors, services
 from missions.models import CredentialKind
 from missions.serializers.fleet import (
@@ -25,6 +20,11 @@ from missions.serializers.fleet import (
 )
 from missions.views.problems import refusals
 from missions.views.uavs import uav_or_404
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import page_of
+from workspace.api.permissions import ADMINISTRATORS, InTheBrowserAlone
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 
 NEEDED_NOW = OpenApiResponse(
     description="The UAV flies, or a command or mission is on its way to it: an administrator may insist by `insist_reason`."

@@ -9,15 +9,15 @@ from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api import strict_serializers as serializers
-from workspace.api.paging import slice_of
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.event_hooks import EventKind, MissionEvent, Place
 from missions.event_selectors import LoggedEvent, events_of_missions, missions_with_live_events
 from missions.models import Mission
 from missions.selectors import mission_alone
+from workspace.api import strict_serializers as serializers
+from workspace.api.paging import slice_of
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 
 LEVELS = ("critical", "warning", "advisory")
 DESCRIPTION = (

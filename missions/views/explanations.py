@@ -10,10 +10,6 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.throttling import ScopedRate
-from workspace.api.whole_numbers import WholeNumber
 
 from missions import services
 from missions.models import Mission, WaypointKind
@@ -27,6 +23,10 @@ from missions.services.wishes import stored_bases
 from missions.views.missions import mission_or_404
 from missions.views.plans import is_small
 from missions.views.problems import api_problems
+from workspace.api.errors import ApiProblem
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
+from workspace.api.whole_numbers import WholeNumber
 from workspace.models import Role
 
 MAX_EXPLAINED = 20  # routes, and targets, of one answer

@@ -8,11 +8,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import changed_since, page_of
-from workspace.api.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions import fleet_selectors, services
 from missions.models import Base, UavType
@@ -25,6 +20,11 @@ from missions.serializers.fleet import (
     uav_type_json,
 )
 from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import changed_since, page_of
+from workspace.api.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 TEXT = OpenApiParameter("text", str, description="part of the name")

@@ -7,11 +7,11 @@ from typing import Any
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiResponse
-from workspace.api.errors import ApiProblem
-from workspace.api.preconditions import PRECONDITION_ANSWERS
 
 from missions.fleet_selectors import last_change
 from missions.services import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
+from workspace.api.errors import ApiProblem
+from workspace.api.preconditions import PRECONDITION_ANSWERS
 
 TAKEN = {409: OpenApiResponse(description="The name, the external id or the MAVLink system id is taken.")}
 CHANGE_ANSWERS = {**TAKEN, **PRECONDITION_ANSWERS}

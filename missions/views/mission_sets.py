@@ -7,9 +7,6 @@ from django.http import Http404
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.selectors import ground_revision
 from missions import selectors, services
@@ -22,6 +19,9 @@ from missions.uav_change_selectors import uav_change_json, uav_changes
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
 from missions.views.problems import api_problems, refusals
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import Role
 
 

@@ -12,15 +12,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.external_data import EXTERNAL_ID, asked_external_id
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_flag, asked_instant, changed_since, page_of
-from workspace.api.preconditions import need_if_match
-from workspace.api.schema import CHANGED_SINCE, DAY_OR_TIME, PAGE_PARAMETERS, several_of
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.throttling import ScopedRate
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection.selectors import ground_revision
 from missions import selectors, services
@@ -43,6 +34,15 @@ from missions.stale_selectors import bases_landed_at
 from missions.uav_change_selectors import missions_with_other_uavs
 from missions.views.plans import is_small, job_answer, planning_job
 from missions.views.problems import api_problems
+from workspace.api.errors import ApiProblem
+from workspace.api.external_data import EXTERNAL_ID, asked_external_id
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import asked_flag, asked_instant, changed_since, page_of
+from workspace.api.preconditions import need_if_match
+from workspace.api.schema import CHANGED_SINCE, DAY_OR_TIME, PAGE_PARAMETERS, several_of
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
+from workspace.api.whole_numbers import WholeNumber
 from workspace.models import Job, User
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]

@@ -10,13 +10,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.renderers import FastJSONRenderer
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.throttling import ScopedRate
-from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
-from workspace.message_rendering import in_words
 
 from missions import services
 from missions.serializers.inputs import PlanInputSerializer
@@ -26,8 +19,15 @@ from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.services.reachability import reachability
 from missions.views.problems import api_problems
 from missions.views.small_plans import small_plan
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.renderers import FastJSONRenderer
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.throttling import ScopedRate
+from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
+from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
+from workspace.message_rendering import in_words
 from workspace.models import Job, JobState, Role, User
-from workspace.services import TooManyJobs, create_job_within, refuse_jobs_beyond
 from workspace.tasks import send_job_on_commit
 
 SOLVE_PLAN = "missions.tasks.solve_plan"

@@ -7,12 +7,6 @@ from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import page_of
-from workspace.api.permissions import FLYING
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.models import ReplanOffer
 from missions.serializers import replan_offers as shapes
@@ -20,6 +14,12 @@ from missions.services.replanning import accept_offer, ask_for_offer, decline_of
 from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, expected_revision, mission_or_404, stated_revision
 from missions.views.plans import job_answer
 from missions.views.problems import api_problems, refusals
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.permissions import FLYING
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 from workspace.tasks import send_job_on_commit
 

@@ -6,12 +6,12 @@ from uuid import UUID
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
 
 from missions.serializers.returns import ReturnChecksSerializer
 from missions.services.own_return import return_checks
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems
+from workspace.api.signed_in import SignedInRequest
 
 
 class MissionReturns(APIView):

@@ -9,12 +9,6 @@ from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import page_of
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.models import SavedSelection
 from missions.selection_selectors import selections_of_organisation
@@ -27,6 +21,12 @@ from missions.serializers.selections import (
 )
 from missions.services.selections import SelectionChanged, SelectionNameTaken, change_selection, create_selection, delete_selection
 from missions.views.problems import api_problems
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 NAME_TAKEN = {409: OpenApiResponse(description="Another selection has this name.")}

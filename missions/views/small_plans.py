@@ -11,16 +11,16 @@ import orjson
 from django.conf import settings
 from django.http import HttpRequest, HttpResponse
 from rest_framework.exceptions import APIException
+
+from inspection.selectors import NoGraph
+from missions import services
+from missions.serializers.plain_request import plain_request
 from workspace.api.authentication import holder_of, holder_of_session
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.api.parsers import read_json
 from workspace.api.permissions import PLANNERS
 from workspace.api.throttling import ScopedRate
 from workspace.jobs.planning_lock import in_turn
-
-from inspection.selectors import NoGraph
-from missions import services
-from missions.serializers.plain_request import plain_request
 from workspace.models import TokenScope
 
 MAX_BODY = 64 * 1024

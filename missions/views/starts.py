@@ -8,9 +8,6 @@ from django.utils import timezone
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
-from workspace.api.permissions import FLYING
-from workspace.api.signed_in import SignedInRequest
 
 from missions.models import PlannedStarts
 from missions.serializers.starts import (
@@ -25,6 +22,9 @@ from missions.services.planned_starts import begin_planned_starts, stop_planned_
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals
+from workspace.api.idempotency import idempotent
+from workspace.api.permissions import FLYING
+from workspace.api.signed_in import SignedInRequest
 
 SHOWN_AFTER = timedelta(minutes=5)
 

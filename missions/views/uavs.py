@@ -9,6 +9,13 @@ from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer, 
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
+
+from missions import fleet_selectors, services
+from missions.models import Uav, UavState
+from missions.serializers.fleet import UavMissionPageSerializer
+from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
+from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
+from missions.views.problems import refusals
 from workspace.api.errors import ApiProblem
 from workspace.api.external_data import EXTERNAL_ID, asked_external_id
 from workspace.api.idempotency import idempotent
@@ -18,13 +25,6 @@ from workspace.api.preconditions import IF_MATCH_REQUIRED, etag_of, expected_rev
 from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
-
-from missions import fleet_selectors, services
-from missions.models import Uav, UavState
-from missions.serializers.fleet import UavMissionPageSerializer
-from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
-from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
-from missions.views.problems import refusals
 from workspace.models import User
 
 STATES = (*UavState.values, fleet_selectors.EVERY_STATE)

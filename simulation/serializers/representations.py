@@ -5,12 +5,12 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
-from workspace.jobs.serializers import JobSerializer
 
 from missions.models import Mission
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.serializers.words import finding_in_words
 from simulation.services.fleet import CHOSEN
+from workspace.jobs.serializers import JobSerializer
 
 CONDITIONS = {
     "calm": gettext_noop("Calm"),

@@ -1,11 +1,10 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
-from workspace.api import strict_serializers as serializers
-from workspace.jobs.serializers import Declared, JobErrorField
-
 from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
+from workspace.api import strict_serializers as serializers
+from workspace.jobs.serializers import Declared, JobErrorField
 from workspace.models import JobState
 
 MAX_CONDITIONS = 8

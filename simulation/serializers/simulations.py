@@ -6,7 +6,6 @@ from typing import Any
 from django.conf import settings
 from django.utils.translation import gettext_lazy
 from drf_spectacular.utils import extend_schema_field
-from workspace.api import strict_serializers as serializers
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -15,6 +14,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
+from workspace.api import strict_serializers as serializers
 
 SPEEDS = (1, 2, 5, 10)
 MAX_POOL_UAVS = 100

@@ -6,6 +6,7 @@ from typing import Any
 from django.utils.formats import get_format
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
+
 from workspace.message_rendering import in_words
 
 # Of findings, by their code; the figures are put in as they are written for people.

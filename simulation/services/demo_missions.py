@@ -28,8 +28,9 @@ from simulation.models import Simulation
 from simulation.services.demo_flights import fly_demo_mission
 from simulation.services.simulations import end_simulation
 from simulation.vehicle_models import PRESENT
+from workspace.audit import record_change
+from workspace.jobs.services import cancel_job, create_job
 from workspace.models import Job, Organisation, User
-from workspace.services import cancel_job, create_job, record_change
 
 MAKE_DEMO_MISSIONS = "simulation.tasks.make_demo_missions"
 FASTEST = 10.0  # times real time, of the flight that is to be over soon

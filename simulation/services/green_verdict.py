@@ -11,8 +11,8 @@ from simulation.rehearsing.sky import Named, named_sky, sky_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan
+from workspace.audit import record_change
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 
 def reasons_without_rehearsal(mission: Mission) -> list[Reason]:

@@ -34,8 +34,8 @@ from simulation.verdict.flown import FlownRoute
 from simulation.verdict.judging import Verdict, judge, wind_finding
 from simulation.verdict.limits import Limits, limits_to_json
 from simulation.verdict.stored import track_to_json, verdict_to_json
+from workspace.jobs.services import cancel_job, create_job_within, finish_job
 from workspace.models import Job, User
-from workspace.services import cancel_job, create_job_within, finish_job
 
 REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
 REHEARSE = "simulation.tasks.rehearse_mission"

@@ -19,8 +19,8 @@ from simulation.models import SimulatedVehicle, Simulation, SimulationChange, Si
 from simulation.rehearsing.sky import Sky, sky_to_json
 from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
+from workspace.audit import record_change
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 KEPT = 200  # simulations of an organisation that are over
 _STARTS = 7_309_118  # the advisory lock under which quotas and ports are counted

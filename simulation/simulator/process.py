@@ -9,8 +9,6 @@ from uuid import UUID
 
 from django.conf import settings
 from django.db import close_old_connections, connection
-from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.live.lease_times import held_until_s
 
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import heights_at, planning_read
@@ -37,6 +35,8 @@ from simulation.simulator.options import Options
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.live.lease_times import held_until_s
 
 logger = logging.getLogger(__name__)
 INTERVAL_S = 0.5

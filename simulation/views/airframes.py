@@ -7,8 +7,6 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.permissions import ADMINISTRATORS, InTheBrowserAlone
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from missions.fleet_selectors import types_of_organisation
@@ -21,8 +19,10 @@ from simulation.selectors import chosen_airframe
 from simulation.serializers import shapes
 from simulation.services.fleet import airframe_of_type
 from simulation.services.green_verdict import set_rule
+from workspace.api.permissions import ADMINISTRATORS, InTheBrowserAlone
+from workspace.api.signed_in import SignedInRequest
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 
 class NoSuchAirframe(ValueError):

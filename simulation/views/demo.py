@@ -6,14 +6,14 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.permissions import ADMINISTRATORS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.models import Mission, Uav
 from missions.views.problems import refusals
 from simulation.services.demo_missions import has_demo_region, open_demo_job, remove_demo_data, want_demo_missions
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.permissions import ADMINISTRATORS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import Organisation
 from workspace.tasks import send_job_on_commit
 

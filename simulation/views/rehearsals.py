@@ -9,12 +9,6 @@ from django.urls import reverse
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import page_of
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection.selectors import ground_revision
 from missions.models import Mission
@@ -30,8 +24,14 @@ from simulation.serializers.representations import planned_points, rehearsal_det
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, start_rehearsal
 from simulation.views.skies import skies_of
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import page_of
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
+from workspace.jobs.services import TooManyJobs
 from workspace.models import User
-from workspace.services import TooManyJobs
 from workspace.tasks import send_job_on_commit
 
 NEWEST_FIRST = ("-created_at", "-pk")

@@ -13,12 +13,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_choice, page_of
-from workspace.api.permissions import FLYING
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from missions.models import Mission
@@ -42,6 +36,12 @@ from simulation.services.simulations import (
 from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
 from simulation.views.skies import sky_of
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import FLYING
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
 
 NEWEST_FIRST = ("-created_at", "-pk")

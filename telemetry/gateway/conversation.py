@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from workspace.live.timed_waits import wait_for_event
-
 from mavlink.frames import Message
 from telemetry.gateway.session import Session
+from workspace.live.timed_waits import wait_for_event
 
 MAX_NAP_S = 0.5
 

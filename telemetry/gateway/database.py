@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, ParamSpec, TypeVar
 
 from django.db import close_old_connections, connection, connections
+
 from workspace.api.errors import DATABASE_UNAVAILABLE
 
 logger = logging.getLogger(__name__)

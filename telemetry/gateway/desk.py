@@ -12,8 +12,6 @@ from dataclasses import dataclass, field
 from uuid import UUID
 
 from django.conf import settings
-from workspace.live.lease_times import held_until_s
-from workspace.live.timed_waits import wait_for_event
 
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
@@ -22,6 +20,8 @@ from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
+from workspace.live.lease_times import held_until_s
+from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 

@@ -6,15 +6,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from workspace.live.lease_times import held_until_s
-from workspace.live.timed_waits import wait_for_event
-
 from mavlink.frames import Frame
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
 from telemetry.services.links import UNHEARD_S, renew_leases, take_leases
+from workspace.live.lease_times import held_until_s
+from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 LEASES_INTERVAL_S = 1.0

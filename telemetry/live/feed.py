@@ -6,12 +6,12 @@ from collections.abc import Awaitable, Callable, Collection
 from uuid import UUID
 
 from django.db import Error as DatabaseError
-from workspace.live.timed_waits import wait_for_event
 
 from telemetry.live.look import Look, changed_between
 from telemetry.live.messages import changes, everything, message
 from telemetry.live.reader import Reader
 from telemetry.selectors.live import Key
+from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 

@@ -11,11 +11,11 @@ from channels.db import DatabaseSyncToAsync
 from django.conf import settings
 from redis.asyncio import Redis
 from redis.exceptions import RedisError
-from workspace.live.changes import live_channel
 
 from telemetry.live.feed import Feed
 from telemetry.live.look import Look, look
 from telemetry.live.reader import Reader
+from workspace.live.changes import live_channel
 
 logger = logging.getLogger(__name__)
 

@@ -8,7 +8,6 @@ from uuid import UUID
 import orjson
 from django.db.models import Count
 from django.utils import translation
-from workspace.message_rendering import in_words
 
 from missions.models import InspectionTarget, Mission, MissionUav, ReplanOffer, TargetState, UavCommand, Waypoint, WaypointKind
 from missions.serializers.commands import command_json
@@ -17,6 +16,7 @@ from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
+from workspace.message_rendering import in_words
 
 SAME_IN_ALL = ""  # the language of what has no words
 

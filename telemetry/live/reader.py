@@ -6,9 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from uuid import UUID
 
-from workspace.live.timed_waits import wait_for_event
-
 from telemetry.selectors.live import Key
+from workspace.live.timed_waits import wait_for_event
 
 MAX_UNCONFIRMED = 2  # messages
 RETRY_INTERVAL_S = 1.0  # a page is given everything, at most

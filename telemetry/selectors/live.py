@@ -7,9 +7,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from uuid import UUID
 
-from workspace.prepared_statements import prepared_rows
-
 from missions.command_selectors import SENT_LAST
+from workspace.prepared_statements import prepared_rows
 
 Key = tuple[str, str]  # kind and id
 KINDS = ("uavs", "missions", "alerts", "commands", "offers")

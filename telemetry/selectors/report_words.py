@@ -2,9 +2,9 @@
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
-from workspace.message_rendering import in_words
 
 from telemetry.mission_report.outcomes import Reason
+from workspace.message_rendering import in_words
 
 WORDS = {
     "crashed": gettext_noop("%(uav)s crashed"),

@@ -3,7 +3,6 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from workspace.api import strict_serializers as serializers
 
 from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.alerting.acts import ACTS, KINDS, LAND, RETURN, acts_of
@@ -12,6 +11,7 @@ from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST
 from telemetry.services.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
+from workspace.api import strict_serializers as serializers
 from workspace.models import User
 
 NO_FIGURES = (ACTS, ADVICE, OWN_ACT, WORST)  # of an alert's details: shown in fields of their own

@@ -2,12 +2,12 @@
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
-from workspace.jobs.serializers import Declared
 
 from missions.fields import ColoursField, PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
 from telemetry.serializers.alerts import AlertSerializer
+from workspace.jobs.serializers import Declared
 
 
 class LoadedSerializer(serializers.Serializer):

@@ -1,12 +1,12 @@
 """Shape of a mission's record, for the OpenAPI document."""
 
 from rest_framework import serializers
-from workspace.api.external_data import AttributesField
-from workspace.jobs.serializers import Declared
 
 from missions.fields import ColoursField
 from missions.models import MissionState, TargetState, WaypointKind
 from telemetry.mission_report.outcomes import IncidentKind, Result
+from workspace.api.external_data import AttributesField
+from workspace.jobs.serializers import Declared
 
 
 class RecordApprovalSerializer(serializers.Serializer):

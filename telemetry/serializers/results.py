@@ -5,13 +5,13 @@ from typing import Any
 
 from django.urls import reverse
 from rest_framework import serializers
-from workspace.api.external_data import AttributesField
-from workspace.jobs.serializers import Declared
 
 from inspection.models import AssetReference
 from missions.fields import PositionField
 from missions.models import MissionState, TargetState
 from missions.serializers.shapes import TaskOutputSerializer
+from workspace.api.external_data import AttributesField
+from workspace.jobs.serializers import Declared
 
 STATES = [state for state in TargetState.choices if state[0] != TargetState.PENDING]
 

@@ -4,7 +4,6 @@ import json
 from typing import Any
 
 from rest_framework import serializers
-from workspace.jobs.serializers import Declared
 
 from mavlink.decoding.companion_reports import FLAGS, INTEGERS, MAX_MODE_LENGTH, NUMBERS, instant
 from missions.fields import PositionField
@@ -12,6 +11,7 @@ from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.services.flying import FlightEnd
 from telemetry.services.results import NewResult
+from workspace.jobs.serializers import Declared
 
 MAX_RECORDS = 1_000
 MAX_ACKNOWLEDGEMENTS = 100

@@ -3,8 +3,6 @@
 from datetime import datetime
 from typing import Any
 
-from workspace.api import strict_serializers as serializers
-
 from mavlink.vehicle_class import type_name
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
@@ -12,6 +10,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
 from telemetry.services.approved_vehicles import connection_warnings
 from telemetry.services.loads import Doubt
+from workspace.api import strict_serializers as serializers
 
 
 class UnknownVehicleSerializer(serializers.Serializer):

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any
 
-from workspace.live.changes import publish_live
-
 from mavlink.autopilot_type import Flavour
 from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.detectors import down
@@ -33,6 +31,7 @@ from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.flown import note_down_off_plan
 from telemetry.services.replan_hooks import suggest_for_findings, withdraw_for_closed
 from telemetry.services.zones_about import ZonesAbout, zones_about
+from workspace.live.changes import publish_live
 
 MIN_REACH_M, MAX_SPEED_MPS = 200.0, 40.0  # within which zones are looked at: as far as it comes in the time ahead
 

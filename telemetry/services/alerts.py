@@ -7,15 +7,15 @@ from typing import Any
 from django.db import transaction
 from django.db.models import F, Q
 from django.utils import timezone
-from workspace.live.changes import publish_live
 
 from missions.models import Mission, Uav
 from telemetry.alerting.book import CLEARED
 from telemetry.alerting.finding import RANK
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import waiting_to_be_seen
+from workspace.audit import record_change
+from workspace.live.changes import publish_live
 from workspace.models import Organisation, User
-from workspace.services import record_change
 
 SECOND_SENDER = "second-sender"
 SENDERS = "Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."

@@ -3,12 +3,12 @@
 from datetime import datetime
 
 from django.utils import timezone
-from workspace.prepared_statements import prepared_rows
 
 from missions.models import LinkKind, Uav
 from missions.services.flying import mark_waypoint_reached
 from telemetry.models import UavLink
 from telemetry.selectors.log import newest_of
+from workspace.prepared_statements import prepared_rows
 
 _HEARD = """
     WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))

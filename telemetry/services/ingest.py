@@ -9,7 +9,6 @@ from uuid import UUID
 
 import numpy as np
 from django.db import connection, transaction
-from workspace.live.changes import publish_live
 
 from inspection.selectors import ground_heights_m
 from mavlink.decoding.measurement import Measurement, believable
@@ -19,6 +18,7 @@ from missions.services.reports import ReportedPosition, note_reported_positions
 from telemetry.services.flight_events import note_take_offs_and_landings
 from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on
+from workspace.live.changes import publish_live
 
 FUTURE_S = 60.0  # findings: stored, but never shown as the latest
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second

@@ -10,8 +10,8 @@ from inspection.geodesy import LonLat
 from missions.models import LinkKind, Uav, UavType
 from missions.services import change_uav, create_uav
 from telemetry.models import UnknownVehicle, UnknownVehicleState
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 
 class AlreadySettled(Exception):

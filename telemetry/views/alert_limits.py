@@ -10,15 +10,15 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from missions.fleet_selectors import types_of_organisation
 from missions.models import Mission, UavType
 from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_limits, limits_of
 from telemetry.serializers.alerts import AlertLimitsSerializer
+from workspace.api.signed_in import SignedInRequest
+from workspace.audit import record_change
 from workspace.models import User
-from workspace.services import record_change
 
 DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
 

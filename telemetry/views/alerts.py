@@ -8,12 +8,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.idempotency import idempotent
-from workspace.api.paging import asked_choice, asked_flag, page_of
-from workspace.api.permissions import FLYING
-from workspace.api.schema import PAGE_PARAMETERS, TIME, several_of
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from telemetry.models import Alert, AlertLevel
@@ -22,6 +16,12 @@ from telemetry.serializers import alerts as shapes
 from telemetry.services.alerts import LevelRose, acknowledge_alert, acknowledge_ended, note_alert
 from telemetry.services.down_alerts import ClosedByItself, close_down_alert
 from telemetry.views.log_filters import UAV, mission_of, time_of
+from workspace.api.errors import ApiProblem
+from workspace.api.idempotency import idempotent
+from workspace.api.paging import asked_choice, asked_flag, page_of
+from workspace.api.permissions import FLYING
+from workspace.api.schema import PAGE_PARAMETERS, TIME, several_of
+from workspace.api.signed_in import SignedInRequest
 
 STATES = ("open", "closed")
 NEWEST_FIRST = ("-opened_at", "-pk")

@@ -7,10 +7,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.paging import asked_flag, page_of
-from workspace.api.renderers import FastJSONRenderer
-from workspace.api.schema import PAGE_PARAMETERS, TIME
-from workspace.api.signed_in import SignedInRequest
 
 from missions.serializers.uavs import PointSerializer
 from missions.views.missions import mission_or_404
@@ -18,6 +14,10 @@ from telemetry.exports.logged_record import time_text
 from telemetry.models import PositionEstimate
 from telemetry.selectors.estimates import estimates_of_mission
 from telemetry.views.log_filters import THINNED, UAV, sampled, time_of
+from workspace.api.paging import asked_flag, page_of
+from workspace.api.renderers import FastJSONRenderer
+from workspace.api.schema import PAGE_PARAMETERS, TIME
+from workspace.api.signed_in import SignedInRequest
 
 FIGURES = (
     "altitude_amsl_m", "altitude_relative_m", "speed_mps", "heading_deg", "bound_along_m", "bound_across_m", "bound_bearing_deg",

@@ -12,9 +12,6 @@ from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.negotiation import OneAnswer
-from workspace.api.signed_in import SignedInRequest
 
 from inspection.views.parameters import invalid
 from missions.models import Mission
@@ -28,6 +25,9 @@ from telemetry.exports.thinning import INTERVAL_S, for_files
 from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, on_track, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
+from workspace.api.errors import ApiProblem
+from workspace.api.negotiation import OneAnswer
+from workspace.api.signed_in import SignedInRequest
 
 BY_TIME = ("measured_at", "pk")
 BY_STREAM = ("uav_id", "stream_id", "sequence")  # as each counter ran: a track is drawn in this order

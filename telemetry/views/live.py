@@ -9,12 +9,12 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.exceptions import ValidationError
 from rest_framework.request import Request
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
-from workspace.locale_negotiation import language_of_request
 
 from telemetry.live.look import etag_of, look_once
 from telemetry.live.messages import live_text, server_time
 from telemetry.serializers.live import LiveAnswerSerializer
+from workspace.api.signed_in import SignedInRequest
+from workspace.locale_negotiation import language_of_request
 
 
 class Live(APIView):

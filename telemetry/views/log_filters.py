@@ -15,11 +15,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.paging import page_of
-from workspace.api.renderers import FastJSONRenderer
-from workspace.api.schema import PAGE_PARAMETERS, TIME
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection.views.parameters import BOX, box_of, invalid
 from mavlink.decoding.companion_reports import instant
@@ -27,6 +22,11 @@ from missions.views.uavs import uav_or_404
 from telemetry.exports.geojson_file import record_feature
 from telemetry.selectors.log import LogFilter, as_logged, in_time, latest_record, records_that_match
 from telemetry.serializers.log import RecordCollectionSerializer, RecordFeatureSerializer
+from workspace.api.paging import page_of
+from workspace.api.renderers import FastJSONRenderer
+from workspace.api.schema import PAGE_PARAMETERS, TIME
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
 
 MIN_DURATION_S, MAX_DURATION_S = 1e-3, 366 * 86_400.0  # between chosen rows
 USUAL_SPAN = timedelta(days=1)

@@ -10,9 +10,6 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.negotiation import OneAnswer
-from workspace.api.signed_in import SignedInRequest
 
 from missions.models import Mission
 from telemetry.exports.results import MissionResults
@@ -24,6 +21,9 @@ from telemetry.selectors.mission_results import mission_results
 from telemetry.serializers.mission_record import MissionRecordSerializer
 from telemetry.services.record_file import record_file
 from telemetry.views.exports import NOTHING, file_stem
+from workspace.api.errors import ApiProblem
+from workspace.api.negotiation import OneAnswer
+from workspace.api.signed_in import SignedInRequest
 
 
 class ResultKind(NamedTuple):

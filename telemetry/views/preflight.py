@@ -7,11 +7,11 @@ from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
 
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems
 from telemetry.services.preflight import CheckState, NextAct, preflight_of
+from workspace.api.signed_in import SignedInRequest
 
 
 class PreflightCheckSerializer(serializers.Serializer):

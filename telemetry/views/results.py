@@ -9,11 +9,6 @@ from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.external_data import asked_external_id
-from workspace.api.paging import asked_instant, page_of
-from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, TIME
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
 
 from inspection.models import AssetReference
 from inspection.selectors import references_of
@@ -21,6 +16,11 @@ from missions.models import InspectionTarget, TargetState, Waypoint, WaypointKin
 from telemetry.models import InspectionResult
 from telemetry.serializers.results import ResultPageSerializer, result_json
 from telemetry.views.log_filters import mission_of, time_of
+from workspace.api.external_data import asked_external_id
+from workspace.api.paging import asked_instant, page_of
+from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, TIME
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
 
 NEWEST_FIRST = ("-state_at", "-pk")
 ASSET = WholeNumber("asset", "id of an asset")

@@ -5,8 +5,6 @@ from django.utils import timezone
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.signed_in import SignedInRequest
-from workspace.api.whole_numbers import WholeNumber
 
 from missions.fleet_selectors import uavs_of_organisation
 from missions.models import Uav
@@ -15,6 +13,8 @@ from missions.views.uavs import uav_or_404
 from telemetry.serializers.returns import LandingHereSerializer, PresentReturnsSerializer, landing_here_json, present_return_json
 from telemetry.services.landing_here import landing_here
 from telemetry.services.present_returns import present_returns
+from workspace.api.signed_in import SignedInRequest
+from workspace.api.whole_numbers import WholeNumber
 
 UAVS = WholeNumber("uav", "ids of UAVs", max_values=50, required=True)
 

@@ -10,15 +10,15 @@ from rest_framework.authentication import BaseAuthentication, get_authorization_
 from rest_framework.exceptions import AuthenticationFailed, NotAuthenticated
 from rest_framework.permissions import BasePermission
 from rest_framework.request import Request
-from workspace.api.authentication import MAX_TOKEN_LENGTH
-from workspace.api.errors import ApiProblem
-from workspace.api.throttling import ScopedRate
-from workspace.prepared_statements import prepared_rows
-from workspace.sessions.sign_in_attempts import HeldBack, address_of, network_of, take_turn
 
 from missions.models import CredentialKind, UavState
 from missions.services.credentials import note_link_token_use
-from workspace.services import hash_token
+from workspace.api.authentication import MAX_TOKEN_LENGTH
+from workspace.api.errors import ApiProblem
+from workspace.api.throttling import ScopedRate
+from workspace.api_tokens import hash_token
+from workspace.prepared_statements import prepared_rows
+from workspace.sessions.sign_in_attempts import HeldBack, address_of, network_of, take_turn
 
 WRONG_TOKENS = 30  # of one network in a quarter of an hour; a right token is never held back
 GUESSING = "guessing tokens of UAVs"

@@ -9,9 +9,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.parsers import MeasuredJSONParser, UavJSONParser
-from workspace.api.renderers import FastJSONRenderer
-from workspace.sessions.sign_in_attempts import address_of
 
 from missions.given_selectors import Given, commands_by_key, given_to
 from missions.models import CommandState, UavCommand
@@ -34,6 +31,9 @@ from telemetry.services.heard import note_heard_over_http
 from telemetry.services.results import EndedFlight, take_results
 from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_access
+from workspace.api.parsers import MeasuredJSONParser, UavJSONParser
+from workspace.api.renderers import FastJSONRenderer
+from workspace.sessions.sign_in_attempts import address_of
 
 
 def given_json(*, uav_id: int, upload: UavCommand | None, load: ApprovedLoad | None, waiting: Sequence[UavCommand]) -> dict[str, Any]:

@@ -6,11 +6,6 @@ from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_sche
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.errors import ApiProblem
-from workspace.api.paging import asked_choice, page_of
-from workspace.api.permissions import AdministratorsAlone
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.fleet_selectors import types_of_organisation
 from missions.models import Uav
@@ -22,6 +17,11 @@ from telemetry.models import UnknownVehicle, UnknownVehicleState
 from telemetry.selectors.vehicles import unknown_vehicles
 from telemetry.serializers.vehicles import AdoptionSerializer, UnknownVehiclePageSerializer, UnknownVehicleSerializer, vehicle_json
 from telemetry.services.unknown_vehicles import AlreadySettled, NewUav, NoPlace, adopt_vehicle, heed_vehicle, ignore_vehicle
+from workspace.api.errors import ApiProblem
+from workspace.api.paging import asked_choice, page_of
+from workspace.api.permissions import AdministratorsAlone
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 
 SETTLED = {409: OpenApiResponse(description="The vehicle has been adopted, or the name or the system id is taken.")}
 

@@ -10,16 +10,16 @@ from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.negotiation import OneAnswer
-from workspace.api.paging import page_of
-from workspace.api.schema import PAGE_PARAMETERS
-from workspace.api.signed_in import SignedInRequest
 
 from missions.views.uavs import uav_or_404
 from telemetry.models import FlightLog
 from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, texts_of
 from telemetry.serializers.log import FlightLogPageSerializer, VehicleTextPageSerializer, VehicleTextSerializer
 from telemetry.serializers.vehicles import UavConnectionSerializer, connection_json
+from workspace.api.negotiation import OneAnswer
+from workspace.api.paging import page_of
+from workspace.api.schema import PAGE_PARAMETERS
+from workspace.api.signed_in import SignedInRequest
 
 TLOG_TYPE = "application/octet-stream"
 

@@ -13,8 +13,6 @@ from uuid import UUID
 
 import numpy as np
 from django.db import close_old_connections, connection, transaction
-from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.live.changes import publish_live
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
@@ -47,6 +45,8 @@ from telemetry.services.watches import (
     take_watches,
 )
 from telemetry.watch.options import Options
+from workspace.api.errors import DATABASE_UNAVAILABLE
+from workspace.live.changes import publish_live
 
 OPEN_FOR_S = 30.0  # a store that took its ids earlier than others may end later than them, by so much
 CHECK_INTERVAL_S = 10.0  # of a UAV, or where its reports are farther apart at each

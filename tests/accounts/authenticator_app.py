@@ -3,12 +3,12 @@
 import re
 from html import unescape
 
-from accounts.one_time_codes import STEP_S, code_of
-from accounts.second_factors import set_up
 from django.test import Client
 from django.utils import timezone
-from workspace.field_encryption import unseal
 
+from accounts.one_time_codes import STEP_S, code_of
+from accounts.second_factors import set_up
+from workspace.field_encryption import unseal
 from workspace.models import SecondFactor, User
 
 SEED = b"0123456789abcdefghij"

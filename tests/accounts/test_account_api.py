@@ -4,15 +4,15 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
-from accounts.services import MAX_TOKENS, make_token
 from django.core.cache import cache
 from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
-from tests.accounts.users import client_of, somebody
 
+from accounts.services import MAX_TOKENS, make_token
+from tests.accounts.users import client_of, somebody
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Role, SignInEntry, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 OLD, NEW = "inspect-the-lines", "walk-the-corridor"

@@ -9,18 +9,18 @@ from django.db.models import Model
 from django.test import Client
 from django.urls import reverse
 from django.utils import timezone
-from tests.accounts.test_invitations import FORM
-from tests.accounts.users import client_of, somebody
-from workspace.admin_pages.scope import OrganisationScopedAdmin
 
 import config.urls  # noqa: F401 - the models are registered when the addresses are read
+from accounts.users import OperatorsAlone, change_people, delete_person
 from missions.models import Approval, InspectionTarget, MissionUav, Route, UavType, Waypoint, WaypointKind
 from telemetry.models import UnknownVehicle
+from tests.accounts.test_invitations import FORM
+from tests.accounts.users import client_of, somebody
 from tests.inspection.test_admin import form_of, point
 from tests.missions.worlds import UAV_AT
 from tests.workspace.test_foreign_rows import everything, rows_of
+from workspace.admin_pages.scope import OrganisationScopedAdmin
 from workspace.models import AuditEntry, Organisation, Role, SignInEntry, SignInOutcome, User
-from workspace.services import OperatorsAlone, change_people, delete_person
 
 pytestmark = pytest.mark.django_db
 

@@ -9,8 +9,8 @@ from django.core.cache import cache
 from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
 from workspace.models import AuditEntry, Invitation, Organisation, Role, SignInEntry, User
 
 pytestmark = pytest.mark.django_db

@@ -4,6 +4,7 @@ import pytest
 from django.contrib.auth import authenticate
 from django.contrib.auth.hashers import identify_hasher, make_password
 from django.test import RequestFactory
+
 from tests.accounts.users import somebody
 
 pytestmark = pytest.mark.django_db

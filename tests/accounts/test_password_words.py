@@ -3,11 +3,11 @@
 from typing import Any
 
 import pytest
-from accounts.invitations import invite
 from django.contrib.auth.password_validation import validate_password
 from django.core.exceptions import ValidationError
-from tests.accounts.users import somebody
 
+from accounts.invitations import invite
+from tests.accounts.users import somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -6,13 +6,14 @@ from io import StringIO
 from typing import Any
 
 import pytest
-from accounts.login import HALF_IN, HALF_IN_S
-from accounts.one_time_codes import bare, code_of, matching_step, new_recovery_codes
-from accounts.second_factors import TRIES, TooManyCodes, WrongCode, seal_with_the_key_of_today, try_code
 from django.core.cache import cache
 from django.core.management import CommandError, call_command
 from django.test import Client, override_settings
 from django.utils import timezone
+
+from accounts.login import HALF_IN, HALF_IN_S
+from accounts.one_time_codes import bare, code_of, matching_step, new_recovery_codes
+from accounts.second_factors import TRIES, TooManyCodes, WrongCode, seal_with_the_key_of_today, try_code
 from tests.accounts.authenticator_app import (
     SEED,
     code_now,
@@ -24,9 +25,8 @@ from tests.accounts.authenticator_app import (
     with_app,
 )
 from tests.accounts.users import client_of, somebody
-
+from workspace.api_tokens import create_api_token
 from workspace.models import AuditEntry, Organisation, RecoveryCode, Role, SecondFactor, SignInEntry, SignInOutcome, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 PASSWORD = "inspect-the-lines"

@@ -5,17 +5,18 @@ from io import StringIO
 from typing import Any
 
 import pytest
-from accounts.service_accounts import make_service_account
 from django.contrib.auth import authenticate
 from django.core.management import CommandError, call_command
 from django.db import IntegrityError, transaction
 from django.test import Client
 from django.utils import timezone
+
+from accounts.service_accounts import make_service_account
+from accounts.users import NoAdministratorLeft, delete_person, save_person
 from tests.accounts.users import client_of, somebody
 from tests.workspace.api.described_answers import openapi_document
-
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Organisation, Role, User
-from workspace.services import NoAdministratorLeft, create_api_token, delete_person, save_person
 
 pytestmark = pytest.mark.django_db
 ACCOUNTS = "/api/v1/service-accounts"

@@ -6,10 +6,10 @@ import pytest
 from django.db import connection, transaction
 from django.test import Client
 from django.urls import reverse
-from tests.accounts.users import client_of, somebody
 
+from accounts.users import NoAdministratorLeft, change_people, delete_person
+from tests.accounts.users import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role, User
-from workspace.services import NoAdministratorLeft, change_people, delete_person
 
 pytestmark = pytest.mark.django_db
 

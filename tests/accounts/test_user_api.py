@@ -4,15 +4,15 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
-from accounts.sign_in_log import forget_old_sign_ins
 from django.core.cache import cache
 from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
-from tests.accounts.users import client_of, somebody
 
+from accounts.sign_in_log import forget_old_sign_ins
+from tests.accounts.users import client_of, somebody
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Organisation, Role, SignInEntry, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 

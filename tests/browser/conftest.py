@@ -16,10 +16,10 @@ from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
-from accounts.reauthentication import PROOF_S
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
+from accounts.reauthentication import PROOF_S
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES

@@ -61,7 +61,9 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
         writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 
-def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MAX_STEPS) -> float:
+def flies_until(
+    page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MAX_STEPS, **told: Any
+) -> float:
     """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
     for step in range(most):
         if fact():
@@ -69,7 +71,7 @@ def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, d
         along_m += STEP_M
         for number, flyer in enumerate(flyers):
             flyer.obeys()
-            flyer.reports(along_m, aside_m=0.0 if number else drifts_m * step)
+            flyer.reports(along_m, aside_m=0.0 if number else drifts_m * step, **told)
         page.wait_for_timeout(1000)  # a UAV reports once a second
     raise AssertionError("the page does not show it")
 
@@ -122,6 +124,15 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     expect(question).to_contain_text("Kite is already returning. This command was not sent.")
     question.get_by_role("button", name="Close").click()
     expect(question).to_have_count(0)
+
+    changed = watcher.locator("#alert-list .alert.critical").filter(has_text="not commanded from here")
+    along_m = flies_until(watcher, lambda: changed.count() == 2, flyers, along_m, mode="RTL")
+    together = watcher.get_by_role("button", name=re.compile(r"^Acknowledge all ended \(\d+\)$"))
+    flies_until(watcher, lambda: changed.count() == 0 and together.is_visible(), flyers, along_m)
+    together.click()
+    expect(watcher.locator("#toasts")).to_have_text(re.compile(r"^\d+ ended alerts acknowledged\.$"))
+    expect(together).to_be_hidden()
+    expect(watcher.locator("#alert-list .alert").filter(has_text="not commanded from here")).to_have_count(0)
 
 
 def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(

@@ -20,8 +20,8 @@ def main(organisation: int) -> None:
 
     from inspection.models import Asset, AssetKind  # noqa: PLC0415
     from missions.models import Uav  # noqa: PLC0415
+    from workspace.api_tokens import create_api_token  # noqa: PLC0415
     from workspace.models import Role, User  # noqa: PLC0415
-    from workspace.services import create_api_token  # noqa: PLC0415
 
     ends_at = timezone.now() + timedelta(days=1)
     tokens = []

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import dj_database_url
 import pytest
-from config.environment import SecretUnreadable, secret
 from redis import ConnectionPool, SSLConnection
 
+from config.environment import SecretUnreadable, secret
 from config.private_servers import broker_url
 
 

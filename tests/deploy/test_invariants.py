@@ -23,8 +23,8 @@ from telemetry.services.companion_reports import take_reports
 from telemetry.services.results import EndedFlight, NewResult, take_results
 from tests.accounts.users import somebody
 from tests.missions import flights, worlds
+from workspace.jobs.services import create_job, finish_job, start_job
 from workspace.models import AuditEntry, IdempotencyKey
-from workspace.services import create_job, finish_job, start_job
 
 LONG_AGO = timedelta(hours=1)
 

@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 
 from inspection.importers.assets.mapping import MAX_EXTERNAL_ID
 from inspection.models import Asset, AssetReference, DataImport
@@ -16,6 +15,7 @@ from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.assets.made_files import geojson, line, point
+from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -16,8 +16,8 @@ from inspection.services.proposals import pipeline
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from tests.accounts.users import client_of, somebody
+from workspace.jobs.services import MAX_ATTEMPTS, requeue_lost_jobs, start_job
 from workspace.models import AuditEntry, Job, JobState, Role, User
-from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs, start_job
 
 pytestmark = pytest.mark.django_db
 

@@ -11,7 +11,6 @@ import pytest
 from django.db import connections
 from django.test import Client
 from django.utils import timezone
-from workspace.http_client import Fetched, fetch
 
 from inspection.models import ImportProposal, NoFlyZone, Upload, ZoneSet, ZoneSubscription
 from inspection.services import delete_zone, subscriptions
@@ -21,6 +20,7 @@ from inspection.tasks import fetch_due_subscriptions, fetch_subscription
 from tests.accounts.users import client_of, somebody
 from tests.inspection.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, body, serving
+from workspace.http_client import Fetched, fetch
 from workspace.models import AuditEntry, Job, JobState, Role, User
 
 pytestmark = pytest.mark.django_db

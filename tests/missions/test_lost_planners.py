@@ -28,8 +28,8 @@ from planning.problem import Objective
 from tests.accounts.users import somebody
 from tests.missions.worlds import UAV_AT, World, world
 from workspace import tasks
+from workspace.jobs.services import LEASE_S, create_job
 from workspace.models import AuditEntry, Job, JobState, Role, User
-from workspace.services import LEASE_S, create_job
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 

@@ -8,12 +8,12 @@ from unittest import mock
 
 import pytest
 from django.db import connections
-from workspace.jobs import planning_lock
-from workspace.jobs.planning_lock import in_turn
-from workspace.prepared_statements import prepared_rows
 
 from missions.services import make_plan, planning
 from tests.missions.worlds import World, request, uav, world
+from workspace.jobs import planning_lock
+from workspace.jobs.planning_lock import in_turn
+from workspace.prepared_statements import prepared_rows
 
 PLANNERS = 4
 

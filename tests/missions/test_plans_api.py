@@ -7,7 +7,6 @@ from unittest import mock
 import pytest
 from django.db import OperationalError
 from django.test import Client
-from workspace.jobs import job_watch
 
 from missions import tasks
 from missions.models import Mission
@@ -18,8 +17,9 @@ from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts
+from workspace.jobs import job_watch
+from workspace.jobs.services import cancel_job
 from workspace.models import Job, JobState, Organisation, Role
-from workspace.services import cancel_job
 
 pytestmark = pytest.mark.django_db
 

@@ -12,7 +12,6 @@ from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone, translation
-from workspace.api.throttling import ScopedRate
 
 from inspection.models import GraphSnapshot
 from missions import services
@@ -21,8 +20,9 @@ from tests.accounts.users import somebody
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
 from tests.workspace.counters import forget_counts
+from workspace.api.throttling import ScopedRate
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, Role, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 SHORT_WAYS = ("missions.views.short_way.small_plan", "missions.views.plans.small_plan")

@@ -10,15 +10,15 @@ from unittest import mock
 import pytest
 from django.db import connection
 from django.test import Client
-from workspace.api import waiting
 
 from missions import tasks
 from missions.models import MissionUav
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
+from workspace.api import waiting
+from workspace.jobs.services import cancel_job
 from workspace.models import Job, JobState, Role
-from workspace.services import cancel_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

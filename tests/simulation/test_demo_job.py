@@ -16,8 +16,8 @@ from simulation.services.simulations import end_simulation
 from simulation.tasks import fly_demo_missions
 from tests.accounts.users import somebody
 from tests.missions.flights import carry
+from workspace.jobs.services import MAX_ATTEMPTS, requeue_lost_jobs
 from workspace.models import Job, JobState, Role, User
-from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs
 
 pytestmark = pytest.mark.django_db
 REAL_TIME, _planned_only, FAST = (demo.name for demo in DEMO_MISSIONS)

@@ -12,8 +12,8 @@ from tests.missions.test_lost_planners import kill, own_queue, wait_until, worke
 from tests.missions.worlds import world
 from tests.simulation.rehearsed import asked
 from workspace import tasks
+from workspace.jobs.services import LEASE_S
 from workspace.models import Job, JobState
-from workspace.services import LEASE_S
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

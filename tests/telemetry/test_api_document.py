@@ -16,8 +16,8 @@ from tests.accounts.users import somebody
 from tests.missions.worlds import world
 from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
 from tests.workspace.live.proxied_site import Door
+from workspace.api_tokens import create_api_token
 from workspace.models import Role
-from workspace.services import create_api_token
 
 __all__ = ["closed_door", "door", "here", "live_program", "without_redis"]
 pytestmark = pytest.mark.django_db(transaction=True)

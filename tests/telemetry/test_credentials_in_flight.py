@@ -12,9 +12,9 @@ from missions.services.credentials import note_mavlink_key_use
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import linked_uav, report
+from workspace.api_tokens import create_api_token
 from workspace.door_models import BrowserSession
 from workspace.models import AuditEntry, Role
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 from django.db import connection, transaction
 from django.utils import timezone
-from workspace.live.changes import changes
 
 from missions.models import Uav
 from telemetry.live.uavs import measured_json
@@ -16,6 +15,7 @@ from telemetry.models import UavWatch
 from telemetry.services import store_records
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import at, record
+from workspace.live.changes import changes
 from workspace.models import Organisation
 
 NOWHERE = {"longitude_deg": None, "latitude_deg": None}

@@ -12,8 +12,8 @@ from telemetry.models import TelemetryRecord, UavLink
 from telemetry.views import uav_authentication
 from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import LINK, linked_uav, report
+from workspace.api_tokens import create_api_token
 from workspace.models import Role
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 

@@ -12,7 +12,7 @@ from telemetry.services.replan_hooks import code_of, suggest_for_findings, withd
 from tests.accounts.users import somebody
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
-from workspace.services import create_job
+from workspace.jobs.services import create_job
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
 """Labels in the administration of the database."""
 
 import pytest
-from workspace.admin_pages.field_labels import label_of
 
 from missions.models import Uav, UavType, Waypoint
+from workspace.admin_pages.field_labels import label_of
 from workspace.models import ApiToken
 
 

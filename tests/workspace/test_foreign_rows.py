@@ -7,7 +7,6 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
-from accounts.service_accounts import make_service_account
 from django.apps import apps
 from django.contrib.gis.geos import Point
 from django.contrib.sessions.models import Session
@@ -17,6 +16,7 @@ from django.test import Client
 from django.utils import timezone
 from drf_spectacular.generators import SchemaGenerator
 
+from accounts.service_accounts import make_service_account
 from missions.models import (
     Base,
     CommandKind,
@@ -36,8 +36,8 @@ from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
 from tests.workspace.sessions.test_roles import SAFE, stand_in
+from workspace.jobs.services import create_job
 from workspace.models import ApiToken, BrowserSession, Invitation, Organisation, Role, User
-from workspace.services import create_job
 
 pytestmark = pytest.mark.django_db
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from workspace.http_client import Fetched, OutgoingFailed, OutgoingRefused, check_address, fetch, is_global
 
 from tests.workspace.loopback import Answer, Server, body, serving
 from workspace import http_client
+from workspace.http_client import Fetched, OutgoingFailed, OutgoingRefused, check_address, fetch, is_global
 
 
 @pytest.fixture

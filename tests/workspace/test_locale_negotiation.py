@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 from django.test import RequestFactory
-from workspace.locale_negotiation import language_of_request, language_of_socket
 
+from workspace.locale_negotiation import language_of_request, language_of_socket
 from workspace.models import User
 
 GERMAN: dict[str, Any] = {"headers": [(b"host", b"here"), (b"accept-language", b"de-AT,de;q=0.9,en;q=0.5")], "cookies": {}}

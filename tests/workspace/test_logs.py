@@ -23,8 +23,8 @@ from operation.log_context import about
 from operation.redaction import without_secrets
 from tests.accounts.users import client_of, somebody
 from tests.telemetry.uav_clients import LINK, linked_uav, report
+from workspace.api_tokens import create_api_token
 from workspace.models import Role, User
-from workspace.services import create_api_token
 
 PASSWORD = "inspect-the-lines-8"
 TIMEOUT_S = 60

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from django.utils.translation import override
+
 from workspace.message_rendering import in_words
 
 ROOT = Path(__file__).resolve().parents[2]

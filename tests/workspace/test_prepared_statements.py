@@ -6,9 +6,9 @@ from datetime import UTC, datetime
 import psycopg
 import pytest
 from django.db import DataError, OperationalError, ProgrammingError, connection, transaction
-from workspace.prepared_statements import prepared_rows
 
 from workspace.models import Organisation
+from workspace.prepared_statements import prepared_rows
 
 pytestmark = pytest.mark.django_db(transaction=True)
 BACKEND = "SELECT pg_backend_pid()"

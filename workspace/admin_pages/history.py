@@ -10,10 +10,10 @@ from django.http import HttpRequest, HttpResponse
 from django.template.response import TemplateResponse
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
+
 from workspace.admin_pages.author_names import author_name
 from workspace.admin_pages.scope import OrganisationScopedAdmin
 from workspace.api.signed_in import user_of
-
 from workspace.models import AuditEntry
 
 PAGE = 50

@@ -7,8 +7,8 @@ from django.contrib.admin.filters import RelatedFieldListFilter
 from django.db.models import Q, QuerySet
 from django.forms import ModelForm
 from django.http import HttpRequest
-from workspace.api.signed_in import user_of
 
+from workspace.api.signed_in import user_of
 from workspace.models import Organisation
 
 ORGANISATION = "organisation"

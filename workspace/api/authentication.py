@@ -13,10 +13,10 @@ from drf_spectacular.plumbing import build_bearer_security_scheme_object
 from rest_framework.authentication import BaseAuthentication, SessionAuthentication, get_authorization_header
 from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
-from workspace.prepared_statements import prepared_rows
 
+from workspace.api_tokens import hash_token, note_use
 from workspace.models import ApiToken, Organisation, Role, TokenScope, User
-from workspace.services import hash_token, note_use
+from workspace.prepared_statements import prepared_rows
 
 MAX_TOKEN_LENGTH = 200
 

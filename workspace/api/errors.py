@@ -16,6 +16,7 @@ from django.utils.translation import gettext as _
 from rest_framework import exceptions
 from rest_framework.request import Request
 from rest_framework.response import Response
+
 from workspace.api.throttling import rate_limit_headers
 
 logger = logging.getLogger(__name__)

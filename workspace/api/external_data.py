@@ -7,6 +7,7 @@ from typing import Any
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema_field
 from rest_framework.request import Request
+
 from workspace.api import strict_serializers as serializers
 from workspace.api.errors import ApiProblem
 

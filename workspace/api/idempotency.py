@@ -14,9 +14,9 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 from rest_framework.request import Request
 from rest_framework.response import Response
+
 from workspace.api.errors import ApiProblem
 from workspace.api.signed_in import SignedInRequest
-
 from workspace.models import IdempotencyKey
 
 MAX_KEY_LENGTH = 200

@@ -4,6 +4,7 @@ from typing import Any
 
 from rest_framework.negotiation import BaseContentNegotiation, DefaultContentNegotiation
 from rest_framework.request import Request
+
 from workspace.api.errors import PROBLEM_JSON
 
 

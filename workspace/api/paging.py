@@ -14,6 +14,7 @@ from django.db.models import Model, Q, QuerySet
 from django.utils.dateparse import parse_date, parse_datetime
 from django.utils.translation import gettext as _
 from rest_framework.request import Request
+
 from workspace.api.errors import ApiProblem
 from workspace.api.whole_numbers import WholeNumber
 

@@ -10,6 +10,7 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 from rest_framework.exceptions import ParseError
 from rest_framework.parsers import BaseParser
+
 from workspace.api.errors import ApiProblem
 
 MAX_NESTING_DEPTH = 32

@@ -8,7 +8,7 @@ from django.utils.translation import gettext_lazy
 from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 
-from workspace.models import ApiToken, Role, TokenScope
+from workspace.models import ApiToken, Role, TokenScope, User
 
 PLANNERS = frozenset({Role.OPERATOR, Role.ADMINISTRATOR})
 CURATORS = frozenset({Role.CURATOR, Role.ADMINISTRATOR})
@@ -92,3 +92,8 @@ class InTheBrowserAlone(RolePermission):
 
 class AdministratorsInTheBrowser(InTheBrowserAlone, AdministratorsAlone):
     """Who gives somebody a role could make an account that outlives a lost token: reading is for tokens, too, giving is not."""
+
+
+def may_change(actor: User, user: User) -> bool:
+    """Whether the actor may change this account: that of an installation operator is for operators and its owner."""
+    return actor.operates_installation or actor.pk == user.pk or not user.operates_installation

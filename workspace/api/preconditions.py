@@ -3,6 +3,7 @@
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse
 from rest_framework.request import Request
+
 from workspace.api.errors import ApiProblem
 
 IF_MATCH_REQUIRED = OpenApiParameter(

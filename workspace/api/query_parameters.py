@@ -14,6 +14,7 @@ from django.utils.translation import gettext as _
 from drf_spectacular.plumbing import force_instance
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.views import APIView
+
 from workspace.api.errors import error_body, error_content_type
 
 API = "/api/v1/"

@@ -7,6 +7,7 @@ from typing import Any
 from drf_spectacular.openapi import AutoSchema
 from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer
 from rest_framework.permissions import SAFE_METHODS
+
 from workspace.api.errors import PROBLEM_JSON
 from workspace.api.headers import HEADERS_OF_ERRORS
 from workspace.api.idempotency import MAX_KEY_LENGTH, TAKES_KEY

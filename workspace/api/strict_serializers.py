@@ -20,6 +20,7 @@ from rest_framework.serializers import (
     SerializerMethodField,
     ValidationError,
 )
+
 from workspace.api.fields import FiniteFloatField as FloatField
 
 __all__ = [

@@ -6,6 +6,7 @@ from typing import Any
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
+
 from workspace.api.errors import ApiProblem
 
 MAX_NUMBER = 999_999_999

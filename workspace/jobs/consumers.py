@@ -11,13 +11,13 @@ from django.core.serializers.json import DjangoJSONEncoder
 from django.db import Error as DatabaseError
 from django.utils import translation
 from redis.exceptions import RedisError
+
+from workspace import selectors
 from workspace.jobs.serializers import JobSerializer
 from workspace.live.changes import job_group
 from workspace.live.sockets import CHECK_PERSON_INTERVAL_S, ENDED, KEEPALIVE_INTERVAL_S, NOTHING_TO_SAY, SIGNED_OUT, SignedInSocket
 from workspace.live.timed_waits import wait_for_event
 from workspace.locale_negotiation import language_of_socket
-
-from workspace import selectors
 from workspace.models import Job, User
 
 POLL_INTERVAL_S = 1.0  # at the row, whether a word has come or not

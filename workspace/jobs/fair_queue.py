@@ -7,8 +7,8 @@ from django.db import connection, transaction
 from django.db.models import Count, Max, Min, Q
 from django.utils import timezone
 
+from workspace.jobs.services import start_job
 from workspace.models import Job, JobState
-from workspace.services import start_job
 
 TURNS_LOCK = 0x05A7_0030  # advisory lock: one worker at a time chooses
 REMEMBERED = timedelta(hours=1)  # for which it counts who was served

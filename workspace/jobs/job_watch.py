@@ -14,8 +14,8 @@ from typing import Any
 
 from django.db import DatabaseError, connection, connections
 
+from workspace.jobs.services import JobCancelled, JobLost, give_back_job, report_progress
 from workspace.models import Job
-from workspace.services import JobCancelled, JobLost, give_back_job, report_progress
 
 logger = logging.getLogger(__name__)
 

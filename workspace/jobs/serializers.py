@@ -4,8 +4,8 @@ from typing import Any, TypeAlias
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
-from workspace.message_rendering import in_words
 
+from workspace.message_rendering import in_words
 from workspace.models import Job, JobState
 
 # A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared

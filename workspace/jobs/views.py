@@ -6,13 +6,14 @@ from django.http import Http404
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
+
+from workspace import selectors
 from workspace.api.paging import asked_choice, asked_flag, page_of
 from workspace.api.permissions import CURATORS, PLANNERS
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
+from workspace.jobs import services
 from workspace.jobs.serializers import JobPageSerializer, JobSerializer, ListedJobSerializer
-
-from workspace import selectors, services
 from workspace.models import OPEN_STATES, Job, JobState, User
 
 

@@ -13,16 +13,16 @@ from channels.exceptions import StopConsumer
 from channels.generic.websocket import AsyncWebsocketConsumer
 from django.conf import settings
 from django.db import Error as DatabaseError
-from workspace.api.authentication import bearer_token, reader_of_token
-from workspace.live.graceful_shutdown import farewell_here
-from workspace.live.socket_places import socket_places_here
-from workspace.sessions.browser_sessions import note_session
-from workspace.sessions.sign_in_attempts import network_of
-from workspace.sessions.visitors import visitor_address
 
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
+from workspace.api.authentication import bearer_token, reader_of_token
+from workspace.live.graceful_shutdown import farewell_here
+from workspace.live.socket_places import socket_places_here
 from workspace.models import User
+from workspace.sessions.browser_sessions import note_session
+from workspace.sessions.sign_in_attempts import network_of
+from workspace.sessions.visitors import visitor_address
 
 logger = logging.getLogger(__name__)
 

@@ -12,8 +12,8 @@ from django.db.models import Exists, OuterRef
 from django.utils import timezone
 from django.utils.crypto import constant_time_compare
 
+from workspace.audit import person_facts, record_change
 from workspace.models import BrowserSession, User
-from workspace.services import person_facts, record_change
 
 NOTED_EVERY = timedelta(minutes=1)
 

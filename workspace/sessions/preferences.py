@@ -8,9 +8,9 @@ from django.conf import settings
 from django.http import HttpRequest, HttpResponse
 from django.utils import timezone, translation
 from django.utils.cache import patch_vary_headers
-from workspace.sessions.browser_sessions import note_session
 
 from workspace.models import User
+from workspace.sessions.browser_sessions import note_session
 
 TIME_ZONES = frozenset(available_timezones())
 SEEN_EVERY = timedelta(minutes=1)

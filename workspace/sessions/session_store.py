@@ -5,9 +5,9 @@ from typing import Any
 from django.contrib.sessions.backends.db import SessionStore as DatabaseStore
 from django.contrib.sessions.models import Session
 from django.utils import timezone
-from workspace.sessions.browser_sessions import session_ends_at
 
 from workspace.models import BrowserSession
+from workspace.sessions.browser_sessions import session_ends_at
 
 
 class SessionStore(DatabaseStore):

@@ -14,6 +14,7 @@ from django.core.cache import cache
 from django.core.cache.backends.base import BaseCache
 from django.core.cache.backends.locmem import LocMemCache
 from django.http import HttpRequest
+
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.sessions.visitors import visitor_address
 

@@ -7,8 +7,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 from django.utils import timezone
 
+from workspace.api_tokens import create_api_token
 from workspace.models import TokenScope, User
-from workspace.services import create_api_token
 
 MAX_DAYS = 365
 

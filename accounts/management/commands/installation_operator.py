@@ -5,8 +5,8 @@ from typing import Any
 
 from django.core.management.base import BaseCommand, CommandError
 
+from accounts.users import set_installation_operator
 from workspace.models import Role, User
-from workspace.services import set_installation_operator
 
 
 class Command(BaseCommand):

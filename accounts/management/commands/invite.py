@@ -3,10 +3,10 @@
 from argparse import ArgumentParser
 from typing import Any
 
-from accounts.invitations import MAX_DAYS, invite
 from django.core.management.base import BaseCommand, CommandError
 from django.urls import reverse
 
+from accounts.invitations import MAX_DAYS, invite
 from workspace.models import Organisation, Role
 
 

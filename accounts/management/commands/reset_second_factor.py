@@ -3,9 +3,9 @@
 from argparse import ArgumentParser
 from typing import Any
 
-from accounts.second_factors import take_away
 from django.core.management.base import BaseCommand, CommandError
 
+from accounts.second_factors import take_away
 from workspace.models import User
 
 

@@ -32,8 +32,8 @@ from inspection.services.proposals import assets, osm, terrain, zones
 from inspection.services.proposals.bounds import reasons_against
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
 from inspection.services.uploads import UploadRefused, upload_as_file
+from workspace.jobs.services import cancel_job, create_job, finish_job
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
-from workspace.services import cancel_job, create_job, finish_job
 
 FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets, ImportKind.TERRAIN: terrain}
 READ_TASK = "inspection.tasks.read_proposal"

@@ -8,14 +8,14 @@ from uuid import UUID
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from workspace.live.changes import publish_live
 
 from missions.models import Mission, MissionState, OfferState, ReplanOffer, Uav
 from missions.services.missions import note
 from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
+from workspace.jobs.services import create_job
+from workspace.live.changes import publish_live
 from workspace.models import Job, User
-from workspace.services import create_job
 
 REPLAN = "missions.tasks.replan_mission"
 ASKED_FOR = "asked-for"

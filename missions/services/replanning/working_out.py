@@ -7,7 +7,6 @@ from functools import partial
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from workspace.live.changes import publish_live
 
 from missions.models import MissionState, OfferState, ReplanOffer
 from missions.selectors import mission_of_organisation
@@ -19,8 +18,9 @@ from missions.services.replanning.rest import Cause, rests_of
 from missions.services.replanning.staleness import basis_of, valid_until
 from missions.services.replanning.storing import stored
 from planning.solver.solver import Stop
+from workspace.jobs.services import JobCancelled, finish_job
+from workspace.live.changes import publish_live
 from workspace.models import Job
-from workspace.services import JobCancelled, finish_job
 
 
 def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[float, str], None]) -> None:

@@ -21,8 +21,8 @@ from tests.inspection import ground
 from tests.missions import worlds
 from tests.missions.flights import carry, fleet
 from tests.missions.outbox import claim
+from workspace.jobs.services import start_job
 from workspace.models import Job, User
-from workspace.services import start_job
 
 SPACING_DEG = 0.005  # of towers: 311 m
 

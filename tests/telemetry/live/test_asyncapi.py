@@ -18,8 +18,9 @@ from tests.missions.outbox import a_uav
 from tests.telemetry.records import record
 from tests.workspace.api.described_answers import openapi_document, validate
 from tests.workspace.live.proxied_site import Door, close_code
+from workspace.api_tokens import create_api_token
+from workspace.jobs.services import create_job, finish_job, start_job
 from workspace.models import User
-from workspace.services import create_api_token, create_job, finish_job, start_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
 DOCUMENT = Path(settings.BASE_DIR) / "static" / "asyncapi.json"

@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
-from workspace.live.graceful_shutdown import RESTARTS, Farewell
-from workspace.live.timed_waits import wait_for_event
 
 from missions.models import Uav
 from scripts import commands
@@ -26,6 +24,8 @@ from tests.telemetry.gateway.program import free_port
 from tests.telemetry.live.page import HungUp, Page
 from tests.telemetry.records import record
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
+from workspace.live.graceful_shutdown import RESTARTS, Farewell
+from workspace.live.timed_waits import wait_for_event
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

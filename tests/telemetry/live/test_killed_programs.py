@@ -35,8 +35,8 @@ from tests.telemetry.live.installation import Installation, installation
 from tests.telemetry.live.page import Page
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.live.proxied_site import wait_until
+from workspace.api_tokens import create_api_token
 from workspace.models import User
-from workspace.services import create_api_token
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 

@@ -20,8 +20,8 @@ from tests.telemetry.gateway.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
 from tests.workspace.live.proxied_site import Door, redis_at, running, wait_until
+from workspace.api_tokens import create_api_token
 from workspace.models import User
-from workspace.services import create_api_token
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 

@@ -9,7 +9,6 @@ import pytest
 from django.contrib.sessions.models import Session
 from django.utils import timezone
 from websocket import WebSocket, WebSocketBadStatusException
-from workspace.live.changes import sockets
 
 from config.websocket_urls import websocket_urlpatterns
 from missions.models import CredentialKind, Mission
@@ -18,8 +17,10 @@ from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.workspace.live.proxied_site import Door, close_code
+from workspace.api_tokens import create_api_token
+from workspace.jobs.services import create_job
+from workspace.live.changes import sockets
 from workspace.models import ApiToken, Organisation, Role, User
-from workspace.services import create_api_token, create_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -4,10 +4,10 @@ from django.urls import path
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
-from workspace.api.idempotency import idempotent
 
 from config.urls import handler400, handler403, handler404, handler500
 from config.urls import urlpatterns as program
+from workspace.api.idempotency import idempotent
 from workspace.models import Organisation
 
 __all__ = ["handler400", "handler403", "handler404", "handler500", "urlpatterns"]

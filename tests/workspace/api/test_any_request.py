@@ -8,12 +8,12 @@ from unittest import mock
 import pytest
 from django.test import Client
 from drf_spectacular.generators import SchemaGenerator
-from tests.accounts.users import client_of, somebody
-from tests.workspace.api.described_requests import Maker, Request
 
 from inspection.models import Asset, NoFlyZone
+from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
 from tests.missions.worlds import world
+from tests.workspace.api.described_requests import Maker, Request
 from tests.workspace.test_foreign_rows import rows_of
 from workspace.models import Organisation, Role
 

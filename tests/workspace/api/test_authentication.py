@@ -7,10 +7,10 @@ import pytest
 from django.core.management import CommandError, call_command
 from django.test import Client
 from django.utils import timezone
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 

@@ -1,10 +1,10 @@
 """What costs much is counted per user, each kind for itself."""
 
 import pytest
-from tests.accounts.users import client_of, somebody
-from workspace.api.throttling import ScopedRate
 
+from tests.accounts.users import client_of, somebody
 from tests.workspace.counters import forget_counts
+from workspace.api.throttling import ScopedRate
 
 pytestmark = pytest.mark.django_db
 

@@ -6,11 +6,11 @@ import pytest
 from django.db import DataError, OperationalError
 from django.test import Client
 from rest_framework import serializers
+
 from tests.accounts.users import client_of, somebody
+from workspace import selectors
 from workspace.api.errors import ApiProblem, error_response
 from workspace.api.throttling import ScopedRate
-
-from workspace import selectors
 
 ECHO = "/api/v1/echo"
 pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.api.echo_urls")]

@@ -9,10 +9,10 @@ import pytest
 from django.db import connection
 from django.test import Client
 from django.utils import timezone
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
+from workspace.jobs.services import forget_old_idempotency_keys
 from workspace.models import IdempotencyKey, Organisation
-from workspace.services import forget_old_idempotency_keys
 
 pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.api.echo_urls")]
 

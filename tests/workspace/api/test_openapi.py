@@ -14,9 +14,9 @@ from django.contrib.staticfiles import finders
 from django.core.management import call_command
 from django.test import Client
 from openapi_spec_validator import validate
-from workspace.api import api_document
 
 from scripts.api_types import GENERATOR, NODE
+from workspace.api import api_document
 
 pytestmark = pytest.mark.django_db
 API_PAGE = Path(__file__).resolve().parents[2] / "docs" / "api.md"

@@ -7,10 +7,10 @@ from urllib.parse import urlencode
 import pytest
 from django.conf import settings
 from django.test import Client
-from tests.accounts.users import client_of, somebody
-from tests.workspace.api.described_answers import openapi_document
 
 from planning.energy.performance import BATTERIES_WH, MASSES_KG, ROTOR_DISKS_M2
+from tests.accounts.users import client_of, somebody
+from tests.workspace.api.described_answers import openapi_document
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -23,13 +23,13 @@ from schemathesis.specs.openapi.checks import (
     response_schema_conformance,
     status_code_conformance,
 )
-from tests.accounts.users import somebody
 
+from tests.accounts.users import somebody
 from tests.inspection import ground
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import world
+from workspace.api_tokens import create_api_token
 from workspace.models import Role
-from workspace.services import create_api_token
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 CHECKS = [

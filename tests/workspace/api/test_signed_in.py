@@ -10,6 +10,7 @@ from django.test import RequestFactory
 from django.urls import URLPattern, URLResolver, get_resolver
 from rest_framework.request import Request
 from rest_framework.views import APIView
+
 from workspace.api.signed_in import SignedInRequest
 
 METHODS = ("get", "post", "put", "patch", "delete")

@@ -2,10 +2,10 @@
 
 import pytest
 from redis.exceptions import ConnectionError as RedisAway
-from tests.accounts.users import client_of, somebody
-from workspace.api.throttling import ScopedRate
 
+from tests.accounts.users import client_of, somebody
 from tests.workspace.counters import forget_counts
+from workspace.api.throttling import ScopedRate
 
 pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.api.echo_urls")]
 

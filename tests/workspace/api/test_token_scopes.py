@@ -12,13 +12,13 @@ from django.urls import reverse
 from django.utils import timezone
 from django.utils.encoding import force_bytes
 from django.utils.http import urlsafe_base64_encode
-from tests.accounts.users import client_of, somebody
-from workspace.api.authentication import reader_of_token
 
+from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, plan_body
 from tests.missions.worlds import world
+from workspace.api.authentication import reader_of_token
+from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, Role, TokenScope, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 import pytest
 from django.db import connection, transaction
 from django.utils import timezone
+
 from tests.accounts.users import somebody
 from workspace.jobs.job_watch import JobWatch
-
+from workspace.jobs.services import LEASE_S, JobCancelled, cancel_job, create_job, finish_job, start_job
 from workspace.models import Job, JobState
-from workspace.services import LEASE_S, JobCancelled, cancel_job, create_job, finish_job, start_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -10,11 +10,10 @@ from celery import Celery
 from django.conf import settings
 from django.utils import timezone
 from kombu.exceptions import OperationalError
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
 from workspace import tasks
-from workspace.models import Job, JobState, Organisation, Role, User
-from workspace.services import (
+from workspace.jobs.services import (
     LEASE_S,
     MAX_ATTEMPTS,
     QUEUE_TIMEOUT_S,
@@ -30,6 +29,7 @@ from workspace.services import (
     requeue_lost_jobs,
     start_job,
 )
+from workspace.models import Job, JobState, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 

@@ -19,13 +19,13 @@ from uuid import uuid4
 import pytest
 from django.conf import settings
 from django.db import connection
-from tests.accounts.users import client_of
 from websocket import WebSocket, create_connection
 
 from scripts.places import Places
 from scripts.programs import web_programs
 from scripts.proxy import configuration
 from scripts.system_packages import find_program
+from tests.accounts.users import client_of
 from workspace.models import User
 
 TIMEOUT_S = 60.0

@@ -16,15 +16,16 @@ from uuid import uuid4
 import pytest
 from asgiref.sync import async_to_sync
 from django.utils import timezone
+from websocket import WebSocket, WebSocketBadStatusException
+
 from tests.accounts.users import somebody
 from tests.workspace.live.proxied_site import TIMEOUT_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
-from websocket import WebSocket, WebSocketBadStatusException
+from workspace.api_tokens import create_api_token
 from workspace.jobs.consumers import ENDED, JobConsumer
+from workspace.jobs.services import cancel_job, create_job, finish_job, report_progress, start_job
 from workspace.live.changes import changes as words
-from workspace.sessions.browser_sessions import end_session
-
 from workspace.models import ApiToken, BrowserSession, Job, Organisation, User
-from workspace.services import cancel_job, create_api_token, create_job, finish_job, report_progress, start_job
+from workspace.sessions.browser_sessions import end_session
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -9,12 +9,12 @@ from typing import Any
 import pytest
 from django.conf import settings
 from redis import Redis
+from websocket import WebSocket, create_connection
+
 from tests.accounts.users import client_of, somebody
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
-from websocket import WebSocket, create_connection
 from workspace.live.changes import socket_places
 from workspace.live.socket_places import SocketPlaces
-
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db(transaction=True)

@@ -3,6 +3,7 @@
 import asyncio
 
 import pytest
+
 from workspace.live.timed_waits import wait_for_event
 
 LOOPS = 12  # steps of the event loop, more than waking takes

@@ -9,12 +9,12 @@ from django.test import Client
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
+
 from tests.accounts.users import client_of, somebody
+from workspace.api_tokens import create_api_token
+from workspace.models import AuditEntry, BrowserSession, User
 from workspace.sessions.browser_sessions import SessionRules, ends_at, forget_ended_sessions, note_session, session_ends_at
 from workspace.sessions.session_store import SessionStore
-
-from workspace.models import AuditEntry, BrowserSession, User
-from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
 RULES = SessionRules(longest_s=14 * 86_400, idle_s=7_200, watching_s=43_200)

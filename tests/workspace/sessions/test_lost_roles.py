@@ -2,10 +2,10 @@
 
 import pytest
 from django.test import Client
-from tests.accounts.users import client_of, somebody
 
+from accounts.users import NoAdministratorLeft, change_people, delete_person
+from tests.accounts.users import client_of, somebody
 from workspace.models import AuditEntry, Invitation, Organisation, Role, User
-from workspace.services import NoAdministratorLeft, change_people, delete_person
 
 pytestmark = pytest.mark.django_db
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 from django.test import Client
 from django.urls import URLPattern, URLResolver, get_resolver
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

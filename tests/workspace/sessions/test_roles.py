@@ -7,8 +7,8 @@ import pytest
 from django.contrib.auth import get_user_model
 from django.test import Client
 from drf_spectacular.generators import SchemaGenerator
-from tests.accounts.users import client_of, somebody
 
+from tests.accounts.users import client_of, somebody
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -1,44 +1,32 @@
-"""Writes of the workspace: jobs from request to result, tokens, history."""
+"""Jobs from request to result: claimed with a lease, reported, ended, cancelled, and sent again where a worker was lost."""
 
-import hashlib
-import secrets
-from collections.abc import Iterable
-from datetime import datetime, timedelta
+from datetime import timedelta
 from functools import partial
 from typing import Any
 from uuid import UUID
 
 from celery import current_app
 from django.conf import settings
-from django.db import connection, transaction
+from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from workspace.live.changes import publish_job
 from workspace.models import (
-    DEFAULT_ORGANISATION_ID,
     OPEN_STATES,
-    SCOPES_OF_ROLE,
-    ApiToken,
-    AuditEntry,
     IdempotencyKey,
-    Invitation,
     Job,
     JobState,
     Organisation,
-    Role,
     User,
 )
-from workspace.prepared_statements import prepared_rows
 
 LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
 QUEUE_TIMEOUT_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 5
 _ATTEMPTS_BEFORE = "attempts_before_pause"  # in a job's parameters
 IDEMPOTENCY_KEPT = timedelta(hours=48)
-USE_NOTED_EVERY = timedelta(minutes=1)
-ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
 
 
 class JobCancelled(Exception):
@@ -54,71 +42,6 @@ class TooManyJobs(Exception):
 
     def __init__(self, limit: int) -> None:
         super().__init__(_("%(limit)s of your jobs are waiting or running already. Wait for one, or stop it.") % {"limit": limit})
-
-
-class NoAdministratorLeft(ValueError):
-    """Without an administrator who may sign in nobody could give the role back."""
-
-    def __init__(self) -> None:
-        super().__init__(_("This would leave no administrator who can sign in. Make somebody else an administrator first."))
-
-
-class OperatorsAlone(PermissionError):
-    """Whoever could change an installation operator's account could become one."""
-
-    def __init__(self) -> None:
-        super().__init__(_("Only installation operators change the account of one."))
-
-
-def may_change(actor: User, user: User) -> bool:
-    """Whether the actor may change this account: that of an installation operator is for operators and its owner."""
-    return actor.operates_installation or actor.pk == user.pk or not user.operates_installation
-
-
-def hash_token(token: str) -> str:
-    return hashlib.sha256(token.encode()).hexdigest()
-
-
-def create_api_token(*, user: User, name: str, expires_at: datetime, scopes: Iterable[str] | None = None) -> str:
-    """Make a bearer token with these scopes, or all of the role, and return it; it cannot be shown again."""
-    token = f"spw_{secrets.token_urlsafe(32)}"
-    given = list(SCOPES_OF_ROLE[user.role] if scopes is None else scopes)
-    ApiToken.objects.create(user=user, name=name, token_sha256=hash_token(token), expires_at=expires_at, scopes=given)
-    return token
-
-
-# Nobody waits for the disk: after a failure of power the last uses of a fraction of a second may be forgotten.
-_NOTE_USE = """
-    WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
-    UPDATE workspace_apitoken SET last_used_at = %s FROM quick WHERE id = %s"""
-
-
-def note_use(*, token: int, last_used_at: datetime | None) -> None:
-    """When the token with this key was used last, to the minute: a script that asks often writes seldom."""
-    now = timezone.now()
-    if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
-        prepared_rows(_NOTE_USE, [now, token])
-
-
-def record_change(
-    *,
-    organisation: Organisation,
-    actor: User | None,
-    action: str,
-    subject_type: str,
-    subject_id: object,
-    before: Any = None,
-    after: Any = None,
-) -> AuditEntry:
-    return AuditEntry.objects.create(
-        organisation=organisation,
-        actor=actor,
-        action=action,
-        subject_type=subject_type,
-        subject_id=str(subject_id),
-        before=before,
-        after=after,
-    )
 
 
 def create_job(*, organisation: Organisation, created_by: User | None, task: str, parameters: dict[str, Any], message: str = "") -> Job:
@@ -293,102 +216,3 @@ def requeue_lost_jobs() -> list[Job]:
 def forget_old_idempotency_keys() -> int:
     deleted, _ = IdempotencyKey.objects.filter(created_at__lt=timezone.now() - IDEMPOTENCY_KEPT).delete()
     return deleted
-
-
-def save_person(*, user: User, actor: User) -> User:
-    """Store a new or changed account. Raises NoAdministratorLeft, OperatorsAlone."""
-    with transaction.atomic():
-        before = User.objects.filter(pk=user.pk).first()
-        if before and not may_change(actor, before):
-            raise OperatorsAlone
-        user.save()
-        _refuse_without_administrator(before)
-        if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
-            _withdraw_invitations(user, actor)
-        _record_person(actor, user.pk, person_facts(before) if before else None, person_facts(user))
-    return user
-
-
-def change_people(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
-    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises as save_person."""
-    changed = 0
-    with transaction.atomic():
-        for user in users:
-            wanted = (user.role if role is None else role, user.is_active if is_active is None else is_active)
-            if wanted != (user.role, user.is_active):
-                user.role, user.is_active = wanted
-                save_person(user=user, actor=actor)
-                changed += 1
-    return changed
-
-
-def delete_person(*, user: User, actor: User) -> None:
-    """What they did stays in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
-    if not may_change(actor, User.objects.get(pk=user.pk)):
-        raise OperatorsAlone
-    with transaction.atomic():
-        before, key = person_facts(user), user.pk
-        held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id, is_service=user.is_service)
-        _withdraw_invitations(user, actor)
-        user.delete()
-        _refuse_without_administrator(held)
-        _record_person(actor if actor.pk != key else None, key, before, None)
-
-
-def set_installation_operator(*, user: User, is_operator: bool) -> None:
-    """On the machine, by whoever has it; no page and no address of the API gives this."""
-    with transaction.atomic():
-        before = person_facts(user)
-        user.is_installation_operator = is_operator
-        user.save(update_fields=["is_installation_operator"])
-        record_change(
-            organisation=user.organisation, actor=None, action="changed", subject_type="user", subject_id=user.pk,
-            before=before, after=person_facts(user),
-        )  # fmt: skip
-
-
-def person_facts(user: User) -> dict[str, Any]:
-    """What the history says of an account; never its password."""
-    names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")
-    facts = {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
-    return facts | ({"is_service": True} if user.is_service else {})
-
-
-def _refuse_without_administrator(before: User | None) -> None:
-    """After a change, in its transaction. Two that are made at once wait for each other here."""
-    if before is None or not _administrates(before):
-        return
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s)", [ADMINISTRATORS_LOCK])
-    left = User.objects.filter(is_active=True, is_service=False)
-    administrators = left.filter(role=Role.ADMINISTRATOR)
-    own = before.organisation_id
-    if not administrators.exists() or (left.filter(organisation=own).exists() and not administrators.filter(organisation=own).exists()):
-        raise NoAdministratorLeft
-
-
-def _administrates(user: User) -> bool:
-    return user.role == Role.ADMINISTRATOR and user.is_active and not user.is_service
-
-
-def _withdraw_invitations(user: User, actor: User) -> None:
-    """Whoever loses the role, or access, has no link at hand that gives it back."""
-    now = timezone.now()
-    still_open = Invitation.objects.filter(invited_by=user, accepted_at=None, revoked_at=None, expires_at__gt=now)
-    for invitation in still_open.select_for_update():
-        invitation.revoked_at = now
-        invitation.save(update_fields=["revoked_at"])
-        record_change(
-            organisation=invitation.organisation, actor=actor, action="revoked", subject_type="invitation", subject_id=invitation.pk,
-            before={"role": invitation.role, "email": invitation.email},
-        )  # fmt: skip
-
-
-def _record_person(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
-    if before == after:
-        return
-    organisation_id = actor.organisation_id if actor else DEFAULT_ORGANISATION_ID
-    action = "changed" if before and after else "created" if after else "deleted"
-    AuditEntry.objects.create(
-        organisation_id=organisation_id, actor=actor, action=action, subject_type="user", subject_id=str(key), before=before, after=after
-    )

@@ -1,0 +1,15 @@
+"""What is cleared and sealed again from time to time."""
+
+from celery import shared_task
+
+from accounts import second_factors, sign_in_log
+
+
+@shared_task(time_limit=30, soft_time_limit=25)
+def forget_old_sign_ins() -> None:
+    sign_in_log.forget_old_sign_ins()
+
+
+@shared_task(time_limit=60, soft_time_limit=50)
+def seal_second_factors() -> None:
+    second_factors.seal_with_the_key_of_today()

@@ -1,0 +1,1 @@
+"""What every endpoint of the API shares: errors, paging, parsing, permissions, limits and the OpenAPI document."""

@@ -1,0 +1,1 @@
+"""Jobs from request to result: rows, queue, progress and endpoints."""

@@ -1,0 +1,1 @@
+"""What the websockets of all apps share: who is there, limits, changes and graceful shutdown."""

@@ -1,0 +1,1 @@
+"""Sessions in browsers, and what requests of browsers share: preferences, addresses of visitors, limits on guessing."""
