@@ -30,7 +30,8 @@ from benchmarks.plan_latency import missions  # noqa: E402
 from benchmarks.report import machine  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
 from missions.models import EndAction  # noqa: E402
-from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan, planning  # noqa: E402
+from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan
+from missions.services.planning import planner
 from planning.problem import Objective  # noqa: E402
 
 
@@ -84,7 +85,7 @@ def main() -> None:
     measured(asked[:100], 1)  # the first ones load the graph and its indices
     for threads in options.threads:
         print(f"{threads} threads by turns: {measured(asked, threads)}")
-        with mock.patch.object(planning, "in_turn", nullcontext):
+        with mock.patch.object(planner, "in_turn", nullcontext):
             print(f"{threads} threads at once:  {measured(asked, threads)}", flush=True)
 
 

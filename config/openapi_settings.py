@@ -52,7 +52,7 @@ def openapi_settings() -> dict[str, Any]:
             "AlertLevel": "telemetry.models.AlertLevel",
             "TargetState": "missions.models.TargetState",
             "UavState": "missions.models.UavState",
-            "UavFigure": "missions.fleet_selectors.FIGURES",
+            "UavFigure": "missions.selectors.fleet.FIGURES",
             "CredentialKind": "missions.models.CredentialKind",
             "CommandKind": "missions.models.CommandKind",
             "BatchKind": ["hold", "land", "pause", "resume", "return"],

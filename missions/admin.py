@@ -23,7 +23,7 @@ from missions.models import (
     UavType,
     Waypoint,
 )
-from missions.services.link_changes import removal_reasons
+from missions.services.fleet.link_changes import removal_reasons
 from workspace.admin_pages.history import HistoryAdmin
 from workspace.api.signed_in import user_of
 from workspace.audit import record_change

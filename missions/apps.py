@@ -12,4 +12,4 @@ class MissionsConfig(AppConfig):
         label(self.get_models())
         from inspection.auto_apply_hooks import register_check  # noqa: PLC0415 (models are there by then)
 
-        register_check("missions.flown_ground_selectors.flown_missions_touched")
+        register_check("missions.selectors.flown_infrastructure.flown_missions_touched")

@@ -6,7 +6,7 @@ from django.http import Http404
 
 from inspection.selectors import ground_extent
 from missions.models import MissionState
-from missions.selectors import mission_bounds, state_of_mission
+from missions.selectors.missions import mission_bounds, state_of_mission
 from missions.services.missions import EDITABLE
 from workspace.pages import SignedInPage, raster_maps
 

@@ -9,9 +9,10 @@ from django.conf import settings
 from inspection.selectors import NoGraph
 from missions import services
 from missions.models import Mission
-from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands, replanning
-from missions.services.best_so_far import OnPlanProgress, PlanProgress
-from missions.services.planned_starts import carry_on_planned_starts
+from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, replanning
+from missions.services.commands import commands
+from missions.services.commands.planned_starts import carry_on_planned_starts
+from missions.services.planning.best_so_far import OnPlanProgress, PlanProgress
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
 from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job

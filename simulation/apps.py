@@ -10,8 +10,8 @@ class SimulationConfig(AppConfig):
 
     def ready(self) -> None:
         label(self.get_models())
-        from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
-        from missions.event_hooks import register_sources  # noqa: PLC0415
+        from missions.hooks.approval import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.hooks.events import register_sources  # noqa: PLC0415
 
         register_check("simulation.services.green_verdict.reasons_without_rehearsal")
         register_sources("simulation.simulation_selectors.EVENT_SOURCES")

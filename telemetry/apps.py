@@ -10,10 +10,10 @@ class TelemetryConfig(AppConfig):
 
     def ready(self) -> None:
         label(self.get_models())
-        from missions.approval_hooks import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
-        from missions.event_hooks import register_sources  # noqa: PLC0415
-        from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
-        from missions.in_air_hooks import (  # noqa: PLC0415
+        from missions.hooks.approval import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
+        from missions.hooks.events import register_sources  # noqa: PLC0415
+        from missions.hooks.flights import register_flight_teller  # noqa: PLC0415
+        from missions.hooks.in_air import (  # noqa: PLC0415
             register_down_source,
             register_ground_source,
             register_never_heard_source,

@@ -8,9 +8,9 @@ from missions.fields import AboveZeroField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_SPEED_MPS
 from missions.serializers.shapes import WaypointSerializer
-from missions.services.hand_checks import HandLook
-from missions.services.hand_points import MAX_WAYPOINTS, HandPoint
-from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
+from missions.services.manual_edits.checks import HandLook
+from missions.services.manual_edits.points import MAX_WAYPOINTS, HandPoint
+from missions.services.planning.plan_json import column_to_json, timing_to_json, waypoints_to_json
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 

@@ -4,8 +4,8 @@ from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from missions.fields import PositionField
-from missions.fleet_selectors import FIGURES
 from missions.models import UavState
+from missions.selectors.fleet import FIGURES
 
 
 class StaleCauseSerializer(serializers.Serializer):

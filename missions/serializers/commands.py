@@ -5,12 +5,12 @@ from typing import Any
 from drf_spectacular.utils import extend_schema_field
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
+from missions.outcome_messages import command_outcome_in_words
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_LEG_M, MIN_LEG_M
-from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
-from missions.services.steering import MAX_WAIT_S
-from missions.stored_outcomes import command_outcome_in_words
+from missions.services.commands.batch import BATCH_KINDS, UavAnswer
+from missions.services.commands.steering import MAX_WAIT_S
 from workspace.api import strict_serializers as serializers
 
 MAX_FLIGHTS = 100

@@ -9,8 +9,8 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.models import EndAction, Objective, TargetPriority, Uav
+from missions.selectors.fleet import FIGURES, figures_of, uavs_of_organisation
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
     MAX_DAYS_AHEAD,
@@ -41,7 +41,7 @@ from missions.services import (
     refuse_contradictions,
     with_bases,
 )
-from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
+from missions.services.planning.requests import GO_ON, LostLinkRequest, lost_link_from_json
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
 from planning.energy.performance import (

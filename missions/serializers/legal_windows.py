@@ -13,8 +13,8 @@ from inspection.serializers.zones import ScheduleField
 from inspection.zones.activity import Span
 from missions.fields import PositionField
 from missions.models import EndAction
+from missions.selectors.zones import LegalWindows
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.zone_selectors import LegalWindows
 from planning.clearance.zone_clearance import FlownRoute
 from workspace.api import strict_serializers as serializers
 

@@ -5,10 +5,10 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
-from missions.fleet_selectors import bases_of_organisation
+from missions.selectors.fleet import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
 from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
-from missions.services.reachability import CODES, NO_UAV
+from missions.services.targets.reachability import CODES, NO_UAV
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 from workspace.jobs.serializers import Declared

@@ -2,7 +2,7 @@
 
 from rest_framework import serializers
 
-from missions.services.own_return import ReturnState
+from missions.services.commands.rtl_check import ReturnState
 
 
 class ReturnCheckSerializer(serializers.Serializer):

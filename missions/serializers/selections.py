@@ -5,7 +5,7 @@ from typing import Any
 from inspection.selectors import asset_detail, asset_label
 from missions.fields import PositionField
 from missions.models import SavedSelection, TargetPriority
-from missions.selection_selectors import KeptTarget, kept_targets
+from missions.selectors.selections import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
 from workspace.api import strict_serializers as serializers

@@ -3,8 +3,8 @@
 from rest_framework import serializers
 
 from missions.fields import ColoursField, PositionField
-from missions.fleet_selectors import FIGURES
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
+from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
 from planning.clearance.lost_link import LostLink, Trouble

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from missions.models import PlannedStarts, Route, StartsEnd
-from missions.services.planned_starts import StartState
+from missions.services.commands.planned_starts import StartState
 from workspace.api import strict_serializers as serializers
 
 

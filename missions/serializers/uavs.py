@@ -5,8 +5,8 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
+from missions.selectors.fleet import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.serializers.inputs import MAX_RANGE_M, MAX_SPEED_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.performance import fault_words

@@ -1,8 +1,8 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
-from missions.services.by_hand import change_route, take_back_change
-from missions.services.credentials import make_credential, mavlink_signing_key, revoke_credential
-from missions.services.fleet import (
+from missions.services.fleet.credentials import make_credential, mavlink_signing_key, revoke_credential
+from missions.services.fleet.rows import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
+from missions.services.fleet.types_and_bases import (
     change_base,
     change_uav_type,
     create_base,
@@ -12,9 +12,10 @@ from missions.services.fleet import (
     restore_base,
     restore_uav_type,
 )
-from missions.services.fleet_rows import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
-from missions.services.hand_checks import look_by_hand
-from missions.services.hand_points import HandPoint
+from missions.services.fleet.uavs import change_uav, create_uav, delete_uav, restore_uav
+from missions.services.manual_edits.checks import look_by_hand
+from missions.services.manual_edits.edits import change_route, take_back_change
+from missions.services.manual_edits.points import HandPoint
 from missions.services.mission_copies import duplicate_mission
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (
@@ -29,10 +30,9 @@ from missions.services.missions import (
     request_of_mission,
     restore_mission,
 )
-from missions.services.places import places_of
-from missions.services.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
-from missions.services.planning import GraphOutdated, make_plan
-from missions.services.requests import (
+from missions.services.planning.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
+from missions.services.planning.planner import GraphOutdated, make_plan
+from missions.services.planning.requests import (
     CALM,
     BaseRequest,
     InvalidRequest,
@@ -45,11 +45,11 @@ from missions.services.requests import (
     request_from_json,
     request_to_json,
 )
-from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
-from missions.services.warming_up import warm_up
-from missions.services.why_route import explain_route
-from missions.services.why_target import explain_unreached_target
-from missions.services.wishes import refuse_contradictions, with_bases
+from missions.services.planning.warm_up import warm_up
+from missions.services.targets.constraints import refuse_contradictions, with_bases
+from missions.services.targets.places import places_of
+from missions.services.targets.why_route import explain_route
+from missions.services.targets.why_target import explain_unreached_target
 
 __all__ = [
     "CALM",

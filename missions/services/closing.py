@@ -6,15 +6,15 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from missions.in_air_hooks import uavs_in_the_air
+from missions.hooks.in_air import uavs_in_the_air
 from missions.models import ENDED_STATES, CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
-from missions.selectors import approval_in_force
-from missions.services.approval import change_state, held_mission, uavs_that_may_hold
-from missions.services.dispatch import busy_elsewhere
-from missions.services.flying import ON_ITS_WAY, UNDECIDED
+from missions.selectors.missions import approval_in_force
+from missions.services.approval.approval import change_state, held_mission, uavs_that_may_hold
+from missions.services.commands.dispatch import busy_elsewhere
+from missions.services.commands.flight_progress import ON_ITS_WAY, UNDECIDED
+from missions.services.commands.outbox import queue_command
+from missions.services.commands.refused import Reason, refuse, refuse_for
 from missions.services.missions import note
-from missions.services.outbox import queue_command
-from missions.services.refused import Reason, refuse, refuse_for
 from workspace.models import User
 
 MAX_REASON_LENGTH = 300

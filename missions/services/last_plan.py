@@ -7,7 +7,7 @@ import numpy as np
 
 from inspection.geodesy import distance_m
 from missions.models import EndAction, InspectionTarget, Mission, Route, Waypoint, WaypointKind
-from missions.services.hand_legs import hand_legs_json
+from missions.services.manual_edits.legs import hand_legs_json
 
 OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 

@@ -10,9 +10,9 @@ from django.utils.translation import gettext as _
 
 from missions.models import ENDED_STATES, InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
 from missions.models.missions import MAX_NAME_LENGTH
+from missions.services.commands.refused import refuse
+from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import create_mission, note, request_of_mission
-from missions.services.refused import refuse
-from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
 COPIED = (

@@ -10,13 +10,13 @@ from django.utils import timezone
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
-from missions.services.best_so_far import OnPlanProgress
-from missions.services.kept_by_hand import keep_by_hand
+from missions.services.manual_edits.preserved import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
-from missions.services.plan_json import NO_SHORTFALL
-from missions.services.planning import make_plan
-from missions.services.requests import GO_ON, PlanRequest, request_from_json
-from missions.services.wishes import has_sensor, with_bases
+from missions.services.planning.best_so_far import OnPlanProgress
+from missions.services.planning.plan_json import NO_SHORTFALL
+from missions.services.planning.planner import make_plan
+from missions.services.planning.requests import GO_ON, PlanRequest, request_from_json
+from missions.services.targets.constraints import has_sensor, with_bases
 from planning.solver.solver import Stop
 from workspace.audit import record_change
 from workspace.jobs.services import JobCancelled, finish_job

@@ -13,10 +13,9 @@ from django.utils import timezone
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
+from missions.services.approval.lost_link import lost_link_of_stored
 from missions.services.last_plan import summary_of_plan
-from missions.services.lost_link import lost_link_of_stored
-from missions.services.places import places_of
-from missions.services.requests import (
+from missions.services.planning.requests import (
     InvalidRequest,
     LockRequest,
     LostLinkRequest,
@@ -33,7 +32,8 @@ from missions.services.requests import (
     task_from_json,
     task_to_json,
 )
-from missions.services.wishes import refuse_contradictions
+from missions.services.targets.constraints import refuse_contradictions
+from missions.services.targets.places import places_of
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
 from planning.problem import Objective

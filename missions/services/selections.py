@@ -6,8 +6,8 @@ from typing import Any
 from django.db import IntegrityError, transaction
 
 from missions.models import SavedSelection
-from missions.services.places import places_of
-from missions.services.requests import TargetRequest, priority_to_json, task_to_json
+from missions.services.planning.requests import TargetRequest, priority_to_json, task_to_json
+from missions.services.targets.places import places_of
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 

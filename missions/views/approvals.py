@@ -9,14 +9,14 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import selectors
-from missions.command_selectors import commands_of_organisation
 from missions.models import UavCommand
+from missions.selectors import missions
+from missions.selectors.commands import commands_of_organisation
 from missions.serializers import commands as shapes
 from missions.serializers.shapes import MissionSerializer
-from missions.services.approval import approve_mission, revoke_approval
+from missions.services.approval.approval import approve_mission, revoke_approval
 from missions.services.closing import close_mission
-from missions.services.dispatch import abort_mission, dispatch_mission
+from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, answer_mission, expected_revision, mission_or_404, stated_revision
 from missions.views.problems import api_problems, refusals
 from workspace.api.idempotency import idempotent
@@ -54,7 +54,7 @@ class MissionApproval(APIView):
         operation_id="get_mission_approval", summary="What was approved, word for word", responses=shapes.ApprovalDocumentSerializer
     )
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
-        approval = selectors.approval_in_force(mission_or_404(request.user, mission_id))
+        approval = missions.approval_in_force(mission_or_404(request.user, mission_id))
         if approval is None:
             raise Http404
         return Response(

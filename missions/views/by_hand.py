@@ -8,9 +8,10 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import selectors, services
-from missions.leg_selectors import Leg, LegEnd, LegFlyer, faults_of_legs
+from missions import services
 from missions.models import Mission
+from missions.selectors import missions
+from missions.selectors.legs import Leg, LegEnd, LegFlyer, faults_of_legs
 from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
@@ -55,7 +56,7 @@ class RouteWaypointsLook(APIView):
     )
     def post(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         try:
-            mission = selectors.mission_alone(request.user.organisation, mission_id)
+            mission = missions.mission_alone(request.user.organisation, mission_id)
         except Mission.DoesNotExist as error:
             raise Http404 from error
         body = by_hand.HandRouteSerializer(data=request.data)

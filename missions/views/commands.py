@@ -9,11 +9,11 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions.command_selectors import commands_of_mission, commands_of_organisation, commands_of_uav
 from missions.models import CommandKind, UavCommand
+from missions.selectors.commands import commands_of_mission, commands_of_organisation, commands_of_uav
 from missions.serializers import commands as shapes
-from missions.services.batch_commands import Scope, command_missions
-from missions.services.steering import command_uav
+from missions.services.commands.batch import Scope, command_missions
+from missions.services.commands.steering import command_uav
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals

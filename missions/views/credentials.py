@@ -9,8 +9,9 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts.reauthentication import PASSWORD_NEEDED, require_proof
-from missions import fleet_selectors, services
+from missions import services
 from missions.models import CredentialKind
+from missions.selectors import fleet
 from missions.serializers.fleet import (
     CredentialInputSerializer,
     CredentialPageSerializer,
@@ -41,7 +42,7 @@ class UavCredentials(APIView):
         responses=CredentialPageSerializer,
     )
     def get(self, request: SignedInRequest, uav_id: int) -> Response:
-        credentials = fleet_selectors.credentials_of_uav(uav_or_404(request.user, uav_id))
+        credentials = fleet.credentials_of_uav(uav_or_404(request.user, uav_id))
         page = page_of(request, credentials, order=("-created_at", "-pk"), default_limit=20)
         return Response({"results": [credential_json(credential) for credential in page.rows], "next": page.next})
 
@@ -86,7 +87,7 @@ class UavCredentialDetail(APIView):
         require_proof(request)
         serializer = InsistSerializer(data=request.query_params)
         serializer.is_valid(raise_exception=True)
-        credentials = fleet_selectors.credentials_of_uav(uav_or_404(request.user, uav_id)).select_related("uav__organisation")
+        credentials = fleet.credentials_of_uav(uav_or_404(request.user, uav_id)).select_related("uav__organisation")
         credential = get_object_or_404(credentials, pk=credential_id)
         with refusals():
             services.revoke_credential(

@@ -10,10 +10,10 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions.event_hooks import EventKind, MissionEvent, Place
-from missions.event_selectors import LoggedEvent, events_of_missions, missions_with_live_events
+from missions.hooks.events import EventKind, MissionEvent, Place
 from missions.models import Mission
-from missions.selectors import mission_alone
+from missions.selectors.events import LoggedEvent, events_of_missions, missions_with_live_events
+from missions.selectors.missions import mission_alone
 from workspace.api import strict_serializers as serializers
 from workspace.api.paging import slice_of
 from workspace.api.schema import PAGE_PARAMETERS

@@ -15,11 +15,11 @@ from missions import services
 from missions.models import Mission, WaypointKind
 from missions.serializers import explanations
 from missions.serializers.inputs import PlanInputSerializer, plan_request
-from missions.services.later_departure import better_departure
-from missions.services.requests import InvalidRequest, PlanRequest
-from missions.services.why_route import explain_route
-from missions.services.why_target import explain_unreached_target
-from missions.services.wishes import stored_bases
+from missions.services.planning.later_departure import better_departure
+from missions.services.planning.requests import InvalidRequest, PlanRequest
+from missions.services.targets.constraints import stored_bases
+from missions.services.targets.why_route import explain_route
+from missions.services.targets.why_target import explain_unreached_target
 from missions.views.missions import mission_or_404
 from missions.views.plans import is_small
 from missions.views.problems import api_problems

@@ -9,8 +9,9 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import fleet_selectors, services
+from missions import services
 from missions.models import Base, UavType
+from missions.selectors import fleet
 from missions.serializers.fleet import (
     BasePageSerializer,
     BaseSerializer,
@@ -35,7 +36,7 @@ def _text(request: Request) -> str:
 
 
 def _type(user: User, type_id: int) -> UavType:
-    row = fleet_selectors.types_of_organisation(user.organisation).filter(pk=type_id).first()
+    row = fleet.types_of_organisation(user.organisation).filter(pk=type_id).first()
     if row is None:
         raise Http404
     return row
@@ -48,7 +49,7 @@ def _type_answer(user: User, type_id: int, *, status: int = 200) -> Response:
 
 
 def _type_now(user: User, type_id: int) -> Any:
-    row = fleet_selectors.types_of_organisation(user.organisation).filter(pk=type_id).first()
+    row = fleet.types_of_organisation(user.organisation).filter(pk=type_id).first()
     return uav_type_json(row) if row else None
 
 
@@ -60,7 +61,7 @@ class UavTypeList(APIView):
         responses=UavTypePageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        types = fleet_selectors.types_of_organisation(request.user.organisation, text=_text(request))
+        types = fleet.types_of_organisation(request.user.organisation, text=_text(request))
         page = page_of(request, changed_since(request, types), order=("name", "pk"))
         return Response({"results": [uav_type_json(row) for row in page.rows], "next": page.next})
 
@@ -124,7 +125,7 @@ class UavTypeRestore(APIView):
 
 
 def _base(user: User, base_id: int) -> Base:
-    row = fleet_selectors.bases_of_organisation(user.organisation).filter(pk=base_id).first()
+    row = fleet.bases_of_organisation(user.organisation).filter(pk=base_id).first()
     if row is None:
         raise Http404
     return row
@@ -137,7 +138,7 @@ def _base_answer(user: User, base_id: int, *, status: int = 200) -> Response:
 
 
 def _base_now(user: User, base_id: int) -> Any:
-    row = fleet_selectors.bases_of_organisation(user.organisation).filter(pk=base_id).first()
+    row = fleet.bases_of_organisation(user.organisation).filter(pk=base_id).first()
     return base_json(row) if row else None
 
 
@@ -149,7 +150,7 @@ class BaseList(APIView):
         responses=BasePageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        bases = fleet_selectors.bases_of_organisation(request.user.organisation, text=_text(request))
+        bases = fleet.bases_of_organisation(request.user.organisation, text=_text(request))
         page = page_of(request, changed_since(request, bases), order=("name", "pk"))
         return Response({"results": [base_json(row) for row in page.rows], "next": page.next})
 

@@ -8,7 +8,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiResponse
 
-from missions.fleet_selectors import last_change
+from missions.selectors.fleet import last_change
 from missions.services import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
 from workspace.api.errors import ApiProblem
 from workspace.api.preconditions import PRECONDITION_ANSWERS

@@ -13,10 +13,10 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.zones.activity import Span
+from missions.selectors.zones import flown_route, legal_windows
 from missions.serializers.inputs import MAX_DAYS_AHEAD
 from missions.serializers.legal_windows import LegalWindowsInputSerializer, LegalWindowsSerializer, legal_windows_json
 from missions.views.missions import mission_or_404
-from missions.zone_selectors import flown_route, legal_windows
 from workspace.api.errors import ApiProblem
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate

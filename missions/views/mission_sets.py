@@ -9,13 +9,14 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
-from missions import selectors, services
-from missions.list_selectors import choices_of_filters
+from missions import services
 from missions.models import Mission
 from missions.presence import report_presence
+from missions.selectors import missions
+from missions.selectors.mission_list import choices_of_filters
+from missions.selectors.uav_changes import uav_change_json, uav_changes
 from missions.serializers import inputs, shapes
 from missions.services.mission_copies import draft_follow_up
-from missions.uav_change_selectors import uav_change_json, uav_changes
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
 from missions.views.problems import api_problems, refusals
@@ -121,7 +122,7 @@ class MissionPresence(APIView):
     )
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         user = request.user
-        if selectors.revision_of_mission(user.organisation_id, mission_id) is None:
+        if missions.revision_of_mission(user.organisation_id, mission_id) is None:
             raise Http404
         serializer = inputs.PresenceInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)

@@ -14,8 +14,10 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
-from missions import selectors, services
-from missions.list_selectors import (
+from missions import services
+from missions.models import Mission, MissionState
+from missions.selectors import missions
+from missions.selectors.mission_list import (
     LAST_CHANGED_FIRST,
     ORDERS,
     MissionFilter,
@@ -25,13 +27,12 @@ from missions.list_selectors import (
     order_of,
     surroundings,
 )
-from missions.models import Mission, MissionState
+from missions.selectors.stale_plans import bases_landed_at
+from missions.selectors.uav_changes import missions_with_other_uavs
 from missions.serializers import inputs, shapes
 from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import Charging, Departure, MissionChange
-from missions.stale_selectors import bases_landed_at
-from missions.uav_change_selectors import missions_with_other_uavs
 from missions.views.plans import is_small, job_answer, planning_job
 from missions.views.problems import api_problems
 from workspace.api.errors import ApiProblem
@@ -112,7 +113,7 @@ def _refusal(name: str, message: str) -> Any:
 
 def mission_or_404(user: User, mission_id: UUID, *, deleted: bool = False) -> Mission:
     try:
-        return selectors.mission_of_organisation(user.organisation, mission_id, deleted=deleted)
+        return missions.mission_of_organisation(user.organisation, mission_id, deleted=deleted)
     except Mission.DoesNotExist as error:
         raise Http404 from error
 
@@ -161,7 +162,7 @@ def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int
         services.plan_mission(mission=mission, actor=user, expected_revision=revision)
         return answer_mission(user, mission.pk, status=status)
     services.plannable_request(mission=mission)
-    job = planning_job(user, selectors.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
+    job = planning_job(user, missions.PLAN_MISSION, {"mission": str(mission.pk), "revision": revision}, targets)
     return job_answer(job, mission=str(mission.pk))
 
 
@@ -236,7 +237,7 @@ class MissionDetail(_PlansWhenAsked):
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         known = request.headers.get("If-None-Match")
         if known is not None:
-            revision = selectors.revision_of_mission(request.user.organisation_id, mission_id)
+            revision = missions.revision_of_mission(request.user.organisation_id, mission_id)
             if revision is not None and f'"{revision}"' in [tag.strip().removeprefix("W/") for tag in known.split(",")]:
                 return Response(status=304, headers={"ETag": f'"{revision}"'})
         return answer_mission(request.user, mission_id)
@@ -314,5 +315,5 @@ class MissionHistory(APIView):
         responses=HistoryPageSerializer,
     )
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
-        page = page_of(request, selectors.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
+        page = page_of(request, missions.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
         return Response({"results": HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})

@@ -16,7 +16,7 @@ from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.plain_request import plain_request
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
-from missions.services.reachability import reachability
+from missions.services.targets.reachability import reachability
 from missions.views.problems import api_problems
 from missions.views.small_plans import small_plan
 from workspace.api.errors import ApiProblem

@@ -7,7 +7,7 @@ from django.utils.translation import gettext as _
 
 from inspection.selectors import NoGraph
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
-from missions.services.refused import Refused
+from missions.services.commands.refused import Refused
 from workspace.api.errors import ApiProblem
 
 RETRY_AFTER_S = 3  # a new graph is built within seconds

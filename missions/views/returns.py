@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.serializers.returns import ReturnChecksSerializer
-from missions.services.own_return import return_checks
+from missions.services.commands.rtl_check import return_checks
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems
 from workspace.api.signed_in import SignedInRequest

@@ -11,7 +11,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import SavedSelection
-from missions.selection_selectors import selections_of_organisation
+from missions.selectors.selections import selections_of_organisation
 from missions.serializers.selections import (
     SelectionInputSerializer,
     SelectionPageSerializer,

@@ -18,7 +18,7 @@ from missions.serializers.starts import (
     planned_starts_json,
     waiting_json,
 )
-from missions.services.planned_starts import begin_planned_starts, stop_planned_starts, waiting_for_start
+from missions.services.commands.planned_starts import begin_planned_starts, stop_planned_starts, waiting_for_start
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals

@@ -10,8 +10,9 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions import fleet_selectors, services
+from missions import services
 from missions.models import Uav, UavState
+from missions.selectors import fleet
 from missions.serializers.fleet import UavMissionPageSerializer
 from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
 from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
@@ -27,7 +28,7 @@ from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
 from workspace.models import User
 
-STATES = (*UavState.values, fleet_selectors.EVERY_STATE)
+STATES = (*UavState.values, fleet.EVERY_STATE)
 BASE, TYPE = WholeNumber("base"), WholeNumber("type")
 WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
 
@@ -36,15 +37,15 @@ INPUT = PolymorphicProxySerializer(
 )
 
 
-def uav_or_404(user: User, uav_id: int) -> fleet_selectors.UavWithUse:
+def uav_or_404(user: User, uav_id: int) -> fleet.UavWithUse:
     uav = _uav_now(user, uav_id)
     if uav is None:
         raise Http404
     return uav
 
 
-def _uav_now(user: User, uav_id: int) -> fleet_selectors.UavWithUse | None:
-    return fleet_selectors.with_use(fleet_selectors.uavs_of_organisation(user.organisation)).filter(pk=uav_id).first()
+def _uav_now(user: User, uav_id: int) -> fleet.UavWithUse | None:
+    return fleet.with_use(fleet.uavs_of_organisation(user.organisation)).filter(pk=uav_id).first()
 
 
 def _feature_now(user: User, uav_id: int) -> Any:
@@ -97,14 +98,14 @@ class UavList(APIView):
     )
     def get(self, request: SignedInRequest) -> Response:
         filters = _filters(request)
-        found = fleet_selectors.uavs_that_match(request.user.organisation, **filters)
-        in_any_state = fleet_selectors.uavs_that_match(request.user.organisation, **filters | {"state": fleet_selectors.EVERY_STATE})
-        page = page_of(request, fleet_selectors.with_use(changed_since(request, found)), order=("name", "pk"))
+        found = fleet.uavs_that_match(request.user.organisation, **filters)
+        in_any_state = fleet.uavs_that_match(request.user.organisation, **filters | {"state": fleet.EVERY_STATE})
+        page = page_of(request, fleet.with_use(changed_since(request, found)), order=("name", "pk"))
         return Response(
             {
                 "type": "FeatureCollection",
                 "features": [uav_feature(uav) for uav in page.rows],
-                "numbers": fleet_selectors.numbers_by_state(in_any_state),
+                "numbers": fleet.numbers_by_state(in_any_state),
                 "next": page.next,
             }
         )
@@ -175,7 +176,7 @@ class UavMissions(APIView):
         responses=UavMissionPageSerializer,
     )
     def get(self, request: SignedInRequest, uav_id: int) -> Response:
-        missions = fleet_selectors.missions_of_uav(uav_or_404(request.user, uav_id))
+        missions = fleet.missions_of_uav(uav_or_404(request.user, uav_id))
         page = page_of(request, missions, order=("-updated_at", "-pk"), default_limit=20)
         return Response({"results": [_mission_json(mission) for mission in page.rows], "next": page.next})
 

@@ -7,8 +7,9 @@ from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
 from typing import Any
 
-from missions.services.credentials import note_mavlink_key_use
-from missions.services.own_return import note_own_return
+from missions.services.commands.rtl_check import note_own_return
+from missions.services.fleet.credentials import note_mavlink_key_use
+
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.session import Session
 from telemetry.services.alerts import tell_of_second_sender

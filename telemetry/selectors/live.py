@@ -7,7 +7,8 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from uuid import UUID
 
-from missions.command_selectors import SENT_LAST
+from missions.selectors.commands import SENT_LAST
+
 from workspace.prepared_statements import prepared_rows
 
 Key = tuple[str, str]  # kind and id
@@ -31,7 +32,7 @@ MAX_CLOSED = 100
 # critical ones that have ended and that nobody has acknowledged, and the newest that were closed within the hour, of the organisation and
 # of each mission asked for; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked
 # for: to these belong UAVs with a route of theirs that fly no other mission. A UAV flies the mission of which it was sent a route last
-# (missions/command_selectors.py).
+# (missions/selectors/commands.py).
 _LOOK = f"""
 WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
 flown AS (

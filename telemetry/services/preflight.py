@@ -14,21 +14,21 @@ from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import get_language
 from django.utils.translation import gettext as _
+from missions.outcome_messages import outcome_in_words
+from missions.selectors.commands import upload_of
+from missions.selectors.fleet import performance_of
+from missions.selectors.missions import approval_in_force, mission_of_organisation
+from missions.services.approval.checks import look_at
+from missions.services.commands.dispatch import TO_SEND
+from missions.services.commands.planned_starts import routes_not_begun, uavs_being_started
+from missions.services.commands.refused import Reason
+from missions.services.commands.rtl_check import ReturnCheck, ReturnState, return_checks
+from missions.services.commands.start_slots import reasons_to_wait
 
 from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
 from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
-from missions.command_selectors import upload_of
-from missions.fleet_selectors import performance_of
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
-from missions.selectors import approval_in_force, mission_of_organisation
-from missions.services.approval_checks import look_at
-from missions.services.dispatch import TO_SEND
-from missions.services.own_return import ReturnCheck, ReturnState, return_checks
-from missions.services.planned_starts import routes_not_begun, uavs_being_started
-from missions.services.refused import Reason
-from missions.services.start_slots import reasons_to_wait
-from missions.stored_outcomes import outcome_in_words
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.approved_flights import approved_content

@@ -9,8 +9,8 @@ from typing import IO, Any
 
 from django.conf import settings
 from django.core.serializers.json import DjangoJSONEncoder
+from missions.selectors.commands import commands_of_mission
 
-from missions.command_selectors import commands_of_mission
 from missions.models import Mission
 from telemetry.exports.csv_file import csv_pieces
 from telemetry.exports.geojson_file import geojson_pieces

@@ -8,6 +8,11 @@ import pytest
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
+from missions.services.approval.approval import approve_mission, revoke_approval
+from missions.services.approval.document import approval_document, content_sha256
+from missions.services.commands.commands import note_applied, note_failed
+from missions.services.commands.refused import Refused
+from missions.services.planning.requests import LostLinkRequest
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
@@ -28,11 +33,6 @@ from missions.services import (
     plan_mission,
     take_back_change,
 )
-from missions.services.approval import approve_mission, revoke_approval
-from missions.services.approval_document import approval_document, content_sha256
-from missions.services.commands import note_applied, note_failed
-from missions.services.refused import Refused
-from missions.services.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
@@ -117,7 +117,7 @@ def test_a_zone_saved_between_the_checks_and_the_document_is_not_approved(
         worlds.zone_around((10.0025, 55.9975), 0.002, name="Saved meanwhile")
         return approval_document(loaded, **more)
 
-    monkeypatch.setattr("missions.services.approval.approval_document", late)
+    monkeypatch.setattr("missions.services.approval.approval.approval_document", late)
     assert refused(mission, person) == ["ground_changed"]
 
 

@@ -4,12 +4,13 @@ import threading
 
 import pytest
 from django.db import connection, connections
+from missions.services.approval.approval import held_mission
+from missions.services.commands.refused import Refused
+from missions.services.commands.steering import command_uav
 
 from missions.models import CommandKind, MissionState
-from missions.services import approval_checks, dispatch
-from missions.services.approval import held_mission
-from missions.services.refused import Refused
-from missions.services.steering import command_uav
+from missions.services.approval import checks
+from missions.services.commands import dispatch
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import world
@@ -44,7 +45,7 @@ def test_a_mission_is_aborted_while_a_start_of_it_is_looked_at(monkeypatch):
     author, (one, other) = an_operator(), fleet("Tern", "Kite")
     mission = dispatched(author, [one, other], world().towers[:2])
     carry(one, other)
-    look, looked = approval_checks.reasons_against, []
+    look, looked = checks.reasons_against, []
 
     def slowly(*values, **named):
         if not looked:
@@ -52,7 +53,7 @@ def test_a_mission_is_aborted_while_a_start_of_it_is_looked_at(monkeypatch):
             beside(lambda: dispatch.abort_mission(mission=mission, actor=author, why="smoke"))
         return look(*values, **named)
 
-    monkeypatch.setattr(approval_checks, "reasons_against", slowly)
+    monkeypatch.setattr(checks, "reasons_against", slowly)
     with pytest.raises(Refused) as refused:
         command_uav(uav=one, kind=CommandKind.START, actor=author)
     assert refused.value.reasons[0].code == "no_mission", "it was aborted in the meantime"
@@ -64,7 +65,7 @@ def test_a_look_counts_as_long_as_nothing_was_changed(monkeypatch):
     author, (uav,) = an_operator(), fleet("Tern")
     mission = dispatched(author, [uav], world().towers[:1])
     carry(uav)
-    look, looks = approval_checks.reasons_against, []
+    look, looks = checks.reasons_against, []
 
     def counted(*values, **named):
         looks.append(named)
@@ -72,7 +73,7 @@ def test_a_look_counts_as_long_as_nothing_was_changed(monkeypatch):
             mission.__class__.objects.filter(pk=mission.pk).update(revision=mission.revision + 1)
         return look(*values, **named)
 
-    monkeypatch.setattr(approval_checks, "reasons_against", counted)
+    monkeypatch.setattr(checks, "reasons_against", counted)
     assert command_uav(uav=uav, kind=CommandKind.START, actor=author).parameters == {"flight": 1}
     assert len(looks) == 2, "the mission was changed while it was looked at"
 

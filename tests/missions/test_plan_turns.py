@@ -9,7 +9,8 @@ from unittest import mock
 import pytest
 from django.db import connections
 
-from missions.services import make_plan, planning
+from missions.services import make_plan
+from missions.services.planning import planner
 from tests.missions.worlds import World, request, uav, world
 from workspace.jobs import planning_lock
 from workspace.jobs.planning_lock import in_turn
@@ -40,7 +41,7 @@ def has_room() -> bool:
 def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planning_lock, "TIMEOUT_S", 60.0)
     here = world()
-    inside, most, best_on = [0], [0], planning._Planner.best_on
+    inside, most, best_on = [0], [0], planner._Planner.best_on
     together = threading.Barrier(PLANNERS)
 
     def noted(planner: Any, ground: Any) -> Any:
@@ -58,7 +59,7 @@ def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: 
         finally:
             connections.close_all()
 
-    with mock.patch.object(planning._Planner, "best_on", noted), ThreadPoolExecutor(PLANNERS) as planners:
+    with mock.patch.object(planner._Planner, "best_on", noted), ThreadPoolExecutor(PLANNERS) as planners:
         lengths_m = [made.result() for made in [planners.submit(plan) for _ in range(PLANNERS)]]
     assert most == [1]
     assert len(set(lengths_m)) == 1
@@ -77,8 +78,8 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
         told.append("written")
         return write(*args, **kwargs)
 
-    now, write = planning.edition_now, planning.plan_to_json
-    with mock.patch.object(planning, "edition_now", edition_now), mock.patch.object(planning, "plan_to_json", written):
+    now, write = planner.edition_now, planner.plan_to_json
+    with mock.patch.object(planner, "edition_now", edition_now), mock.patch.object(planner, "plan_to_json", written):
         make_plan(request=asked(here))
         with in_turn():  # the caller's, as for a small plan
             make_plan(request=asked(here))
@@ -113,7 +114,7 @@ def ask_slowly(told: list[bool]) -> None:
 @pytest.mark.django_db
 def test_a_plan_that_fails_gives_its_turn_up() -> None:
     here = world()
-    with mock.patch.object(planning._Planner, "best_on", side_effect=RuntimeError), pytest.raises(RuntimeError):
+    with mock.patch.object(planner._Planner, "best_on", side_effect=RuntimeError), pytest.raises(RuntimeError):
         make_plan(request=asked(here))
     assert has_room()
 

@@ -3,10 +3,10 @@
 from unittest import mock
 
 import pytest
+from missions.services.targets.places import places_of
 
 from inspection.models import Asset, AssetKind
 from missions.services import TargetRequest
-from missions.services.places import places_of
 from tests.missions.worlds import world
 
 pytestmark = pytest.mark.django_db
@@ -28,7 +28,7 @@ def test_the_short_way_finds_what_the_long_way_finds() -> None:
     targets = [TargetRequest(pk) for pk in assets.values_list("pk", flat=True)]
     assert len(targets) > 3
     quick = places_of(targets)
-    with mock.patch("missions.services.places._plain_places", return_value=None):
+    with mock.patch("missions.services.targets.places._plain_places", return_value=None):
         slow = places_of(targets)
     assert slow == quick
     assert [place.label for place in slow[0]] == [place.label for place in quick[0]]

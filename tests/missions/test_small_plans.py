@@ -254,7 +254,7 @@ def test_without_a_network_the_view_says_so(here: World) -> None:
     assert (short.status_code, short.json()["error"]["code"]) == (503, "no_graph")
 
 
-@pytest.mark.parametrize("where", ["missions.views.small_plans.holder_of", "missions.services.planning.edition_now"])
+@pytest.mark.parametrize("where", ["missions.views.small_plans.holder_of", "missions.services.planning.planner.edition_now"])
 def test_without_the_database_the_view_says_so(here: World, where: str) -> None:
     client = program_of(somebody(Role.OPERATOR))
     with mock.patch(where, side_effect=OperationalError("away")):

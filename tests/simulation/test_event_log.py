@@ -10,13 +10,13 @@ from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_target
+from missions.services.commands.steering import command_uav
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
-from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_target
 from missions.services.replanning import decline_offer, suggest
 from missions.services.replanning.offers import settle_offers
-from missions.services.steering import command_uav
 from telemetry.models import AlertLevel, FlightEvent, VehicleText
 from telemetry.selectors import events as telemetry_events
 from telemetry.services import NewRecord, store_records

@@ -6,8 +6,12 @@ import pytest
 from django.core import serializers
 from django.test import Client
 from django.utils import timezone
+from missions.selectors.flights import flights_at_the_same_time
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.dispatch import dispatch_mission
+from missions.services.commands.refused import Refused
+from missions.services.commands.start_slots import reasons_to_wait
 
-from missions.flight_selectors import flights_at_the_same_time
 from missions.models import (
     Approval,
     CommandState,
@@ -21,11 +25,7 @@ from missions.models import (
     UavState,
     Waypoint,
 )
-from missions.services.approval import approve_mission
-from missions.services.dispatch import dispatch_mission
 from missions.services.mission_copies import duplicate_mission
-from missions.services.refused import Refused
-from missions.services.start_slots import reasons_to_wait
 from simulation.models import SimulatedVehicle, Simulation
 from simulation.services.green_verdict import set_rule
 from simulation.services.idle_twins import retire_idle_twins

@@ -35,7 +35,7 @@ class Link:
 
 def carry(uav_ids: Sequence[int], link: Link, holder: str, chance: random.Random) -> None:
     """For ever: the most urgent commands to these UAVs, until each was acknowledged."""
-    from missions.services.commands import claim_commands  # noqa: PLC0415 - Django is set up by then
+    from missions.services.commands.commands import claim_commands  # noqa: PLC0415 - Django is set up by then
 
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as radio:
         radio.connect(("127.0.0.1", link.port))
@@ -49,7 +49,7 @@ def carry(uav_ids: Sequence[int], link: Link, holder: str, chance: random.Random
 
 
 def _bring(command: object, radio: socket.socket, link: Link, chance: random.Random) -> None:
-    from missions.services.commands import note_acknowledged, note_applied, note_released, note_sent  # noqa: PLC0415
+    from missions.services.commands.commands import note_acknowledged, note_applied, note_released, note_sent  # noqa: PLC0415
 
     fence = {"attempt": command.attempts, "holder": command.holder}
     told = {"command": str(command.pk), "uav": command.uav_id, "axis": command.axis, "sequence": command.sequence, "kind": command.kind}
@@ -134,7 +134,7 @@ def _main() -> None:
     import django  # noqa: PLC0415
 
     django.setup()
-    import missions.services.commands  # noqa: PLC0415, F401 - loaded once for all
+    import missions.services.commands.commands  # noqa: PLC0415, F401 - loaded once for all
 
     slots, link = json.loads(sys.argv[1]), Link(int(sys.argv[2]), float(sys.argv[3]))
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for those that were killed

@@ -8,12 +8,12 @@ from typing import Any
 import pytest
 from django.db import connection
 from django.test.utils import CaptureQueriesContext
+from missions.services.approval.approval import revoke_approval
+from missions.services.commands.dispatch import abort_mission, dispatch_mission
+from missions.services.commands.outbox import queue_command
 
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, UavCommand
-from missions.services.approval import revoke_approval
-from missions.services.dispatch import abort_mission, dispatch_mission
 from missions.services.missions import MissionChange, MissionFrozen, change_mission
-from missions.services.outbox import queue_command
 from telemetry.models import Alert
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.outbox import lose

@@ -43,8 +43,8 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        "missions/services/planning.py",
-        "missions/services/assignment.py",
+        "missions/services/planning/planner.py",
+        "missions/services/targets/assignment.py",
         "planning/solver/solver.py",
         "inspection/importers/osm/reader.py",
         "inspection/services/osm_import.py",

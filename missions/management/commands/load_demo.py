@@ -7,7 +7,7 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import transaction
 
 from inspection.demo_region import BASES
-from missions.services.demo_uavs import create_demo_uavs
+from missions.services.fleet.demo_uavs import create_demo_uavs
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, Role, User
 
 

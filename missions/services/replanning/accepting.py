@@ -25,10 +25,10 @@ from missions.models import (
     Uav,
     UavCommand,
 )
-from missions.services.approval import approve_mission, change_state, held_mission
-from missions.services.flying import end_if_over
-from missions.services.outbox import queue_command
-from missions.services.refused import refuse
+from missions.services.approval.approval import approve_mission, change_state, held_mission
+from missions.services.commands.flight_progress import end_if_over
+from missions.services.commands.outbox import queue_command
+from missions.services.commands.refused import refuse
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.rest import COMING_BACK
 from missions.services.replanning.staleness import why_outdated

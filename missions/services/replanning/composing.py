@@ -10,9 +10,9 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.models import EndAction
-from missions.services.plan_json import PlannedRoute
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import task_from_json
 from missions.services.replanning.leaving import CannotLeave, Leaving
-from missions.services.requests import task_from_json
 from planning.energy.conditions import Conditions
 from planning.energy.power import NoHeadway
 from planning.trajectory.route_points import line_of

@@ -10,8 +10,8 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.models import Mission, MissionState, OfferState, ReplanOffer, Uav
+from missions.services.commands.refused import refuse
 from missions.services.missions import note
-from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
 from workspace.jobs.services import create_job
 from workspace.live.changes import publish_live

@@ -10,7 +10,6 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
-from missions.ahead_selectors import HEARD_WITHIN_S, OFF_ROUTE_M, first_ahead, passed_point
 from missions.models import (
     Approval,
     CommandAxis,
@@ -25,8 +24,9 @@ from missions.models import (
     UavCommand,
     Waypoint,
 )
-from missions.selectors import approval_in_force
-from missions.services.flying import FLIGHT_FAILED
+from missions.selectors.ahead import HEARD_WITHIN_S, OFF_ROUTE_M, first_ahead, passed_point
+from missions.selectors.missions import approval_in_force
+from missions.services.commands.flight_progress import FLIGHT_FAILED
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done

@@ -8,8 +8,8 @@ from django.utils.dateparse import parse_datetime
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
-from missions.ahead_selectors import HEARD_WITHIN_S
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
+from missions.selectors.ahead import HEARD_WITHIN_S
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
 from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 

@@ -8,16 +8,16 @@ from django.db import transaction
 
 from missions.models import Mission, MissionUav, Route
 from missions.models.missions import MAX_NAME_LENGTH
-from missions.selectors import mission_of_organisation
-from missions.services.approval_checks import reasons_against
+from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.checks import reasons_against
+from missions.services.commands.refused import Reason
+from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.mission_plans import store_plan
 from missions.services.missions import check_lost_link, create_mission
-from missions.services.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
-from missions.services.refused import Reason
+from missions.services.planning.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
+from missions.services.planning.requests import PlanRequest, lost_link_from_json
 from missions.services.replanning.composing import Continued
 from missions.services.replanning.proposals import Proposal
-from missions.services.requests import PlanRequest, lost_link_from_json
-from missions.services.still_apart import separation_of_stored
 from planning.energy.conditions import conditions_from_json
 from planning.problem import Objective
 

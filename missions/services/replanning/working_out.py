@@ -9,8 +9,8 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.models import MissionState, OfferState, ReplanOffer
-from missions.selectors import mission_of_organisation
-from missions.services.refused import Reason
+from missions.selectors.missions import mission_of_organisation
+from missions.services.commands.refused import Reason
 from missions.services.replanning.difference import difference_of
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.proposals import Field, Proposal, field_of, proposals

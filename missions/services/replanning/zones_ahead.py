@@ -7,11 +7,11 @@ from django.utils import timezone
 
 from inspection.selectors import ground_revision
 from missions.models import Mission, MissionState, ReplanOffer
-from missions.selectors import mission_of_organisation
+from missions.selectors.missions import mission_of_organisation
+from missions.selectors.stale_plans import leg_names
+from missions.selectors.zones import MetZone, flown_route, zones_met
 from missions.services.replanning.offers import suggest
 from missions.services.replanning.rest import Cause, Rest, rests_of
-from missions.stale_selectors import leg_names
-from missions.zone_selectors import MetZone, flown_route, zones_met
 
 ZONE_ACTIVE = "zone-active"
 LOOKED_AT_FOR_S = 3_600

@@ -1,0 +1,142 @@
+"""A single leg against zones and heights, while it is being dragged."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+from missions.selectors.zones import zones_met
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.network.spans import Spans, spans_between, spans_of
+from inspection.selectors import NoGraph, ground_heights_m, has_terrain
+from inspection.selectors.planning import planning_read
+from inspection.selectors.zone_table import zone_table
+from inspection.zones.reach import ZoneTable
+from planning.clearance.zone_clearance import FlownRoute
+from planning.energy.conditions import Conditions
+from planning.energy.performance import Performance
+from planning.trajectory.heights import with_heights
+from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
+from planning.trajectory.obstacles import too_low
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from workspace.number_text import number_text
+
+NEAR_DEG = 0.002
+AT_DEG = 1e-5  # a metre
+
+
+class LegEnd(NamedTuple):
+    """arrival_s counts from the departure; None: at any time of the flight."""
+
+    position: LonLat
+    agl_m: float
+    arrival_s: float | None
+
+
+class Leg(NamedTuple):
+    """speed_mps: over ground; None: as the UAV does."""
+
+    start: LegEnd
+    end: LegEnd
+    speed_mps: float | None = None
+
+
+class LegFlyer(NamedTuple):
+    """Who flies legs with a speed, and in which air."""
+
+    name: str
+    cruise_speed_mps: float
+    performance: Performance
+    conditions: Conditions
+
+
+def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
+    """What is wrong with each; flyer: who flies them, needed where one has a speed."""
+    table, has_ground, spans = zone_table(), has_terrain(), _all_spans()
+    return [
+        _faults(leg.start, leg.end, departs_at, table, spans, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT
+        for leg in legs
+    ]
+
+
+def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
+    """Why a speed cannot be flown over a leg."""
+    low, high = (number_text(speed_mps, 1) for speed_mps in possible)
+    if flyer.performance.max_airspeed_mps is None:
+        values = {"low": low, "high": high, "uav": flyer.name}
+        return _("Between %(low)s and %(high)s m/s: the top airspeed of %(uav)s is not stated.") % values
+    return _("Between %(low)s and %(high)s m/s over ground here, in this wind.") % {"low": low, "high": high}
+
+
+def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
+    if leg.speed_mps is None or flyer is None:
+        return None
+    start, end = (RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (leg.start, leg.end))
+    points = RoutePoints.of([start, end._replace(speed_mps=leg.speed_mps)])
+    waypoints = Waypoints(points, None, points.agl_m)
+    found = speeds_out_of_range(
+        waypoints, cruise_speed_mps=flyer.cruise_speed_mps, performance=flyer.performance, conditions=flyer.conditions
+    )
+    return _fault(None, speed_words(found[1], flyer)) if found else None
+
+
+def _faults(
+    start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, *, has_ground: bool
+) -> dict[str, Any] | None:
+    """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
+    flight = settings.FLIGHT_RULES
+    if max(start.agl_m, end.agl_m) > flight.max_agl_m:
+        return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
+    points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
+    flown, _is_flat = with_heights(points, ground_heights_m if has_ground else None, flight)  # over a hill it is several legs
+    position = flown.points.position
+    arrival_s = departs_s = ends_s = None
+    if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
+        departs_s, ends_s = (departs_at.timestamp() + moment_s for moment_s in sorted((start.arrival_s, end.arrival_s)))
+        way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(position, axis=0).T))])
+        arrival_s = departs_s + (ends_s - departs_s) * (way / way[-1] if way[-1] > 0 else np.linspace(0.0, 1.0, len(way)))
+    leg = FlownRoute(position, flown.points.agl_m, flown.amsl_m, arrival_s, departs_s, ends_s)
+    for meeting in zones_met([leg], table)[0]:
+        if 0 <= meeting.breach.leg < len(position) - 1:
+            return _fault(meeting.zone, _("It meets %(zone)s.") % {"zone": meeting.name})
+    low = too_low(flown, _spans_elsewhere(spans, position), ground_heights_m if has_ground else None, flight)
+    return None if low is None else _fault(None, too_low_text(float(low.agl_m.max())))
+
+
+_NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
+
+
+def too_low_text(agl_m: float) -> str:
+    """What is said of a leg that has to be flown at this height above ground over something; inf: nobody knows it."""
+    limit_m = settings.FLIGHT_RULES.max_agl_m
+    if agl_m == np.inf:
+        return _("How high the ground is under what stands here is not known: go round it.")
+    if agl_m > limit_m:
+        return _("What stands here cannot be flown over below %(limit)s m: go round it.") % {"limit": f"{limit_m:.0f}"}
+    return _("Something tall stands here: fly at %(height)s m above ground over it.") % {"height": f"{np.ceil(agl_m):.0f}"}
+
+
+def _all_spans() -> Spans:
+    """Of the network; empty where there is none."""
+    try:
+        return spans_of(planning_read().ground().network())
+    except NoGraph:
+        return spans_between(*(np.zeros((0, 2)),) * 2, *(np.zeros(0),) * 2)
+
+
+def _spans_elsewhere(spans: Spans, position: FloatArray) -> Spans:
+    """Near a leg all but what hangs at its ends: whether these are inspected is not known while it is dragged."""
+    low, high = position.min(axis=0) - NEAR_DEG, position.max(axis=0) + NEAR_DEG
+    near = ((np.maximum(spans.start, spans.end) >= low) & (np.minimum(spans.start, spans.end) <= high)).all(axis=1)
+    for at in (position[0], position[-1]):
+        for ends in (spans.start, spans.end):
+            near &= (np.abs(ends - at) > AT_DEG).any(axis=1)
+    return spans_between(spans.start[near], spans.end[near], spans.start_height_m[near], spans.end_height_m[near], spans.asset[near])
+
+
+def _fault(zone: int | None, message: str) -> dict[str, Any]:
+    return {"is_clear": False, "zone": zone, "message": message}

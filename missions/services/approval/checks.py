@@ -1,0 +1,126 @@
+"""What speaks against flying a mission's routes as they are stored: looked at before it is approved, and again before it is sent."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from django.conf import settings
+from django.utils.translation import gettext as _
+from missions.selectors.missions import mission_of_organisation
+from missions.selectors.stale_plans import causes_on_the_routes
+from missions.selectors.uav_changes import uav_changes
+from missions.services.commands.refused import Reason
+from missions.services.manual_edits.still_separated import separation_of_stored
+from missions.services.planning.over_wires import spans_in_the_way
+
+from inspection.selectors import ground_heights_m, ground_revision
+from inspection.selectors.planning import planning_read
+from missions.models import Mission, MissionState, Route
+from missions.services.missions import MissionChanged
+from missions.services.stored_routes import stored_routes
+
+TOO_NEAR = {"too_near", "hovers_in_the_way"}
+
+
+def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[Reason]:
+    """All of them, of a mission with routes as loaded by selectors.mission_of_organisation; empty where it may be flown.
+
+    One that is under way has departed, and other missions have been kept apart from it.
+    """
+    flown = [route for route in mission.routes.all() if route.geometry is not None]
+    if not flown:
+        return [Reason("no_routes", _("The plan reaches no target, so no UAV flies."))]
+    return [
+        *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
+        *_twins(mission),
+        *_height_references(mission, flown),
+        *_ground(mission),
+    ]
+
+
+def _twins(mission: Mission) -> list[Reason]:
+    """Separation leaves simulated twins out, so they fly the copies that were made for them and nothing else."""
+    if mission.simulates_id is not None:
+        return []
+    twins = mission.mission_uavs.filter(uav__twin_of__isnull=False).values_list("sequence", "name")
+    words = _("%(uav)s is a simulated twin, which flies simulated copies of missions alone. Choose another UAV.")
+    return [Reason("simulated_twin", words % {"uav": name}, sequence) for sequence, name in twins]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What spoke against a mission, taken before its row is held: that may take seconds, for which no abort shall wait."""
+
+    mission_revision: int
+    ground: int
+    is_under_way: bool
+    reasons: tuple[Reason, ...]
+
+    def still_counts(self, held: Mission) -> bool:
+        """Whether neither the mission nor the ground was changed since. The caller holds the mission's row."""
+        now = (held.revision, held.state == MissionState.ACTIVE)
+        return now == (self.mission_revision, self.is_under_way) and self.ground == ground_revision()
+
+
+def look_at(mission: Mission, *, now: datetime) -> Look | None:
+    """reasons_against, with the mission's revision and the ground's; None for one that has been put away."""
+    ground = ground_revision()
+    try:
+        loaded = mission_of_organisation(mission.organisation, mission.pk)
+    except Mission.DoesNotExist:
+        return None
+    is_under_way = loaded.state == MissionState.ACTIVE
+    return Look(loaded.revision, ground, is_under_way, tuple(reasons_against(loaded, now=now, is_under_way=is_under_way)))
+
+
+def look_that_counts(look: Look | None, held: Mission, *, now: datetime) -> Look:
+    """The look that was taken before the row was held, or a new one. Raises MissionChanged for a mission that has been put away."""
+    seen = look if look is not None and look.still_counts(held) else look_at(held, now=now)
+    if seen is None:
+        raise MissionChanged
+    return seen
+
+
+def _departure(mission: Mission, now: datetime) -> Iterator[Reason]:
+    """Zones and other missions were looked at for its time, with a margin."""
+    margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
+    if mission.departs_at is not None and mission.departs_at + margin < now:
+        yield Reason("departure_past", _("Its departure is over. Plan it for another time."))
+
+
+def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Reason]:
+    """A height over an assumed ground is none for a real aircraft."""
+    for route in routes:
+        uav = route.mission_uav
+        is_real = uav.uav is None or not uav.uav.is_simulated
+        if is_real and (mission.flat_ground_assumed is not False or any(row.altitude_amsl_m is None for row in route.waypoints.all())):
+            words = _("%(uav)s would fly as over flat ground: there is no terrain data here. Only a simulated UAV may.")
+            yield Reason("flat_ground", words % {"uav": uav.name}, uav.sequence)
+
+
+def _ground(mission: Mission) -> Iterator[Reason]:
+    """Zones, bases, assets and terrain as they are now, and what stands and hangs beside the routes."""
+    for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
+        yield Reason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
+    routes = stored_routes(mission)
+    if routes is None:
+        yield Reason("times_not_known", _("The times of a route are not known. Plan it again."))
+        return
+    names = [row.name for row in mission.mission_uavs.all()]
+    for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m)):
+        words = _("The route of %(uav)s passes a mast or wires too near.") % {"uav": names[number]}
+        yield Reason("wires", words, number)
+
+
+def _separation(mission: Mission) -> Iterator[Reason]:
+    found = separation_of_stored(mission)
+    for encounter in [] if found is None else found["unresolved"]:
+        if encounter["code"] not in TOO_NEAR:
+            continue
+        others = set(encounter["missions"]) - {None, str(mission.pk)}
+        values = {"uavs": _(" and ").join(encounter["uavs"]), "metres": f"{encounter['metres']:.0f}"}
+        words = _("%(uavs)s come within %(metres)s m of each other.") % values
+        if others:
+            names = Mission.objects.filter(pk__in=others).order_by("name").values_list("name", flat=True)
+            words = f"{words} {_('The other one flies %(missions)s.') % {'missions': ', '.join(names)}}"
+        yield Reason("separation", words)

@@ -1,0 +1,73 @@
+"""Commands to UAVs, and what becomes of missions when they are carried out.
+
+Whoever carries commands works with this module; the rows themselves are kept by `outbox`.
+"""
+
+from uuid import UUID
+
+from django.db import transaction
+from missions.services.approval.approval import finish_revocation
+from missions.services.commands.flight_progress import mark_started
+from missions.services.commands.outbox import (
+    CHANNEL,
+    claim_commands,
+    expire_overdue,
+    is_wanted,
+    note_acknowledged,
+    note_failed,
+    note_progress,
+    note_read_back,
+    note_released,
+    note_sent,
+    note_sent_unheard,
+    queue_command,
+    release_claims_of_others,
+    renew_claims,
+)
+from missions.services.commands.route_swap import go_on_after
+from missions.services.commands.staggered_returns import return_after
+
+from missions.command_rules import HAND_OVER, THEN_RETURN
+from missions.models import CommandKind, Mission, UavCommand
+from missions.services.commands import outbox
+
+__all__ = [
+    "CHANNEL",
+    "claim_commands",
+    "expire_overdue",
+    "is_wanted",
+    "note_acknowledged",
+    "note_applied",
+    "note_failed",
+    "note_progress",
+    "note_read_back",
+    "note_released",
+    "note_sent",
+    "note_sent_unheard",
+    "queue_command",
+    "release_claims_of_others",
+    "renew_claims",
+]
+
+
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
+    """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked.
+
+    Of what hands a UAV over to another mission the next step is given, and after what it does before it returns, the return.
+    """
+    with transaction.atomic():
+        command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id", "parameters").filter(pk=command_id).first()
+        if command is not None and command.mission_id is not None:
+            Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=command.mission_id)  # missions are held before commands
+        if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note, warnings=warnings):
+            return False
+        assert command is not None  # noqa: S101 - it has just been written to
+        if command.kind == CommandKind.START and command.mission_id is not None:
+            mark_started(mission_id=command.mission_id, uav_id=command.uav_id)
+        if command.kind == CommandKind.CLEAR_MISSION and command.approval_id is not None:
+            finish_revocation(approval_id=command.approval_id)
+        if command.parameters.get(HAND_OVER):
+            go_on_after(UavCommand.objects.select_related("uav", "mission", "approval", "created_by").get(pk=command_id))
+        if command.parameters.get(THEN_RETURN):
+            return_after(UavCommand.objects.select_related("uav", "mission", "approval", "created_by").get(pk=command_id))
+    return True

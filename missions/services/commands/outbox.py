@@ -1,0 +1,325 @@
+"""The outbox of commands to UAVs. Rows are the truth: whoever carries one holds it by a lease, and writes to it only while it does.
+
+All times are the database's, so that the clocks of those who carry do not matter. A command is fenced by its attempt and its holder:
+once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
+"""
+
+from collections.abc import Collection, Iterable
+from datetime import timedelta
+from functools import partial
+from typing import Any
+from uuid import UUID
+
+from django.conf import settings
+from django.db import connection, transaction
+from django.db.models import F, Max, Q, QuerySet
+from django.db.models.functions import Coalesce, Greatest, Least, Now
+from django.utils.translation import gettext as _
+from missions.services.commands.refused import refuse
+
+from missions.command_rules import ALONG_ROUTE, HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
+from missions.models import (
+    OPEN_COMMANDS,
+    Approval,
+    CommandAxis,
+    CommandKind,
+    CommandPriority,
+    CommandState,
+    LinkKind,
+    Mission,
+    Uav,
+    UavCommand,
+    UavCommandEvent,
+)
+from workspace.audit import record_change
+from workspace.live.changes import publish_live
+from workspace.models import User
+
+CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
+SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"
+WITHDRAWN = "withdrawn"
+
+_CLAIM = """
+    WITH wanted AS (
+        SELECT id FROM missions_uavcommand
+        WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
+            AND (%s::text IS NULL OR (link = %s::text
+                AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
+            AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
+            AND (NOT %s OR (priority = %s AND NOT parameters ?| %s::text[]))
+            AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
+            AND (expires_at IS NULL OR expires_at > statement_timestamp())
+        ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
+    )
+    UPDATE missions_uavcommand AS command
+    SET holder = %s, attempts = attempts + 1, lease_expires_at = statement_timestamp() + make_interval(secs => %s)
+    FROM wanted WHERE command.id = wanted.id RETURNING command.*"""
+
+
+def queue_command(
+    *,
+    uav: Uav,
+    kind: CommandKind,
+    actor: User | None,
+    why: str = "",
+    parameters: dict[str, Any] | None = None,
+    mission: Mission | None = None,
+    approval: Approval | None = None,
+    expires_in_s: float | None = None,
+    wait_s: float = 0.0,
+) -> UavCommand:
+    """Give a UAV a command; unfinished ones about the same thing no longer count.
+
+    Raises Refused while one of them makes the UAV safer than this one would: that one is not called off. Without `expires_in_s` it is
+    wanted for as long as the settings say of its kind. After `wait_s` it is carried, and until then any other command about the same thing
+    takes its place. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
+    takes it before.
+    """
+    wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
+    waits = {"lease_expires_at": Now() + timedelta(seconds=wait_s)} if wait_s > 0.0 else {}
+    with transaction.atomic():
+        link = Uav.objects.select_for_update(no_key=True).values_list("link", flat=True).get(pk=uav.pk)
+        overtaken = UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind))
+        _refuse_to_overtake(uav, kind, overtaken)
+        _end(
+            overtaken,
+            SUPERSEDED,
+            f"A later command took its place: {CommandKind(kind).label}.",
+        )
+        last = UavCommand.objects.filter(uav=uav).aggregate(last=Max("sequence"))["last"] or 0
+        command = UavCommand.objects.create(
+            organisation_id=uav.organisation_id,
+            uav=uav,
+            mission=mission,
+            approval=approval,
+            sequence=last + 1,
+            kind=kind,
+            axis=axis_of(kind),
+            priority=priority_of(kind),
+            parameters=parameters or {},
+            link=link,
+            created_by=actor,
+            why=why,
+            expires_at=None if wanted_for_s is None else Now() + timedelta(seconds=wanted_for_s + wait_s),
+            **waits,
+        )
+        command.refresh_from_db(fields=["created_at", "expires_at"])
+        UavCommandEvent.objects.create(command=command, state=CommandState.QUEUED, attempt=0)
+        record_change(
+            organisation=uav.organisation, actor=actor, action="give", subject_type="uav_command", subject_id=command.pk,
+            after={
+                "uav": uav.pk, "kind": str(kind), "sequence": command.sequence, "parameters": command.parameters, "why": why,
+                "mission": mission and str(mission.pk), "approval": approval and str(approval.pk),
+            },
+        )  # fmt: skip
+        _tell(uav.pk)
+        _tell_pages([uav.organisation_id])
+    return command
+
+
+def claim_commands(
+    *,
+    uav_ids: Collection[int],
+    holder: str,
+    lease_s: float,
+    limit: int,
+    link: LinkKind | None = None,
+    axes: Collection[CommandAxis] | None = None,
+    to_unheard: bool = False,
+) -> list[UavCommand]:
+    """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
+
+    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unheard` only
+    those that are right for a UAV of which nothing is heard: what makes it safe, and is neither a step that others are to follow nor a
+    return that depends on where it is.
+
+    Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
+    program: a gateway that starts anew has another name.
+    """
+    about = None if axes is None else [str(axis) for axis in axes]
+    with transaction.atomic():
+        unheard = [to_unheard, CommandPriority.SAFETY, [HAND_OVER, ALONG_ROUTE]]
+        values = [list(uav_ids), link, link, link, about, about, *unheard, limit, holder, lease_s]
+        found = list(UavCommand.objects.raw(_CLAIM, values))
+    return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
+
+
+def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
+    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once.
+
+    What was not sent in its time is no longer held.
+    """
+    with transaction.atomic():
+        held = UavCommand.objects.select_for_update().filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+        held = held.exclude(sent_at=None, expires_at__lte=Now())
+        attempts = dict(held.order_by("pk").values_list("pk", "attempts"))
+        UavCommand.objects.filter(pk__in=attempts).update(lease_expires_at=Now() + timedelta(seconds=lease_s))
+    return attempts
+
+
+def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
+    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many."""
+    if not uav_ids:
+        return 0
+    held = UavCommand.objects.filter(uav__in=uav_ids, link=LinkKind.MAVLINK, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+    return held.exclude(holder__in=["", holder]).update(lease_expires_at=None)
+
+
+def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": "", "outcome": ""}
+    return _note(command_id, attempt, holder, CommandState.SENT, now, only=_wanted())
+
+
+def note_sent_unheard(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """It goes out now and again, to a UAV of which nothing is heard. False also once nobody wants it any more."""
+    words = "Sent; nothing is heard from the UAV."
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNHEARD, "outcome": words}
+    return _note(command_id, attempt, holder, CommandState.SENT, now, words, only=_wanted())
+
+
+def is_wanted(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """Whether it is still held, and its time not over."""
+    return _held(command_id, attempt, holder).filter(_wanted()).exists()
+
+
+def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
+    """The vehicle has it. That is not yet what it does."""
+    held = _held(command_id, attempt, holder)
+    if held.filter(state=CommandState.ACKNOWLEDGED).exists():
+        return True
+    now = {"sent_at": Coalesce("sent_at", Now()), "acknowledged_at": Coalesce("acknowledged_at", Now())}
+    return _note(command_id, attempt, holder, CommandState.ACKNOWLEDGED, now)
+
+
+def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of an upload are over."""
+    with transaction.atomic():
+        if not _held(command_id, attempt, holder).update(progress={"done": done, "total": total}):
+            return False
+        _tell_pages([_organisation_of(command_id)])
+    return True
+
+
+def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
+    """So many items of what is on board were read, before it is sent: from now on it is wanted as long as it was when it was given.
+
+    That is put off by `read_back_s` at most. False once nobody wants it any more.
+    """
+    rules = settings.COMMAND_RULES
+    latest = F("created_at") + timedelta(seconds=rules.motion_s + rules.read_back_s)
+    put_off = Greatest(F("expires_at"), Least(Now() + timedelta(seconds=rules.motion_s), latest))
+    held = _held(command_id, attempt, holder).filter(sent_at=None, expires_at__gt=Now())
+    return bool(held.update(progress={"done": done, "total": total}, expires_at=put_off))
+
+
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
+    """The vehicle was seen to do it. `warnings` are for whoever gave the command."""
+    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None, "outcome": warnings[:500]}
+    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, " ".join(filter(None, [note, warnings])))
+
+
+def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder: str) -> bool:
+    """The vehicle refused it, or did not do it: why, in words."""
+    ended = {"finished_at": Now(), "lease_expires_at": None, "outcome_code": code[:50], "outcome": words[:500]}
+    return _note(command_id, attempt, holder, CommandState.FAILED, ended, words)
+
+
+def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "", code: str = "") -> bool:
+    """Given back, for anybody to take after so many seconds. With a `code` the row keeps why it has to wait, which `note` tells."""
+    back: dict[str, Any] = {"holder": "", "lease_expires_at": Now() + timedelta(seconds=retry_in_s) if retry_in_s else None}
+    back |= {"outcome_code": code[:50], "outcome": note[:500]} if code else {}
+    return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
+
+
+def expire_overdue() -> int:
+    """End what nobody wants any more and nobody is carrying; returns how many. Of one that had to wait the reason is kept."""
+    overdue = UavCommand.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), expires_at__lte=Now())
+    with transaction.atomic():
+        unsent = overdue.filter(sent_at=None)
+        never = _end(unsent.filter(outcome_code=""), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)
+        waited = unsent.exclude(outcome_code="").order_by("outcome_code", "outcome")
+        for code, why in waited.values_list("outcome_code", "outcome").distinct():
+            words = f"It was not sent in time. {why}"[:500]
+            never += _end(waited.filter(outcome_code=code, outcome=why), code, words, skip_locked=True)
+        sent = overdue.filter(sent_at__isnull=False)
+        unsure = _end(sent, UNCONFIRMED, "It was sent; whether it was done is not known.", skip_locked=True)
+    return never + unsure
+
+
+def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> int:
+    """No longer wanted, for another reason than a later command."""
+    with transaction.atomic():
+        ended = list(commands.filter(state__in=OPEN_COMMANDS).values_list("uav_id", flat=True))
+        number = _end(commands, code, words)
+        for uav_id in set(ended):
+            _tell(uav_id)
+    return number
+
+
+def _refuse_to_overtake(uav: Uav, kind: CommandKind, commands: QuerySet[UavCommand]) -> None:
+    waiting = Q(parameters__has_key=WAIT_S, sent_at=None, lease_expires_at__gt=Now())
+    unfinished = commands.filter(state__in=OPEN_COMMANDS).exclude(waiting).values_list("kind", flat=True)
+    if not all(may_overtake(kind, other) for other in unfinished):
+        words = _("A safer command to %(uav)s is not done yet: this one cannot take its place.")
+        raise refuse("safety_first", words % {"uav": uav.name})
+
+
+def _wanted() -> Q:
+    return Q(expires_at=None) | Q(expires_at__gt=Now())
+
+
+def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:
+    return UavCommand.objects.filter(pk=command_id, attempts=attempt, holder=holder, state__in=OPEN_COMMANDS)
+
+
+def _note(
+    command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "", *, only: Q | None = None
+) -> bool:
+    with transaction.atomic():
+        if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
+            return False
+        UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
+        _tell_pages([_organisation_of(command_id)])
+    return True
+
+
+def withdraw(command_ids: Collection[UUID]) -> int:
+    """End those of these commands that were not sent; how many. Whoever carries one is told that it no longer counts."""
+    with transaction.atomic():
+        unsent = UavCommand.objects.filter(pk__in=command_ids, sent_at=None)
+        uavs = list(unsent.filter(state__in=OPEN_COMMANDS).values_list("uav", flat=True))
+        ended = _end(unsent, WITHDRAWN, "It was withdrawn before it was sent.")
+        for uav_id in uavs:
+            _tell(uav_id)
+    return ended
+
+
+def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: bool = False) -> int:
+    """The caller has begun a transaction."""
+    found = list(commands.filter(state__in=OPEN_COMMANDS).select_for_update(skip_locked=skip_locked).order_by("pk"))
+    UavCommand.objects.filter(pk__in=[command.pk for command in found]).update(
+        state=CommandState.EXPIRED, finished_at=Now(), lease_expires_at=None, outcome_code=code, outcome=words
+    )
+    UavCommandEvent.objects.bulk_create(
+        UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
+        for command in found
+    )
+    _tell_pages({command.organisation_id for command in found})
+    return len(found)
+
+
+def _tell(uav_id: int) -> None:
+    """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])
+
+
+def _tell_pages(organisations: Iterable[int]) -> None:
+    """Once the transaction is committed."""
+    for organisation_id in organisations:
+        transaction.on_commit(partial(publish_live, organisation_id))
+
+
+def _organisation_of(command_id: UUID) -> int:
+    return UavCommand.objects.values_list("organisation_id", flat=True).get(pk=command_id)

@@ -1,0 +1,323 @@
+"""What is in the way when an autopilot is told to return or abort: it flies home by itself, as high as its own parameters say."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from enum import StrEnum
+
+import numpy as np
+from django.conf import settings
+from django.db.models.functions import Now
+from django.utils.translation import gettext as _
+from missions.selectors.zones import departure_s, zone_margins
+from missions.services.approval.document import frozen_route
+from missions.services.approval.fence import rally_points, zones_beside
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat
+from inspection.network.spans import spans_of
+from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import planning_read
+from inspection.zones.reach import ZoneTable
+from mavlink.approved_route import Flight, NotARoute
+from mavlink.fence import fence_of
+from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
+from missions.models import LinkKind, Mission, Route, Uav
+from planning.clearance.nearby_zones import zones_near
+from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
+from planning.clearance.zone_clearance import ZoneFacts
+
+STEP_M = 5.0  # by which a height is looked for that is clear
+
+
+class ReturnState(StrEnum):
+    CLEAR = "clear"
+    IN_THE_WAY = "in_the_way"
+    UNKNOWN = "unknown"  # where it would fly: not read from it, or not straight
+    NOT_CHECKED = "not_checked"  # nothing that can be looked at here
+
+
+@dataclass(frozen=True)
+class ReturnCheck:
+    """Of one UAV; `place` is its own in a mission, None without one.
+
+    `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
+
+    `fence_warning` tells that its autopilot ignores the fence that goes with the mission; empty where it does not, or is not known to.
+    `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
+    `detail` names parameters of the autopilot that were not read, for whoever sets it up; empty: none.
+    """
+
+    place: int | None
+    name: str
+    uav: int | None
+    state: ReturnState
+    warnings: tuple[str, ...] = ()
+    parameter: str | None = None
+    height_m: float | None = None
+    safe_height_m: float | None = None
+    read_at: datetime | None = None
+    fence_warning: str = ""
+    detail: str = ""
+
+
+def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
+    """Read from the vehicle just now; what has nothing to do with its return is left out. No edit: the row's revision stays."""
+    own = {name: value for name, value in parameters.items() if name in NAMES.get(autopilot, ())}
+    if own:
+        told = {"autopilot": autopilot, "parameters": own}
+        Uav.objects.filter(pk=uav_id).update(autopilot_return=told, autopilot_return_read_at=Now())
+
+
+def return_checks(mission: Mission) -> list[ReturnCheck]:
+    """For each UAV that flies a route, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
+    routes = [route for route in mission.routes.all() if route.geometry is not None]
+    return [replace(_check(mission, route), fence_warning=_fence_warning(mission, route)) for route in routes]
+
+
+def _fence_warning(mission: Mission, route: Route) -> str:
+    uav = route.mission_uav.uav
+    told = {} if uav is None or uav.link != LinkKind.MAVLINK else uav.autopilot_return
+    off_by = fence_off_by(told.get("autopilot", ""), told.get("parameters", {}))
+    if not off_by:
+        return ""
+    try:
+        fence = fence_of(zones_beside(route, departure_s(mission)), frozen_route(route, mission))
+    except NotARoute:
+        return ""
+    words = _("%(uav)s ignores the fence that goes with the mission: its autopilot has %(parameter)s.")
+    return words % {"uav": route.mission_uav.name, "parameter": off_by} if fence.items else ""
+
+
+@dataclass(frozen=True)
+class ReportedReturn:
+    """How a UAV flies home by itself, as far as it was read from it: `own` is None where that is not known, and `why` tells the reason."""
+
+    own: OwnReturn | None
+    state: ReturnState = ReturnState.CLEAR
+    why: str = ""
+    parameter: str | None = None
+    height_m: float | None = None
+    read_at: datetime | None = None
+    detail: str = ""
+
+    def check(self, place: int | None, name: str, uav: int | None) -> ReturnCheck:
+        """Return the check of a UAV so far."""
+        warnings = (self.why,) if self.why else ()
+        return ReturnCheck(place, name, uav, self.state, warnings, self.parameter, self.height_m, read_at=self.read_at, detail=self.detail)
+
+
+def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedReturn:
+    """has_rally: its mission gives it rally points, so that those that it holds are known."""
+    values = {"uav": name}
+    if uav is None:
+        words = _("%(uav)s is not a UAV of the fleet: how it returns is not known.")
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % values)
+    if uav.link == LinkKind.HTTP:
+        words = _("Return path of %(uav)s unknown: its companion computer decides. Nothing on it is checked.")
+        return ReportedReturn(None, ReturnState.NOT_CHECKED, words % values)
+    told = uav.autopilot_return
+    own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
+    if own is None:
+        words = _("Return altitude of %(uav)s not reported by the autopilot. Its return path is not checked against terrain and zones.")
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % values, detail=_height_names(told.get("autopilot", "")))
+    reported = ReportedReturn(own, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
+    unknown = _why_unknown(own, name, has_rally=has_rally)
+    return replace(reported, own=None, state=ReturnState.UNKNOWN, why=unknown, detail=own.untold) if unknown else reported
+
+
+def _check(mission: Mission, route: Route) -> ReturnCheck:
+    flown_by = route.mission_uav
+    rally = rally_points(mission, flown_by.sequence)
+    reported = reported_return(flown_by.uav, flown_by.name, has_rally=bool(rally))
+    checked = reported.check(flown_by.sequence, flown_by.name, flown_by.uav_id)
+    if reported.own is None:
+        return checked
+    try:
+        flights = frozen_route(route, mission).flights
+    except NotARoute:
+        return replace(checked, state=ReturnState.NOT_CHECKED)
+    table, ways = _ways(mission, route, flights, shuns_home=reported.own.shuns_home)
+    return checked_ways(checked, reported.own, ways, table)
+
+
+def checked_ways(checked: ReturnCheck, own: OwnReturn, ways: Sequence[WaysHome], table: ZoneTable, *, where: str = "") -> ReturnCheck:
+    """The check with what is in these ways. where: from where they lead, in words; empty: from waypoints of a route, by their numbers."""
+    found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
+    if not found:
+        return checked
+    safe_m = _safe_height_m(ways, own)
+    warnings = [*dict.fromkeys(_words(trouble, table, where) for trouble in found), _advice(own, safe_m)]
+    return replace(checked, state=ReturnState.IN_THE_WAY, warnings=tuple(warnings), safe_height_m=safe_m)
+
+
+@dataclass(frozen=True, eq=False)
+class WaysNow:
+    """Ways home from where a UAV may be now, and the zones that apply meanwhile."""
+
+    ways: tuple[WaysHome, ...]
+    table: ZoneTable
+
+    def checked(self, check: ReturnCheck, own: OwnReturn) -> ReturnCheck:
+        """Return the check with what is in these ways."""
+        return checked_ways(check, own, self.ways, self.table, where=_("From where it is now"))
+
+    def clear_heights_m(self, own: OwnReturn, lowest_m: float, step_m: float) -> list[float]:
+        """Return heights from `lowest_m` on, so many metres apart, at which nothing is in the way and which flights may have."""
+        most_m = settings.FLIGHT_RULES.max_agl_m
+        found, height_m = [], float(math.ceil(lowest_m))
+        while height_m <= most_m:
+            levels = [_levels(way, own.at_height(height_m)) for way in self.ways]
+            pairs = list(zip(self.ways, levels, strict=True))
+            if all(way.most_agl_m(levels_m) <= most_m and not way.troubles(levels_m) for way, levels_m in pairs):
+                found.append(height_m)
+            height_m += step_m
+        return found
+
+
+def ways_now(
+    own: OwnReturn, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
+) -> WaysNow:  # fmt: skip
+    """The way home from places at which a UAV may be now, and that to the rally point that it would take instead.
+
+    window: from when to when it flies home, in seconds since the epoch. Raises NoGraph.
+    """
+    ground = planning_read().ground()
+    home_amsl_m = float(ground_heights_m(np.array([home]))[0])
+    positions = np.concatenate([places.position, np.array([home, *(place for place, _height_m in rally)])])
+    near, facts = zones_applying(ground.table, positions, window)
+    havens = [Haven(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
+    ways = [
+        WaysHome(
+            own_places, haven, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
+            spans=spans_of(ground.network()), zones=facts, margins=zone_margins(), clearance_m=settings.FLIGHT_RULES.clearance_m,
+        )
+        for haven, own_places in _places_by_haven(places, Haven(home), havens, shuns_home=own.shuns_home)
+    ]  # fmt: skip
+    return WaysNow(tuple(ways), near)
+
+
+def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tuple[float, float]) -> tuple[ZoneTable, ZoneFacts]:
+    """The zones near positions (n, 2), lon, lat [deg], that apply at any moment of a window."""
+    margins = zone_margins()
+    near, _facts = zones_near(table, positions, margins)
+    in_force = near.only(near.active_within(window[0] - margins.time_s, window[1] + margins.time_s)) if len(near) else near
+    return zones_near(in_force, positions, margins, window)
+
+
+def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
+    """Why nobody can say here where it flies on its way home; empty where that is known."""
+    if own.untold:
+        words = _("Return path of %(uav)s unknown: its autopilot has not reported how it returns. It is not checked.")
+        return words % {"uav": name}
+    if own.bends_by:
+        words = _("By %(parameter)s %(uav)s does not return straight at one altitude: its return path is unknown, and not checked.")
+        return words % {"uav": name, "parameter": own.bends_by}
+    if own.rally_points and not has_rally:
+        words = _("%(uav)s has rally points of another mission: its return path is unknown, and not checked.")
+        return words % {"uav": name}
+    return ""
+
+
+def _height_names(autopilot: str) -> str:
+    """Parameters that set the return altitude: the autopilot's own, or those of all where it is not known which one it is."""
+    own = {autopilot: PARAMETERS[autopilot]} if autopilot in PARAMETERS else PARAMETERS
+    return " / ".join(dict.fromkeys(name for groups in own.values() for name in groups[0]))
+
+
+def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[WaysHome]]:
+    """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer, or from everywhere."""
+    ground, margins = planning_read().ground(), zone_margins()
+    rally = rally_points(mission, route.mission_uav.sequence)
+    positions = [waypoint.position for flight in flights for waypoint in flight.waypoints]
+    positions += [flight.take_off.position for flight in flights] + [place for place, _height_m in rally]
+    began_s = departure_s(mission)
+    window = None
+    if began_s is not None:
+        departs_s = began_s + route.departs_s
+        window = (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
+    near, facts = zones_near(ground.table, np.array(positions, dtype=np.float64), margins, window)
+    spans = spans_of(ground.network())
+    ways = []
+    for flight in flights:
+        havens = [Haven(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
+        along = Places.along(
+            np.array([waypoint.position for waypoint in flight.waypoints], dtype=np.float64),
+            np.array([waypoint.altitude_relative_m for waypoint in flight.waypoints], dtype=np.float64),
+            [waypoint.sequence for waypoint in flight.waypoints],
+        )
+        for haven, places in _places_by_haven(along, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
+            ways.append(
+                WaysHome(
+                    places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
+                    zones=facts, margins=margins, clearance_m=settings.FLIGHT_RULES.clearance_m,
+                )
+            )  # fmt: skip
+    return near, ways
+
+
+def _places_by_haven(places: Places, home: Haven, rally: Sequence[Haven], *, shuns_home: bool) -> Iterable[tuple[Haven, Places]]:
+    yield home, places
+    if not rally:
+        return
+    goals = rally if shuns_home else [home, *rally]
+    nearest = places.nearest_of([haven.position for haven in goals])
+    for number, haven in enumerate(goals):
+        if haven is home:
+            continue
+        own = places.only(nearest == number)
+        if len(own):
+            yield haven, own
+
+
+def _levels(way: WaysHome, own: OwnReturn) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+    return way.levels_m(own.level_m)
+
+
+def _safe_height_m(ways: Sequence[WaysHome], own: OwnReturn) -> float | None:
+    """The lowest in whole metres, or a little above it, that is clear from everywhere and comes no higher than flights may."""
+    most_m = settings.FLIGHT_RULES.max_agl_m
+    highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))
+    lowest_m = max(own.height_m, *(way.lowest_safe_m() for way in ways))
+    if not math.isfinite(lowest_m):
+        return None
+    height_m = float(math.ceil(lowest_m))
+    while height_m <= most_m:
+        other = own.at_height(height_m)
+        levels = [_levels(way, other) for way in ways]
+        if any(way.most_agl_m(levels_m) > highest_m for way, levels_m in zip(ways, levels, strict=True)):
+            return None
+        if not any(way.troubles(levels_m) for way, levels_m in zip(ways, levels, strict=True)):
+            return height_m
+        height_m += STEP_M
+    return None
+
+
+def _along(trouble: Trouble) -> str:
+    """From where on a route something is in the way."""
+    values = {"first": trouble.first + 1, "last": trouble.last + 1}
+    if trouble.to_end and trouble.last > trouble.first:
+        return _("From waypoint %(first)s on") % values
+    if trouble.last > trouble.first:
+        return _("Between waypoints %(first)s and %(last)s") % values
+    return _("On the way to waypoint %(first)s") % values
+
+
+def _words(trouble: Trouble, table: ZoneTable, where: str) -> str:
+    goes = _("the path to the rally point") if trouble.is_rally else _("the return path")
+    zone = "" if trouble.zone is None else table.names[trouble.zone]
+    values = {"where": where or _along(trouble), "way": goes, "zone": zone, "height": f"{trouble.level_m:.0f}"}
+    return {
+        InTheWay.ZONE: _("%(where)s, %(way)s crosses %(zone)s (%(height)s m above take-off)."),
+        InTheWay.OBSTACLE: _("%(where)s, %(way)s is below safe clearance over towers or conductors (%(height)s m above take-off)."),
+        InTheWay.GROUND: _("%(where)s, %(way)s is too close to the ground (%(height)s m above take-off)."),
+        InTheWay.UNKNOWN_GROUND: _("%(where)s, the terrain below %(way)s is unknown."),
+    }[trouble.kind] % values
+
+
+def _advice(own: OwnReturn, safe_m: float | None) -> str:
+    if safe_m is None:
+        return _("No height of %(parameter)s is clear: use Hold and Land instead.") % {"parameter": own.parameter}
+    values = {"parameter": own.parameter, "value": own.value_for(safe_m)}
+    return _("Set %(parameter)s on it to at least %(value)s, or use Hold and Land instead.") % values

@@ -1,0 +1,180 @@
+"""A route changed by hand: waypoints moved, put in, taken out, flown higher or at another speed; checked like any other, and taken back."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from django.contrib.gis.geos import LineString, Point
+from django.db import transaction
+from django.db.models import Q
+from django.utils.translation import gettext as _
+from missions.services.manual_edits.checks import (
+    HIGHER_M,
+    HandGround,
+    faults_as_flown,
+    flown_by_hand,
+    hand_ground,
+    obstacle_faults,
+    point_faults,
+)
+from missions.services.manual_edits.legs import step_points, step_row
+from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
+from missions.services.manual_edits.still_separated import separation_of_stored
+from missions.services.manual_edits.stored_route import KeptWaypoint, kept_waypoints
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import InvalidRequest
+
+from missions.models import Mission, Route, Waypoint
+from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
+from planning.trajectory.waypoints import RoutePoint, RoutePoints
+from workspace.models import User
+
+SAME_SPEED_MPS = 0.005
+MAX_STEPS = 5  # that can be taken back
+
+
+def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[HandPoint], expected_revision: int | None = None) -> Mission:
+    """Fly the route of one UAV, by its place in the mission, over these points. Its targets stay, and their order.
+
+    Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a speed that the wind does
+    not leave, a battery that does not do), MissionChanged or MissionFrozen. Nothing is kept then.
+    """
+    with transaction.atomic():
+        locked, route = _locked_route(mission, uav, expected_revision)
+        rows, ground = list(route.waypoints.select_related("asset", "target")), hand_ground()
+        until_now = kept_waypoints(rows)
+        _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
+        if len(route.before_hand) == MAX_STEPS:  # the route as planned is forgotten, and with it what was proven of it
+            locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
+        route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MAX_STEPS:]
+        moved = zip(points, are_moved(points, until_now), strict=True)
+        by_hand = {place_of(point.position, point.agl_m) for point, is_moved in moved if is_moved or _is_by_hand(point, until_now)}
+        _fly(locked, route, route_points(points, until_now), by_hand, ground)
+        note(locked, actor, "by-hand", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
+    return locked
+
+
+def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revision: int | None = None) -> Mission:
+    """The route as it was before it was changed by hand last, checked against what holds now. Raises as change_route."""
+    with transaction.atomic():
+        locked, route = _locked_route(mission, uav, expected_revision)
+        if not route.before_hand:
+            raise InvalidRequest({"uav": _("No change by hand of this route can be taken back.")})
+        *route.before_hand, rows = route.before_hand
+        points = step_points(rows)
+        by_hand = {place_of(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
+        _fly(locked, route, RoutePoints.of(points), by_hand, hand_ground())
+        note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
+    return locked
+
+
+def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> tuple[Mission, Route]:
+    locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
+    route = locked.routes.select_related("mission_uav").filter(mission_uav__sequence=uav, geometry__isnull=False).first()
+    if route is None:
+        raise InvalidRequest({"uav": _("This UAV flies no route.")})
+    if route.charging:
+        raise InvalidRequest({"uav": _("A route with stops to charge cannot be changed by hand.")})
+    return locked, route
+
+
+def checked_by_hand(locked: Mission, route: Route, wished: RoutePoints, ground: HandGround) -> PlannedRoute:
+    """The route over these points as it is flown. Raises InvalidRequest with the first thing that is wrong."""
+    _refuse(obstacle_faults(wished, ground))
+    request, uav = request_of_mission(mission=locked), route.mission_uav.sequence
+    flown = flown_by_hand(request, uav, wished, route.departs_s, ground)
+    for faults in faults_as_flown(flown, wished, locked, request, uav, ground):
+        _refuse(faults)
+    return flown
+
+
+def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: HandGround) -> None:
+    """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
+    store_by_hand(locked, route, checked_by_hand(locked, route, wished, ground), by_hand)
+    settle_by_hand(locked)
+    locked.revision += 1
+    locked.save()
+
+
+def settle_by_hand(locked: Mission) -> None:
+    """What follows from changed routes on the mission; the caller saves it."""
+    locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
+    locked.longest_route_m = max(own.length_m for own in locked.routes.all())
+    counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
+    locked.total_energy_wh = round(sum(counted), 2) if counted else None
+    locked.separation = separation_of_stored(locked)
+    check_lost_link(mission=locked)
+    locked.plan_quality = _quality(locked)
+
+
+def _quality(mission: Mission) -> dict[str, Any]:
+    """Nothing is proven of a plan that a hand has changed; once every change is taken back, what was proven before is."""
+    quality = mission.plan_quality or {}
+    planned = quality.get("planned", quality)
+    by_hand = Q(waypoints__is_by_hand=True) | ~Q(before_hand=[])  # of what was only taken out nothing is left to see
+    if not mission.routes.filter(by_hand).exists():
+        return dict(planned)
+    return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
+
+
+def _refuse(faults: dict[str, str]) -> None:
+    if faults:
+        raise InvalidRequest(faults)
+
+
+def store_by_hand(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
+    """by_hand: places of the waypoints that a person changed, as `place_of` has them."""
+    assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
+    targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
+    clock = flown.timing
+    route.geometry = LineString(flown.line.tolist(), srid=4326)
+    route.length_m, route.duration_s = round(flown.length_m, 3), round(flown.duration_s, 1)
+    route.energy_wh = None if clock.total_wh is None else round(clock.total_wh, 2)
+    route.battery_percent = None if clock.end_percent is None else round(clock.end_percent, 1)
+    route.save()
+    route.waypoints.all().delete()
+    Waypoint.objects.bulk_create(
+        (
+            Waypoint(
+                route=route,
+                sequence=number,
+                kind=waypoint.point.kind,
+                position=Point(*waypoint.point.position, srid=4326),
+                asset_id=waypoint.point.asset,
+                target_id=None if waypoint.point.target is None else targets[waypoint.point.target],
+                task=_task(waypoint.point),
+                altitude_agl_m=round(waypoint.point.agl_m, 2),
+                altitude_amsl_m=None if waypoint.amsl_m is None else round(waypoint.amsl_m, 2),
+                altitude_relative_m=round(waypoint.relative_m, 2),
+                arrival_s=round(float(clock.arrival_s[number]) + route.departs_s, 1),
+                used_wh=None if clock.used_wh is None else round(float(clock.used_wh[number]), 2),
+                battery_left_percent=None if clock.battery_left_percent is None else round(float(clock.battery_left_percent[number]), 1),
+                speed_mps=waypoint.point.speed_mps,
+                is_by_hand=waypoint.point.speed_mps is not None or place_of(waypoint.point.position, waypoint.point.agl_m) in by_hand,
+            )
+            for number, waypoint in enumerate(flown.waypoints)
+        ),
+        batch_size=1_000,
+    )
+
+
+def _task(point: RoutePoint) -> dict[str, Any] | None:
+    return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
+
+
+def _is_by_hand(point: HandPoint, until_now: Sequence[KeptWaypoint]) -> bool:
+    """Of one that stays at its place."""
+    if point.was is None:
+        return True
+    waypoint = until_now[point.was]
+    is_higher = abs(point.agl_m - waypoint.altitude_agl_m) > HIGHER_M
+    return waypoint.is_by_hand or is_higher or not _is_same_speed(point.speed_mps, waypoint.speed_mps)
+
+
+def _is_same_speed(one_mps: float | None, other_mps: float | None) -> bool:
+    if one_mps is None or other_mps is None:
+        return one_mps is other_mps
+    return abs(one_mps - other_mps) < SAME_SPEED_MPS
+
+
+def place_of(position: Sequence[float], agl_m: float) -> tuple[float, float, float]:
+    return round(position[0], 9), round(position[1], 9), round(agl_m, 2)

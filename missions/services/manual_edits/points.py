@@ -1,0 +1,65 @@
+"""Waypoints as somebody wishes them by hand, set against those of the route until now."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from django.utils.translation import gettext as _
+from missions.services.manual_edits.stored_route import KeptWaypoint
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
+from workspace.number_text import number_text
+
+MOVED_M = 0.1  # less is rounding
+MAX_WAYPOINTS = 5_000
+MAX_LENGTH_M = 1_000_000.0
+
+
+@dataclass(frozen=True)
+class HandPoint:
+    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
+
+    speed_mps: over ground on the leg that leads here; None: the UAV's own.
+    """
+
+    position: LonLat
+    agl_m: float
+    was: int | None = None
+    speed_mps: float | None = None
+
+
+def list_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
+    """What is wrong with the list itself: with such a fault nothing else can be said of it."""
+    if len(points) > MAX_WAYPOINTS:
+        return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MAX_WAYPOINTS}}
+    kept = [point.was for point in points if point.was is not None]
+    if any(not 0 <= was < len(until_now) for was in kept) or any(right <= left for left, right in pairwise(kept)):
+        return {"waypoints": _("The waypoints are not in the order of the route.")}
+    fixed = [number for number, waypoint in enumerate(until_now) if waypoint.kind != WaypointKind.PASS]
+    if not set(fixed) <= set(kept) or points[0].was != 0 or points[-1].was != len(until_now) - 1:
+        return {"waypoints": _("Start, end and targets stay on the route. Take a target out of the mission instead.")}
+    if path_length_m(np.array([point.position for point in points])) > MAX_LENGTH_M:
+        return {"waypoints": _("A route is at most %(limit)s km long.") % {"limit": number_text(MAX_LENGTH_M / 1_000)}}
+    return {}
+
+
+def are_moved(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
+    """Whether each point is put in, or elsewhere than the waypoint that it was."""
+    before = [point.position if point.was is None else until_now[point.was].position for point in points]
+    away_m = distance_m(np.array([point.position for point in points]), np.array(before)).tolist()
+    return [point.was is None or metres > MOVED_M for point, metres in zip(points, away_m, strict=True)]
+
+
+def route_points(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:
+    """A point that was moved passes nothing."""
+    drawn = []
+    for point, is_moved in zip(points, are_moved(points, until_now), strict=True):
+        waypoint = None if point.was is None else until_now[point.was]
+        if waypoint is None or (waypoint.kind == WaypointKind.PASS and is_moved):
+            drawn.append(RoutePoint(point.position, WaypointKind.PASS, point.agl_m, speed_mps=point.speed_mps))
+            continue
+        asset = None if waypoint.asset is None else waypoint.asset.key
+        drawn.append(RoutePoint(waypoint.position, waypoint.kind, point.agl_m, asset, waypoint.target, waypoint.task, point.speed_mps))
+    return RoutePoints.of(drawn)

@@ -1,0 +1,96 @@
+"""What a person changed of routes stays when the mission is planned again: legs whose ends follow each other as before, and are clear."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from missions.services.manual_edits.checks import HandGround, hand_ground
+from missions.services.manual_edits.edits import checked_by_hand, place_of, settle_by_hand, store_by_hand
+from missions.services.manual_edits.legs import HandLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import InvalidRequest
+
+from missions.models import Mission, Route
+from planning.trajectory.waypoints import RoutePoints
+
+NOT_KEPT = "by_hand_not_kept"
+
+
+@dataclass(frozen=True, eq=False)
+class _Kept:
+    legs: list[HandLeg]
+    rows: list[Step]
+    flown: PlannedRoute
+
+
+def keep_by_hand(mission: Mission) -> int:
+    """Puts the legs by hand of the plan before into the routes that are planned now, as many as can be; returns how many.
+
+    The caller holds the mission's row, has stored the plan and saves the row. Routes as planned can be gone back to like any change by
+    hand. Of what is not kept the plan warns.
+    """
+    remembered = hand_legs_from_json((mission.last_plan or {}).get("by_hand", ()))
+    if not remembered:
+        return 0
+    ground, targets, count = hand_ground(), target_keys(mission), 0
+    flown = {route.mission_uav.name: route for route in mission.routes.select_related("mission_uav").filter(geometry__isnull=False)}
+    for name, legs in remembered.items():
+        route = flown.get(name)
+        kept = None if route is None or route.charging else _kept(mission, route, legs, targets, ground)
+        if route is not None and kept is not None:
+            route.before_hand = [[step_row(row) for row in route.waypoints.select_related("target")]]
+            by_hand = {place_of(point["position"], point["agl_m"]) for point in kept.rows if point["is_by_hand"]}
+            store_by_hand(mission, route, kept.flown, by_hand)
+            count += len(kept.legs)
+        missed = len(legs) - (0 if kept is None else len(kept.legs))
+        uav = next((row.sequence for row in mission.mission_uavs.all() if row.name == name), None)
+        if missed and uav is not None:
+            mission.plan_warnings = [*mission.plan_warnings, _warning(name, uav, missed, len(legs))]
+    if count:
+        settle_by_hand(mission)
+    return count
+
+
+def _warning(name: str, uav: int, missed: int, count: int) -> dict[str, Any]:
+    told = f"Legs of {name} that were changed by hand and are as planned again: {missed} of {count}."
+    words = f"{told} Their ends differ, or something bars them now."
+    return {"code": NOT_KEPT, "uav": uav, "message": words}
+
+
+def _kept(mission: Mission, route: Route, legs: Sequence[HandLeg], targets: dict[int, Any], ground: HandGround) -> _Kept | None:
+    """All legs that are there still, together; where these are not clear, one after the other as long as the route stays clear."""
+    planned = [step_row(row) for row in route.waypoints.select_related("target")]
+    there = {(start, end) for start, end, _first, _last in legs_between(planned, targets)}
+    left = [leg for leg in legs if (leg.start, leg.end) in there]
+    if not left:
+        return None
+    whole = _tried(mission, route, left, planned, targets, ground)
+    if whole is not None or len(left) == 1:
+        return whole
+    best: _Kept | None = None
+    for leg in left:
+        best = _tried(mission, route, [*([] if best is None else best.legs), leg], planned, targets, ground) or best
+    return best
+
+
+def _tried(
+    mission: Mission, route: Route, legs: list[HandLeg], planned: Sequence[Step], targets: dict[int, Any], ground: HandGround
+) -> _Kept | None:
+    rows = _with_legs(planned, legs, targets)
+    try:
+        flown = checked_by_hand(mission, route, RoutePoints.of(step_points(rows)), ground)
+    except InvalidRequest:
+        return None
+    return _Kept(legs, rows, flown)
+
+
+def _with_legs(planned: Sequence[Step], legs: Sequence[HandLeg], targets: dict[int, Any]) -> list[Step]:
+    by_ends = {(leg.start, leg.end): leg for leg in legs}
+    rows = [planned[0]]
+    for start, end, first, last in legs_between(planned, targets):
+        leg, own = by_ends.get((start, end)), planned[last]
+        rows += planned[first + 1 : last] if leg is None or leg.points is None else leg.points
+        if leg is not None and leg.is_end_by_hand:
+            own = own | {"agl_m": leg.end_agl_m, "speed_mps": leg.end_speed_mps, "is_by_hand": True}
+        rows.append(own)
+    return rows

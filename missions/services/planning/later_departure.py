@@ -1,0 +1,94 @@
+"""Whether departing later brings a better plan: when zones that bar the way, or a target, are no longer in force."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any
+
+from django.conf import settings
+from missions.services.planning.planner import make_plan
+from missions.services.planning.requests import PlanRequest, moment_to_json
+from missions.services.planning.zone_choice import near_positions
+from missions.services.targets.places import places_of
+
+from inspection.geodesy import LonLat
+from inspection.selectors.planning import planning_read
+from planning.problem import Objective, Priority
+
+AHEAD_S = 48 * 3_600.0
+MAX_TRIES = 12
+BETTER = 0.99  # of a value: less of a change is not worth the wait
+STEP_S = 60.0
+
+
+def better_departure(*, request: PlanRequest, now: datetime) -> dict[str, Any]:
+    """The first moment, of those at which a zone near the mission ends, at which a plan leaves out less or has less of its objective.
+
+    Looked at are the first MAX_TRIES of them in the AHEAD_S after the departure; without one, after now, and now itself. Each is a whole
+    plan. Raises InvalidRequest, NoGraph or GraphOutdated.
+    """
+    before = make_plan(request=request)
+    looked_until: datetime | None = None
+    for moment in _moments(request, now):
+        looked_until = moment
+        plan = make_plan(request=replace(request, departs_at=moment))
+        if _is_better(request, plan, before):
+            return _answer(before, plan, moment, looked_until)
+    return _answer(before, None, None, looked_until)
+
+
+def _moments(request: PlanRequest, now: datetime) -> Iterator[datetime]:
+    """On full minutes, in order, after the margin that is kept from a zone's times."""
+    from_s = (request.departs_at or now).timestamp()
+    ground = planning_read().ground()
+    places, _gone = places_of(request.targets)
+    ends = [*(uav.position for uav in request.uavs), *(base.position for base in request.bases)]
+    near = near_positions(ground.table, [*ends, *(LonLat(*at) for place in places for at in place.course)])
+    table = ground.table.only(near & ground.table.reaching(0.0, settings.FLIGHT_RULES.max_agl_m))
+    spans = (span for own in table.spans(from_s, from_s + AHEAD_S) for span in own)
+    moments_s = {STEP_S * math.ceil(span.to_s / STEP_S) for span in spans if span.to_s < from_s + AHEAD_S}
+    if request.departs_at is None:
+        moments_s.add(STEP_S * math.ceil(from_s / STEP_S))
+    return (datetime.fromtimestamp(moment_s, UTC) for moment_s in sorted(moments_s)[:MAX_TRIES])
+
+
+def _is_better(request: PlanRequest, plan: Mapping[str, Any], before: Mapping[str, Any]) -> bool:
+    missed, missed_before = _missed(request, plan), _missed(request, before)
+    return missed < missed_before or (missed == missed_before and _value(plan) < BETTER * _value(before))
+
+
+def _missed(request: PlanRequest, plan: Mapping[str, Any]) -> tuple[int, ...]:
+    left_out = [request.targets[item["target"]].priority for item in plan["unassigned"]]
+    return tuple(sum(priority is level for priority in left_out) for level in sorted(Priority, reverse=True))
+
+
+def _value(plan: Mapping[str, Any]) -> float:
+    told = _told(plan)
+    names = {
+        Objective.TOTAL: "total_length_m", Objective.MAKESPAN: "done_s", Objective.TIME: "total_duration_s",
+        Objective.ENERGY: "total_energy_wh",
+    }  # fmt: skip
+    return float(told[names[Objective(plan["objective"])]] or 0.0)
+
+
+def _told(plan: Mapping[str, Any]) -> dict[str, Any]:
+    flown = [route["departs_s"] + route["duration_s"] for route in plan["routes"] if route["geometry"] is not None]
+    return {
+        "left_out": len(plan["unassigned"]),
+        "total_length_m": plan["total_length_m"],
+        "done_s": max(flown, default=0.0),
+        "total_duration_s": plan["total_duration_s"],
+        "total_energy_wh": plan["total_energy_wh"],
+    }
+
+
+def _answer(
+    before: Mapping[str, Any], plan: Mapping[str, Any] | None, moment: datetime | None, looked_until: datetime | None
+) -> dict[str, Any]:
+    return {
+        "departs_at": moment_to_json(moment),
+        "looked_until": moment_to_json(looked_until),
+        "before": _told(before),
+        "then": None if plan is None else _told(plan),
+    }

@@ -1,0 +1,35 @@
+"""What a process does before it plans for anybody."""
+
+import logging
+
+from django.db import Error, connections
+from missions.services.planning.map_data import current_scene
+
+from inspection.network.route_index import asset_places, node_tree, route_index
+from inspection.network.spans import spans_of
+from inspection.network.warm_up import rehearse as rehearse_ways
+from inspection.selectors import NoGraph
+from planning.solver.warm_up import rehearse as rehearse_solvers
+from planning.trajectory.warm_up import rehearse as rehearse_drawing
+
+logger = logging.getLogger(__name__)
+
+
+def warm_up() -> None:
+    """Load the compiled core, the graph and its index. Without a graph or a database the first plan will look for them again."""
+    rehearse_ways()
+    rehearse_solvers()
+    rehearse_drawing()
+    try:
+        scene = current_scene()
+    except NoGraph:
+        return
+    except Error as error:
+        logger.warning("the graph is not loaded yet: %s", error)
+        return
+    finally:
+        connections.close_all()
+    for part in (route_index, node_tree, asset_places):
+        part(scene.graph)
+    asset_places(scene.whole_graph)
+    spans_of(scene.network)
