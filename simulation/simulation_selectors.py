@@ -5,8 +5,8 @@ from typing import Any
 from uuid import UUID
 
 from django.db.models import QuerySet
-from missions.hooks.events import EventKind, MissionEvent, Place, Source
 
+from missions.hooks.events import EventKind, MissionEvent, Place, Source
 from simulation.end_reasons import reason_words
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from workspace.models import Organisation

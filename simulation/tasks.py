@@ -2,10 +2,10 @@
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
-from missions.services.commands.refused import Refused
 
 from inspection.selectors import NoGraph
 from missions.models import Mission
+from missions.services.commands.refused import Refused
 from simulation.models import Rehearsal
 from simulation.services.demo_missions import NotThere, make_demo_missions, missions_made
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job

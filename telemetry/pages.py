@@ -4,10 +4,10 @@ from typing import Any
 from uuid import UUID
 
 from django.http import Http404
-from missions.selectors.missions import mission_bounds
 
 from inspection.selectors import ground_extent
 from missions.models import Mission, MissionUav
+from missions.selectors.missions import mission_bounds
 from workspace.pages import SignedInPage, raster_maps
 
 

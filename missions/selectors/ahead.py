@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from missions.selectors.zones import flown_route
-
 from inspection.geodesy import LonLat
 from missions.models import InspectionTarget, Mission, Route, TargetState, Uav, Waypoint, WaypointKind
+from missions.selectors.zones import flown_route
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 

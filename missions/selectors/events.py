@@ -10,10 +10,10 @@ from uuid import UUID
 from django.db import connection
 from django.db.models import Q
 from django.utils import timezone
-from missions.hooks.events import EventKind, MissionEvent, Place, Source, registered_sources
-from missions.outcome_messages import command_outcome_in_words
 
+from missions.hooks.events import EventKind, MissionEvent, Place, Source, registered_sources
 from missions.models import InspectionTarget, Mission, MissionState, TargetState, Uav, UavCommand
+from missions.outcome_messages import command_outcome_in_words
 from workspace.models import AuditEntry, Organisation
 
 SHOWN_AFTER_END = timedelta(hours=1)  # as live pages show missions

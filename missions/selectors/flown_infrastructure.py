@@ -4,11 +4,11 @@ from datetime import timedelta
 
 from django.conf import settings
 from django.db.models.functions import Now
-from missions.hooks.in_air import uavs_in_the_air
-from missions.selectors.flights import STILL_FLOWN
 
 from inspection.auto_apply_hooks import HeldBack, WrittenGround
+from missions.hooks.in_air import uavs_in_the_air
 from missions.models import ENDED_STATES, InspectionTarget, MissionState, Route, Waypoint
+from missions.selectors.flights import STILL_FLOWN
 
 ON_UAVS = (MissionState.DISPATCHED, MissionState.ACTIVE)
 TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and from what stands tall

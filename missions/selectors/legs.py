@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from missions.selectors.zones import zones_met
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
@@ -16,6 +15,7 @@ from inspection.selectors import NoGraph, ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
+from missions.selectors.zones import zones_met
 from planning.clearance.zone_clearance import FlownRoute
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance

@@ -29,12 +29,12 @@ from django.db.models import (
     Value,
 )
 from django.db.models.functions import Coalesce, Lower
-from missions.selectors.stale_plans import landing_routes_without_base
-from missions.selectors.uav_changes import missions_with_other_uavs
 
 from inspection.models import Asset, AssetKind
 from inspection.selectors import ground_revision
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route
+from missions.selectors.stale_plans import landing_routes_without_base
+from missions.selectors.uav_changes import missions_with_other_uavs
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.models import Organisation
 

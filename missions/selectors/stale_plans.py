@@ -9,13 +9,13 @@ import numpy as np
 from django.db.models import Exists, OuterRef
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.selectors.ahead import WayAhead, ways_ahead
-from missions.selectors.uav_changes import UavChange, uav_change_words
-from missions.selectors.zones import MetZone, departure_s, flown_route, zones_met
 
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision
 from missions.models import Base, Mission, MissionState, Route, WaypointKind
+from missions.selectors.ahead import WayAhead, ways_ahead
+from missions.selectors.uav_changes import UavChange, uav_change_words
+from missions.selectors.zones import MetZone, departure_s, flown_route, zones_met
 from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground

@@ -7,9 +7,9 @@ from uuid import UUID
 
 from django.db.models import QuerySet
 from django.utils.translation import gettext as _
-from missions.selectors.fleet import FIGURES, figures_of
 
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Uav, UavState
+from missions.selectors.fleet import FIGURES, figures_of
 from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 from workspace.number_text import number_text
 

@@ -6,14 +6,14 @@ from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
+
+from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.selectors.missions import mission_of_organisation
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.refused import refuse
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation, SimulationState
 from simulation.rehearsing.sky import Named, named_sky

@@ -12,16 +12,16 @@ from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.selectors.fleet import performance_of
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.refused import refuse
-from missions.services.fleet.demo_uavs import create_demo_uavs
 
 from inspection.demo_region import BASES
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from missions.models import Base, EndAction, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
+from missions.selectors.fleet import performance_of
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.refused import refuse
+from missions.services.fleet.demo_uavs import create_demo_uavs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.problem import Objective, Task, TaskKind
 from simulation.models import Simulation

@@ -2,10 +2,10 @@
 
 from django.db import transaction
 from django.utils.translation import gettext as _
-from missions.services.commands.refused import Reason, Refused
 
 from inspection.selectors.planning import planning_read
 from missions.models import Mission
+from missions.services.commands.refused import Reason, Refused
 from simulation.models import Rehearsal, RehearsalRule, VerdictLevel
 from simulation.rehearsing.sky import Named, named_sky, sky_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green

@@ -4,14 +4,14 @@ from collections.abc import Collection
 
 from django.db import transaction
 from django.db.models import Exists, OuterRef, Q
+
+from missions.models import Mission, MissionState, MissionUav, Uav, UavCommand, UavState
 from missions.services.approval.approval import change_state
 from missions.services.commands.flight_progress import ON_ITS_WAY, UNDECIDED
 from missions.services.commands.outbox import end_commands
 from missions.services.commands.refused import Refused
 from missions.services.fleet.rows import FleetChanged
 from missions.services.fleet.uavs import change_uav
-
-from missions.models import Mission, MissionState, MissionUav, Uav, UavCommand, UavState
 from simulation.models import SimulatedVehicle
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User

@@ -8,9 +8,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext as _
-from missions.selectors.zones import departure_s
-from missions.services.approval.document import frozen_route
-from missions.services.commands.refused import Reason, Refused, refuse
 
 from inspection.geodesy import LonLat
 from inspection.models import AssetKind
@@ -18,6 +15,9 @@ from mavlink.approved_route import FrozenRoute, NotARoute, route_from_json, rout
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import FlightLoad, load_from_json, load_to_json
 from missions.models import Approval, Mission, MissionUav
+from missions.selectors.zones import departure_s
+from missions.services.approval.document import frozen_route
+from missions.services.commands.refused import Reason, Refused, refuse
 from planning.energy.conditions import Conditions, conditions_from_json
 from planning.energy.performance import performance_from_json
 from planning.trajectory.heights import asset_height_m

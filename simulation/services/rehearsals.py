@@ -10,11 +10,11 @@ from uuid import UUID
 from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
-from missions.selectors.missions import mission_of_organisation
 
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read
 from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
+from missions.selectors.missions import mission_of_organisation
 from missions.services.missions import note
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said

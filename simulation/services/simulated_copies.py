@@ -9,14 +9,14 @@ from typing import Any
 
 from django.db import transaction
 from django.utils.translation import gettext as _
-from missions.selectors.missions import approval_in_force, mission_of_organisation
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.refused import Reason, refuse, refuse_for
-from missions.services.fleet.uavs import change_uav, create_uav
 
 from inspection.geodesy import LonLat
 from missions.models import LinkKind, Mission, MissionUav, Uav, UavState
 from missions.models.missions import MAX_NAME_LENGTH
+from missions.selectors.missions import approval_in_force, mission_of_organisation
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.fleet.uavs import change_uav, create_uav
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.rehearsing.sky import Sky

@@ -6,12 +6,12 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils.translation import gettext as _
+
+from missions.models import CredentialKind, LinkKind, Mission, MissionState, MissionUav, Uav
 from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
 from missions.services.fleet.credentials import make_credential
 from missions.services.fleet.rows import SystemIdQuota
 from missions.services.fleet.uavs import change_uav
-
-from missions.models import CredentialKind, LinkKind, Mission, MissionState, MissionUav, Uav
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.rehearsing.flying import RouteToFly
 from simulation.rehearsing.sky import Sky, sky_to_json

@@ -9,11 +9,11 @@ from uuid import UUID
 
 from django.conf import settings
 from django.db import close_old_connections, connection
-from missions.services.fleet.credentials import mavlink_signing_key
 
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import heights_at, planning_read
 from missions.models import CredentialKind, Uav
+from missions.services.fleet.credentials import mavlink_signing_key
 from operation import pulse
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange

@@ -4,13 +4,13 @@ from django.db import transaction
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
-from missions.selectors.fleet import types_of_organisation
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.views.parameters import invalid
 from missions.models import UavType
+from missions.selectors.fleet import types_of_organisation
 from simulation import selectors
 from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe

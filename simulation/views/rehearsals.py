@@ -7,12 +7,12 @@ from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from missions.services.commands.refused import Refused
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
 from missions.models import Mission
+from missions.services.commands.refused import Refused
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals
 from planning.energy.conditions import conditions_from_json

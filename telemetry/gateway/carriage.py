@@ -13,17 +13,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils import timezone
-from missions.services.commands.commands import (
-    is_wanted,
-    note_acknowledged,
-    note_applied,
-    note_failed,
-    note_progress,
-    note_read_back,
-    note_released,
-    note_sent,
-    note_sent_unheard,
-)
 
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
@@ -37,6 +26,17 @@ from mavlink.parameters import ParameterReading, ParameterSetting
 from mavlink.rtl import fence_off_by, return_height_parameter
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, UavCommand
+from missions.services.commands.commands import (
+    is_wanted,
+    note_acknowledged,
+    note_applied,
+    note_failed,
+    note_progress,
+    note_read_back,
+    note_released,
+    note_sent,
+    note_sent_unheard,
+)
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (

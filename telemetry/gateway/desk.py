@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from uuid import UUID
 
 from django.conf import settings
-from missions.services.commands.commands import claim_commands, expire_overdue, note_released, renew_claims
 
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
+from missions.services.commands.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import LOADING

@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from missions.services.fleet.credentials import mavlink_signing_key
-
 from missions.models import CredentialKind, LinkKind, Uav, UavCredential
+from missions.services.fleet.credentials import mavlink_signing_key
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,10 @@ from typing import BinaryIO
 
 from django.conf import settings
 from django.db import transaction
-from missions.services.commands.steering import mission_in_hand
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.models import Uav
+from missions.services.commands.steering import mission_in_hand
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.options import Options
 from telemetry.gateway.session import Session

@@ -5,8 +5,6 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from django.conf import settings
-from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
-from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
@@ -19,6 +17,8 @@ from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
 from missions.command_rules import ALONG_ROUTE
 from missions.models import CommandKind, MissionState, UavCommand
+from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
+from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.services.along_route import OnBoard, along_route, held_flight
 from telemetry.services.loads import Loaded, loaded_on
 

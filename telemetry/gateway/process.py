@@ -16,10 +16,10 @@ from typing import Any
 import psycopg
 from django.conf import settings
 from django.db import connection
-from missions.services.commands.commands import CHANNEL
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Frame, message_of
+from missions.services.commands.commands import CHANNEL
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk

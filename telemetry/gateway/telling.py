@@ -9,7 +9,6 @@ from typing import Any
 
 from missions.services.commands.rtl_check import note_own_return
 from missions.services.fleet.credentials import note_mavlink_key_use
-
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.session import Session
 from telemetry.services.alerts import tell_of_second_sender

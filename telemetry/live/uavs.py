@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from django.db.models import Case, F, IntegerField, OuterRef, Subquery, Value, When
-from missions.selectors.commands import route_commands
-from missions.services.commands.call_signs import colour_of
 
 from missions.models import LinkKind, MissionState, MissionUav, Uav
+from missions.selectors.commands import route_commands
+from missions.services.commands.call_signs import colour_of
 from telemetry.alerting.detectors.link import late_after_s
 from telemetry.alerting.limits import sound_limits
 from telemetry.estimation.contact import SILENT_INTERVALS, SILENT_S

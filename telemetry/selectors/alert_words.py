@@ -5,6 +5,7 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
+
 from missions.outcome_messages import outcome_in_words
 
 # Detectors know no languages: what they may say is named here for the catalogues.

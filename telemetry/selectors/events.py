@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from django.utils import translation
-from missions.hooks.events import EventKind, MissionEvent, Place, Source
 
+from missions.hooks.events import EventKind, MissionEvent, Place, Source
 from telemetry.models import Alert, FlightEvent, VehicleText
 from telemetry.selectors.alert_facts import WARNING_SEVERITY
 from telemetry.selectors.alert_words import alert_words

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from uuid import UUID
 
 from missions.selectors.commands import SENT_LAST
-
 from workspace.prepared_statements import prepared_rows
 
 Key = tuple[str, str]  # kind and id

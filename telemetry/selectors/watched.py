@@ -7,11 +7,11 @@ from typing import Any
 from uuid import UUID
 
 from django.db import connection
-from missions.selectors.commands import SENT_LAST
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from missions.models import ENDED_STATES, MissionState
+from missions.selectors.commands import SENT_LAST
 from telemetry.estimation.contact import PROMPT_S
 from telemetry.estimation.report import Boot, Report
 from telemetry.exports.logged_record import REPORTED

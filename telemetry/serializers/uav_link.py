@@ -3,13 +3,13 @@
 import json
 from typing import Any
 
-from missions.services.commands.flight_progress import FlightEnd
 from rest_framework import serializers
 
 from mavlink.decoding.companion_reports import FLAGS, INTEGERS, MAX_MODE_LENGTH, NUMBERS, instant
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.services.commands.flight_progress import FlightEnd
 from telemetry.services.results import NewResult
 from workspace.jobs.serializers import Declared
 

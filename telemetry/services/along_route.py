@@ -5,11 +5,6 @@ from datetime import datetime, timedelta
 
 import numpy as np
 from django.conf import settings
-from missions.selectors.missions import approval_in_force
-from missions.selectors.zones import zone_margins
-from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
-from missions.services.commands.rtl_check import zones_applying
-from missions.services.commands.steering import mission_in_hand
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
@@ -18,6 +13,11 @@ from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
 from mavlink.approved_route import Flight
 from missions.models import Approval, LinkKind, Uav
+from missions.selectors.missions import approval_in_force
+from missions.selectors.zones import zone_margins
+from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from missions.services.commands.rtl_check import zones_applying
+from missions.services.commands.steering import mission_in_hand
 from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
 from telemetry.services.loads import Loaded, loaded_on
 

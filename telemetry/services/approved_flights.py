@@ -6,11 +6,11 @@ from typing import Any
 from uuid import UUID
 
 from django.conf import settings
-from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
-from missions.services.planning.requests import lost_link_from_json
 
 from inspection.geodesy import LonLat
 from missions.models import Approval
+from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from missions.services.planning.requests import lost_link_from_json
 from planning.clearance.lost_link import LostLinkPlan
 from planning.energy.conditions import conditions_from_json
 from planning.energy.performance import performance_from_json

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
-from missions.services.approval.document import frozen_route
-from missions.services.commands.refused import Reason
 
 from mavlink.approved_route import NotARoute
 from mavlink.autopilot_type import COMMANDED, Flavour
@@ -14,6 +12,8 @@ from mavlink.mission_sync.supported_items import command_words, firmware_words, 
 from mavlink.rtl import fence_off_by
 from mavlink.vehicle_class import VehicleClass, class_of
 from missions.models import LinkKind, Mission, Route, Uav
+from missions.services.approval.document import frozen_route
+from missions.services.commands.refused import Reason
 from telemetry.models import UavLink
 
 KINDS = {

@@ -3,9 +3,9 @@
 from datetime import datetime
 
 from django.utils import timezone
-from missions.services.commands.flight_progress import mark_waypoint_reached
 
 from missions.models import LinkKind, Uav
+from missions.services.commands.flight_progress import mark_waypoint_reached
 from telemetry.models import UavLink
 from telemetry.selectors.log import newest_of
 from workspace.prepared_statements import prepared_rows

@@ -9,12 +9,12 @@ from uuid import UUID
 
 import numpy as np
 from django.db import connection, transaction
-from missions.selectors.commands import SENT_LAST
-from missions.services.fleet.reports import ReportedPosition, note_reported_positions
 
 from inspection.selectors import ground_heights_m
 from mavlink.decoding.measurement import Measurement, believable
 from missions.models import MissionState
+from missions.selectors.commands import SENT_LAST
+from missions.services.fleet.reports import ReportedPosition, note_reported_positions
 from telemetry.services.flight_events import note_take_offs_and_landings
 from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on

@@ -7,13 +7,13 @@ from datetime import datetime
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
-from missions.services.commands.rtl_check import zones_applying
 
 from inspection.models import Asset
 from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from inspection.selectors import asset_label, assets_near, ground_heights_m
 from inspection.selectors.zone_table import zone_table
 from missions.models import Uav
+from missions.services.commands.rtl_check import zones_applying
 from telemetry.selectors.present import Heard, Present, heard_of
 
 BESIDE_M = 30.0  # from where it comes down: what wind and position errors may carry it into

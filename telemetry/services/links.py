@@ -11,8 +11,8 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from django.db import connection
-from missions.services.commands.commands import release_claims_of_others
 
+from missions.services.commands.commands import release_claims_of_others
 from telemetry.services.waypoints import lists_on
 
 NAMESAKE_S = 2.5  # a gateway that runs renews its leases more often

@@ -8,9 +8,9 @@ from uuid import UUID
 
 from django.db import transaction
 from django.db.models.functions import Now
-from missions.services.commands.commands import note_applied, note_failed, note_sent
 
 from missions.models import UavCommand
+from missions.services.commands.commands import note_applied, note_failed, note_sent
 from telemetry.models import UavLink
 
 

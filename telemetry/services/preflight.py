@@ -14,6 +14,11 @@ from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import get_language
 from django.utils.translation import gettext as _
+
+from inspection.geodesy import distance_m
+from inspection.selectors import ground_revision
+from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
+from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
 from missions.outcome_messages import outcome_in_words
 from missions.selectors.commands import upload_of
 from missions.selectors.fleet import performance_of
@@ -24,11 +29,6 @@ from missions.services.commands.planned_starts import routes_not_begun, uavs_bei
 from missions.services.commands.refused import Reason
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, return_checks
 from missions.services.commands.start_slots import reasons_to_wait
-
-from inspection.geodesy import distance_m
-from inspection.selectors import ground_revision
-from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
-from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.approved_flights import approved_content

@@ -9,9 +9,9 @@ from typing import IO, Any
 
 from django.conf import settings
 from django.core.serializers.json import DjangoJSONEncoder
-from missions.selectors.commands import commands_of_mission
 
 from missions.models import Mission
+from missions.selectors.commands import commands_of_mission
 from telemetry.exports.csv_file import csv_pieces
 from telemetry.exports.geojson_file import geojson_pieces
 from telemetry.exports.thinning import rounded

@@ -8,10 +8,10 @@ from uuid import UUID
 
 from django.db import transaction
 from django.db.models.functions import Least
-from missions.selectors.given import approvals_given_to, is_end_known, number_of_flights, places_of_targets
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_target
 
 from missions.models import Approval, InspectionTarget, LinkKind, TargetState, Uav
+from missions.selectors.given import approvals_given_to, is_end_known, number_of_flights, places_of_targets
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
 from telemetry.services.down_alerts import tell_of_failed_flight

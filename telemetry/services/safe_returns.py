@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from missions.services.commands.rtl_check import ReturnCheck, ReturnState, WaysNow
-from missions.services.commands.start_slots import KEPT_SHARE
 
 from inspection.geodesy import LonLat, distance_m
 from mavlink.rtl import OwnReturn
 from missions.models import Mission, MissionUav
+from missions.services.commands.rtl_check import ReturnCheck, ReturnState, WaysNow
+from missions.services.commands.start_slots import KEPT_SHARE
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute
 from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on

@@ -11,10 +11,10 @@ from uuid import UUID
 from django.db import connection
 from django.db.models import Exists, OuterRef
 from django.utils import timezone
-from missions.services.commands.flight_progress import NOT_HELD, NOT_REACHED, SETTLED, mark_missed, store_visit
 
 from mavlink.approved_route import route_from_json
 from missions.models import Approval, InspectionTarget, Mission
+from missions.services.commands.flight_progress import NOT_HELD, NOT_REACHED, SETTLED, mark_missed, store_visit
 from telemetry.mission_report.visits import Visit, visits_of
 from telemetry.selectors.mission_record import approval_on_record, at, fastest_mps, fixes_of, routes_on_record
 

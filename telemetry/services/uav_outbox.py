@@ -7,12 +7,12 @@ from uuid import UUID
 
 from django.db import transaction
 from django.utils import timezone
+
+from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
 from missions.selectors.given import Given, given_to
 from missions.services.commands.commands import claim_commands, note_acknowledged, note_applied, note_failed, note_sent
 from missions.services.commands.dispatch import ApprovedLoad, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
-
-from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts import close_alert, open_alert
 

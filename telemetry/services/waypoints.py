@@ -11,10 +11,10 @@ from functools import lru_cache
 from uuid import UUID
 
 from django.db import connection
-from missions.services.commands.dispatch import DamagedApproval, approved_load
 
 from mavlink.autopilot_type import Flavour
 from missions.models import Approval
+from missions.services.commands.dispatch import DamagedApproval, approved_load
 
 
 @dataclass(frozen=True, slots=True)

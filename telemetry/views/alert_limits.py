@@ -8,12 +8,12 @@ from django.db import transaction
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
-from missions.selectors.fleet import types_of_organisation
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.views.parameters import invalid
 from missions.models import Mission, UavType
+from missions.selectors.fleet import types_of_organisation
 from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_limits, limits_of
 from telemetry.serializers.alerts import AlertLimitsSerializer
 from workspace.api.signed_in import SignedInRequest

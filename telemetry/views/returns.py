@@ -3,11 +3,11 @@
 from django.http import Http404
 from django.utils import timezone
 from drf_spectacular.utils import extend_schema
-from missions.selectors.fleet import uavs_of_organisation
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import Uav
+from missions.selectors.fleet import uavs_of_organisation
 from missions.views.problems import api_problems
 from missions.views.uavs import uav_or_404
 from telemetry.serializers.returns import LandingHereSerializer, PresentReturnsSerializer, landing_here_json, present_return_json

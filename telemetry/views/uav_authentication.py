@@ -6,13 +6,13 @@ from typing import Any
 from django.contrib.auth.models import AnonymousUser
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
-from missions.services.fleet.credentials import note_link_token_use
 from rest_framework.authentication import BaseAuthentication, get_authorization_header
 from rest_framework.exceptions import AuthenticationFailed, NotAuthenticated
 from rest_framework.permissions import BasePermission
 from rest_framework.request import Request
 
 from missions.models import CredentialKind, UavState
+from missions.services.fleet.credentials import note_link_token_use
 from workspace.api.authentication import MAX_TOKEN_LENGTH
 from workspace.api.errors import ApiProblem
 from workspace.api.throttling import ScopedRate

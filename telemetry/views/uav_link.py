@@ -6,14 +6,14 @@ from typing import Any
 
 from django.utils import timezone
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from missions.selectors.given import Given, commands_by_key, given_to
-from missions.services.commands.dispatch import ApprovedLoad, load_of
-from missions.services.commands.flight_progress import FlightEnd
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import CommandState, UavCommand
+from missions.selectors.given import Given, commands_by_key, given_to
+from missions.services.commands.dispatch import ApprovedLoad, load_of
+from missions.services.commands.flight_progress import FlightEnd
 from telemetry.serializers.uav_link import (
     AcknowledgementsSerializer,
     GivenSerializer,

@@ -3,12 +3,12 @@
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from missions.selectors.fleet import types_of_organisation
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import Uav
+from missions.selectors.fleet import types_of_organisation
 from missions.serializers.uavs import UavFeatureSerializer, uav_feature
 from missions.views.fleet_problems import TAKEN, fleet_problems
 from missions.views.problems import refusals

@@ -7,12 +7,12 @@ import shapely
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute
 from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, InspectionTarget, LinkKind, Mission
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 from telemetry.models import AlertLevel, PositionEstimate, TelemetryRecord
 from telemetry.services import NewRecord, store_records
 from telemetry.services.alerts import open_alert

@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.commands import note_applied, note_sent
-from missions.services.commands.dispatch import dispatch_mission
 
 from inspection.models import Asset
 from inspection.services import import_terrain
 from missions.models import Approval, EndAction, Mission, Uav, UavCommand
 from missions.services import PlanRequest, UavRequest, create_mission, plan_mission
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.commands import note_applied, note_sent
+from missions.services.commands.dispatch import dispatch_mission
 from tests.accounts.users import somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds

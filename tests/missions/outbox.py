@@ -5,9 +5,9 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.utils import timezone
-from missions.services.commands.commands import claim_commands, queue_command
 
 from missions.models import CommandKind, Uav, UavCommand
+from missions.services.commands.commands import claim_commands, queue_command
 from tests.missions.worlds import UAV_AT
 from workspace.models import Organisation, User
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from missions.services.planning.requests import LostLinkRequest
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -16,6 +15,7 @@ from inspection.selectors import current_graph
 from inspection.services import build_graph, import_osm, mark_ground_changed
 from missions.models import EndAction, Mission, MissionState
 from missions.services import PlanRequest, UavRequest, create_mission, make_plan, store_plan
+from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance

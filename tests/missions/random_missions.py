@@ -5,7 +5,6 @@ import random
 import numpy as np
 import shapely
 from django.contrib.gis.geos import GEOSGeometry, MultiPolygon
-from missions.services.planning.requests import NO_BATTERY
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, NoFlyZone
@@ -13,6 +12,7 @@ from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
 from missions.models import EndAction
 from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
+from missions.services.planning.requests import NO_BATTERY
 from planning.energy.performance import Performance
 from planning.problem import Objective
 

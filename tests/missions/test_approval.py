@@ -8,11 +8,6 @@ import pytest
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
-from missions.services.approval.approval import approve_mission, revoke_approval
-from missions.services.approval.document import approval_document, content_sha256
-from missions.services.commands.commands import note_applied, note_failed
-from missions.services.commands.refused import Refused
-from missions.services.planning.requests import LostLinkRequest
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
@@ -33,6 +28,11 @@ from missions.services import (
     plan_mission,
     take_back_change,
 )
+from missions.services.approval.approval import approve_mission, revoke_approval
+from missions.services.approval.document import approval_document, content_sha256
+from missions.services.commands.commands import note_applied, note_failed
+from missions.services.commands.refused import Refused
+from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned

@@ -6,12 +6,12 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
+
+from missions.models import CommandKind, Mission, Uav, UavCommand
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.batch import BATCH_KINDS, Scope, UavAnswer, command_missions
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.steering import command_uav, mission_in_hand
-
-from missions.models import CommandKind, Mission, Uav, UavCommand
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import BELIEVED_FOR
 from tests.accounts.users import client_of, somebody

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
-from missions.services.planning.requests import UavRequest
-from missions.services.targets.energy_shortfall import least_missing
-from missions.services.targets.refusals import LeftOut
 
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
+from missions.services.planning.requests import UavRequest
+from missions.services.targets.energy_shortfall import least_missing
+from missions.services.targets.refusals import LeftOut
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.problem import Objective, Priority

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from django.utils import timezone
-from missions.services.commands.call_signs import ROUTE_COLOURS, colour_of, colours_by_place
 
 from missions.models import Mission
+from missions.services.commands.call_signs import ROUTE_COLOURS, colour_of, colours_by_place
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import world
 

@@ -7,11 +7,11 @@ import pytest
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from missions.services.planning.requests import NO_BATTERY
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
+from missions.services.planning.requests import NO_BATTERY
 from planning.problem import Objective
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import AMPLE

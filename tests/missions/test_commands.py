@@ -7,7 +7,11 @@ import psycopg
 import pytest
 from django.conf import settings
 from django.db import IntegrityError, connection, transaction
+
+from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
+from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
 from missions.selectors.given import given_to
+from missions.services import change_uav
 from missions.services.commands.commands import (
     CHANNEL,
     claim_commands,
@@ -21,10 +25,6 @@ from missions.services.commands.commands import (
     renew_claims,
 )
 from missions.services.commands.refused import Refused
-
-from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
-from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
-from missions.services import change_uav
 from missions.tasks import expire_commands
 from tests.accounts.users import somebody
 from tests.missions.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps

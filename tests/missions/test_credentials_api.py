@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from missions.services.fleet.credentials import note_link_token_use, note_mavlink_key_use
 
 from missions.models import UavCredential
 from missions.services import mavlink_signing_key
+from missions.services.fleet.credentials import note_link_token_use, note_mavlink_key_use
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from workspace.models import AuditEntry, Role

@@ -4,6 +4,10 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 from django.utils import timezone
+
+from mavlink.vehicle_plan import load_to_json
+from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
+from missions.services import change_mission, plan_mission
 from missions.services.approval.approval import approve_mission, revoke_approval
 from missions.services.approval.document import approval_document, content_sha256
 from missions.services.commands.commands import note_failed
@@ -11,10 +15,6 @@ from missions.services.commands.dispatch import DamagedApproval, abort_mission, 
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_target, mark_waypoint_reached
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
-
-from mavlink.vehicle_plan import load_to_json
-from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
-from missions.services import change_mission, plan_mission
 from missions.services.missions import MissionChange
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, planned

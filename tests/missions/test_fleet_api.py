@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from missions.services.commands.commands import queue_command
 
 from missions.models import Base, CommandKind, Mission, Uav, UavState, UavType
+from missions.services.commands.commands import queue_command
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import mission_body, patch, post
 from workspace.models import AuditEntry, Organisation, Role

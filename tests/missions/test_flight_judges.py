@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from missions.services.planning.requests import LostLinkRequest
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
 from missions.models import EndAction, Mission, MissionState
 from missions.services import PlanRequest, TargetRequest, make_plan
+from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance

@@ -4,13 +4,13 @@ import threading
 
 import pytest
 from django.db import connection, connections
-from missions.services.approval.approval import held_mission
-from missions.services.commands.refused import Refused
-from missions.services.commands.steering import command_uav
 
 from missions.models import CommandKind, MissionState
 from missions.services.approval import checks
+from missions.services.approval.approval import held_mission
 from missions.services.commands import dispatch
+from missions.services.commands.refused import Refused
+from missions.services.commands.steering import command_uav
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.outbox import a_uav
 from tests.missions.worlds import world

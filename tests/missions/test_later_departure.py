@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from missions.services.planning.later_departure import better_departure
 
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
+from missions.services.planning.later_departure import better_departure
 from planning.problem import Objective
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import plan_body, post

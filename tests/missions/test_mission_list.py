@@ -7,11 +7,11 @@ import pytest
 from django.core.cache import cache
 from django.test import Client
 from django.utils import timezone
-from missions.selectors.missions import mission_of_organisation
 
 from inspection.services import mark_ground_changed
 from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
 from missions.presence import MAX_PAGES
+from missions.selectors.missions import mission_of_organisation
 from missions.services import duplicate_mission
 from tests.accounts.users import client_of, somebody
 from tests.inspection.ground import line

@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from missions.services.commands.rtl_check import note_own_return
 
 from missions.models import LinkKind, Mission, Uav
+from missions.services.commands.rtl_check import note_own_return
 from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, fleet, ground, planned

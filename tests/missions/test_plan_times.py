@@ -9,12 +9,12 @@ from typing import Any
 from unittest import mock
 
 import pytest
-from missions.services.planning.candidate_plans import solve_assignment
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.models import EndAction
 from missions.services import BaseRequest, TargetRequest, make_plan
+from missions.services.planning.candidate_plans import solve_assignment
 from planning.problem import Objective
 from tests.missions.clock_judge import clock_of
 from tests.missions.worlds import World, request, uav, world

@@ -4,13 +4,13 @@ from datetime import datetime, timedelta
 
 import pytest
 from django.utils import timezone
+
+from missions.models import CommandKind, CommandState, Mission, MissionUav, PlannedStarts, UavCommand
 from missions.services.commands.commands import note_sent
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.planned_starts import LEAD_S, MAX_GAP_S, begin_planned_starts, carry_on_planned_starts, stop_planned_starts
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, CommandState, Mission, MissionUav, PlannedStarts, UavCommand
 from telemetry.models import UavLink, UavWatch
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
-from missions.services.planning.best_so_far import PlanProgress
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.models import NoFlyZone
@@ -17,6 +16,7 @@ from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.services import NO_SHORTFALL, BaseRequest, InvalidRequest, TargetRequest, make_plan
+from missions.services.planning.best_so_far import PlanProgress
 from planning.problem import Objective, Task, TaskKind
 from tests.exact_geometry import segment_meets_polygon
 from tests.inspection import ground

@@ -3,10 +3,10 @@
 from unittest import mock
 
 import pytest
-from missions.services.targets.places import places_of
 
 from inspection.models import Asset, AssetKind
 from missions.services import TargetRequest
+from missions.services.targets.places import places_of
 from tests.missions.worlds import world
 
 pytestmark = pytest.mark.django_db

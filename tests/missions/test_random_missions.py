@@ -11,10 +11,6 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from missions.services.planning.map_data import current_scene, scene_on
-from missions.services.targets.assignment import route_end
-from missions.services.targets.places import Place, places_of
-from missions.services.targets.refusals import Scene
 
 from inspection.geodesy import distance_m, path_length_m
 from inspection.network.inspection_graph import InspectionGraph
@@ -22,6 +18,10 @@ from inspection.selectors import zones_in_force
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
 from missions.services import PlanRequest, make_plan
+from missions.services.planning.map_data import current_scene, scene_on
+from missions.services.targets.assignment import route_end
+from missions.services.targets.places import Place, places_of
+from missions.services.targets.refusals import Scene
 from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from planning.problem import Objective, Problem, UavStart, Visit
 from tests.cases import long

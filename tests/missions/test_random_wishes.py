@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from missions.services.planning.map_data import current_scene, scene_on
-from missions.services.planning.requests import NO_BATTERY
-from missions.services.targets.places import places_of
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
 from inspection.selectors.planning import planning_read
 from missions.models import EndAction
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
+from missions.services.planning.map_data import current_scene, scene_on
+from missions.services.planning.requests import NO_BATTERY
+from missions.services.targets.places import places_of
 from planning.connection_points import Terminal, ways_between
 from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 from tests.exact_geometry import segment_meets_polygon

@@ -4,13 +4,13 @@ from datetime import timedelta
 
 import pytest
 from django.utils import timezone
+
+from missions.models import CommandKind, CommandState, LinkKind, Uav, UavCommand
 from missions.services.commands.commands import claim_commands, note_failed, note_sent, queue_command
 from missions.services.commands.refused import Refused
 from missions.services.commands.rtl_check import note_own_return
 from missions.services.commands.staggered_returns import stuck_returns
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, CommandState, LinkKind, Uav, UavCommand
 from tests.accounts.users import client_of
 from tests.missions.flights import an_operator, carry, fleet
 from tests.missions.outbox import claim, fence, now

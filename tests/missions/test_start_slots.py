@@ -4,13 +4,13 @@ from datetime import timedelta
 
 import pytest
 from django.utils import timezone
+
+from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand, UavState
 from missions.selectors.given import given_to
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.commands.refused import Refused
 from missions.services.commands.start_slots import reasons_to_carry_later, reasons_to_wait
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand, UavState
 from telemetry.models import UavLink, UavWatch
 from telemetry.services.latest import time_text
 from telemetry.services.uav_outbox import handed_to

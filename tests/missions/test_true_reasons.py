@@ -6,12 +6,12 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from missions.services.planning.map_data import current_scene, scene_on
 
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
 from missions.models import EndAction
 from missions.services import LockRequest, PlanRequest, TargetRequest, make_plan
+from missions.services.planning.map_data import current_scene, scene_on
 from planning.energy.performance import Performance
 from planning.problem import Objective
 from tests.cases import long

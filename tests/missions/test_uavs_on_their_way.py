@@ -1,11 +1,11 @@
 """What of a UAV does not change while a mission is on its way to it."""
 
 import pytest
-from missions.services.commands.dispatch import abort_mission
-from missions.services.commands.refused import Refused
 
 from missions.models import LinkKind
 from missions.services import change_uav
+from missions.services.commands.dispatch import abort_mission
+from missions.services.commands.refused import Refused
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import World, world
 from workspace.models import User

@@ -4,9 +4,9 @@ import numpy as np
 import orjson
 from hypothesis import given
 from hypothesis import strategies as st
-from missions.services.planning.plan_json import line_text, waypoints_text, waypoints_to_json
 
 from inspection.geodesy import LonLat
+from missions.services.planning.plan_json import line_text, waypoints_text, waypoints_to_json
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from missions.services.planning.best_so_far import PlanProgress
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
@@ -20,6 +19,7 @@ from missions.services import (
     request_from_json,
     request_to_json,
 )
+from missions.services.planning.best_so_far import PlanProgress
 from planning.problem import Objective, Priority
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, World, island, request, uav, world, zone_around
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
-from missions.services.commands.refused import Refused
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from inspection.selectors.planning import heights_at, planning_read
 from missions.models import EndAction, Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
+from missions.services.commands.refused import Refused
 from planning.energy.performance import Performance
 from planning.problem import Objective, Task, TaskKind
 from simulation.rehearsing.flying import fly

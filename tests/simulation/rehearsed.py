@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from missions.selectors.missions import mission_of_organisation
-
 from missions.models import Mission
+from missions.selectors.missions import mission_of_organisation
 from planning.energy.conditions import conditions_from_json
 from simulation.models import Rehearsal
 from simulation.rehearsing.sky import Named, Sky, named_sky

@@ -4,10 +4,10 @@ from datetime import timedelta
 from typing import Any
 
 from django.utils import timezone
-from missions.selectors.missions import mission_of_organisation
 
 from inspection.geodesy import LonLat
 from missions.models import Mission
+from missions.selectors.missions import mission_of_organisation
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation
 from simulation.rehearsing.sky import Named, Sky, named_sky

@@ -10,11 +10,11 @@ from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_target
-from missions.services.commands.steering import command_uav
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_target
+from missions.services.commands.steering import command_uav
 from missions.services.replanning import decline_offer, suggest
 from missions.services.replanning.offers import settle_offers
 from telemetry.models import AlertLevel, FlightEvent, VehicleText

@@ -7,15 +7,15 @@ from unittest import mock
 
 import pytest
 from django.utils import timezone
-from missions.selectors.missions import mission_of_organisation
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.refused import Refused
 
 from inspection.selectors.planning import planning_read
 from inspection.services import build_graph
 from inspection.services.ground import mark_ground_changed
 from missions.models import Mission, MissionState, UavType
+from missions.selectors.missions import mission_of_organisation
 from missions.services import create_mission, plan_mission
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.refused import Refused
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
 from simulation.rehearsing.flying import RouteToFly
 from simulation.serializers.words import reason_of

@@ -6,11 +6,6 @@ import pytest
 from django.core import serializers
 from django.test import Client
 from django.utils import timezone
-from missions.selectors.flights import flights_at_the_same_time
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.dispatch import dispatch_mission
-from missions.services.commands.refused import Refused
-from missions.services.commands.start_slots import reasons_to_wait
 
 from missions.models import (
     Approval,
@@ -25,6 +20,11 @@ from missions.models import (
     UavState,
     Waypoint,
 )
+from missions.selectors.flights import flights_at_the_same_time
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.dispatch import dispatch_mission
+from missions.services.commands.refused import Refused
+from missions.services.commands.start_slots import reasons_to_wait
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation
 from simulation.services.green_verdict import set_rule

@@ -4,9 +4,9 @@ import socket
 from dataclasses import replace
 
 import pytest
-from missions.services.commands.refused import Refused
 
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, Uav
+from missions.services.commands.refused import Refused
 from simulation.models import SimulationChange, SimulationState
 from simulation.serializers.simulations import simulation_json
 from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle

@@ -8,11 +8,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from pymavlink import mavutil
 
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.simulations import change_simulation, end_simulation
 from telemetry.models import Alert, AlertLevel, TelemetryRecord, UavLink, UavWatch

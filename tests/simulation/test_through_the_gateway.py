@@ -1,12 +1,12 @@
 """A mission is approved, sent, started, held, resumed and flown to its end by a simulated UAV that the gateway takes for any other."""
 
 import pytest
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import dispatch_mission, load_of
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import dispatch_mission, load_of
 from simulation.flight.ground import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from django.test import Client
-from missions.services.commands.outbox import queue_command
 
 from examples.companion.client import Companion
 from examples.companion.journal import Journal
 from examples.companion.kinematic import KinematicAutopilot
 from examples.companion.link import Answer, LinkDown
 from missions.models import Approval, CommandKind, Mission, Uav
+from missions.services.commands.outbox import queue_command
 from telemetry.models import TelemetryRecord
 from tests.missions.worlds import UAV_AT
 from tests.telemetry.uav_clients import LINK, UavClient

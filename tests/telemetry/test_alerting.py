@@ -6,10 +6,10 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 from django.utils.translation import override
-from missions.services.commands.outbox import queue_command
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
+from missions.services.commands.outbox import queue_command
 from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink, VehicleText

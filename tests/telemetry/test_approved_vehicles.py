@@ -1,11 +1,11 @@
 """What a UAV's autopilot would refuse is said before its mission is approved."""
 
 import pytest
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.refused import Reason, Refused
 
 from missions.models import Mission, MissionState, Uav
 from missions.services import TargetRequest
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.refused import Reason, Refused
 from planning.problem import Task, TaskKind
 from telemetry.models import UavLink
 from tests.missions.flights import an_operator, fleet, planned

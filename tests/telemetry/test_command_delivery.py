@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
-from missions.services.commands.commands import queue_command
-from missions.services.commands.refused import Refused
 
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
+from missions.services.commands.refused import Refused
 from tests.accounts.users import somebody
 from tests.telemetry.command_carriers import Link, nursery
 

@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from missions.services.commands.dispatch import abort_mission
 
 from examples.companion.client import Companion
 from examples.companion.journal import Journal
 from examples.companion.kinematic import KinematicAutopilot
 from examples.companion.link import Answer, HttpLink, LinkDown
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, UavCommand
+from missions.services.commands.dispatch import abort_mission
 from telemetry.models import InspectionResult, TelemetryRecord, UavLink
 from telemetry.views.uav_authentication import UavRate
 from tests.missions.flights import an_operator, dispatched

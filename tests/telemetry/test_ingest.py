@@ -7,11 +7,11 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.db.models import F
 from django.utils import timezone
-from missions.services.commands.commands import queue_command
 
 from inspection.services import import_terrain
 from mavlink.decoding.measurement import Measurement, believable
 from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, MissionUav, Uav
+from missions.services.commands.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream
 from telemetry.selectors.watched import watched_flights
 from telemetry.services import StoredCount, store_records

@@ -3,10 +3,10 @@
 from typing import Any
 
 import pytest
-from missions.services.approval.approval import revoke_approval
-from missions.services.commands.outbox import queue_command
 
 from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
+from missions.services.approval.approval import revoke_approval
+from missions.services.commands.outbox import queue_command
 from telemetry.models import InspectionResult, UavLink
 from telemetry.selectors.watched import watched_flights
 from tests.missions.flights import an_operator, approved, dispatched

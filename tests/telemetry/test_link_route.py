@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from django.db import connection
 from django.test.utils import CaptureQueriesContext
+
+from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.services.approval.approval import revoke_approval
 from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from missions.services.commands.outbox import queue_command
-
-from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.services.missions import MissionChange, MissionFrozen, change_mission
 from telemetry.models import Alert
 from tests.missions.flights import an_operator, approved, dispatched

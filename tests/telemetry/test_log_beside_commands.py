@@ -6,9 +6,9 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.db import connections, transaction
 from django.utils import timezone
-from missions.services.approval.approval import held_mission
 
 from missions.models import Mission, MissionState, Uav
+from missions.services.approval.approval import held_mission
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.telemetry.flown_missions import flies_route

@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 from django.utils import timezone
+
+from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
 from missions.selectors.missions import mission_of_organisation
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.outbox import note_failed
 from missions.services.commands.refused import Refused
 from missions.services.commands.rtl_check import note_own_return
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts import open_alert
 from telemetry.services.down_alerts import close_down_alert

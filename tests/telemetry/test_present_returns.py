@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 from django.contrib.gis.geos import Point
 from django.utils import timezone
-from missions.services.commands.rtl_check import note_own_return
 
 from inspection.models import NoFlyZone
 from missions.models import Mission, Uav
+from missions.services.commands.rtl_check import note_own_return
 from telemetry.models import UavLink, UavWatch
 from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things

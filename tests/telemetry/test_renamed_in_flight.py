@@ -7,9 +7,9 @@ from collections.abc import Callable
 import pytest
 from django.contrib.gis.geos import Point
 from django.db import connection, connections, transaction
-from missions.services.fleet.uavs import change_uav
 
 from missions.models import Uav
+from missions.services.fleet.uavs import change_uav
 from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 

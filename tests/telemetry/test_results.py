@@ -7,10 +7,10 @@ import pytest
 from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
-from missions.services.commands.flight_progress import mark_started
 
 from inspection.models import AssetReference
 from missions.models import InspectionTarget, Mission, TargetState, Uav
+from missions.services.commands.flight_progress import mark_started
 from telemetry.models import InspectionResult, TelemetryStream
 from tests.accounts.users import client_of, somebody
 from tests.missions.flights import an_operator, dispatched, fleet

@@ -3,10 +3,10 @@
 from typing import Any
 
 import pytest
-from missions.services.commands.rtl_check import ReturnCheck, ReturnState
 
 from inspection.geodesy import LonLat
 from missions.models import MissionUav, Uav
+from missions.services.commands.rtl_check import ReturnCheck, ReturnState
 from telemetry.alerting.return_path import ReturnPath
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on
 from telemetry.selectors.present import Heard

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 from django.utils.translation import override
-from missions.outcome_messages import PARTS, SENTENCES, is_foreseen, outcome_in_words
 
 from mavlink.commands.actions import Order
+from missions.outcome_messages import PARTS, SENTENCES, is_foreseen, outcome_in_words
 
 ROOT = Path(__file__).resolve().parents[2] / "telemetry"
 MAKERS = [

@@ -4,9 +4,9 @@ import pytest
 from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
-from missions.services.commands.commands import queue_command
 
 from missions.models import CommandKind, Uav
+from missions.services.commands.commands import queue_command
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch

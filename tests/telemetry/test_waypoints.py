@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import pytest
-from missions.services.commands.dispatch import approved_load
 
 from missions.models import Approval, Mission, Uav
+from missions.services.commands.dispatch import approved_load
 from telemetry.models import TelemetryRecord, UavLink
 from telemetry.services import store_records
 from tests.missions.flights import an_operator, approved, fleet

@@ -3,10 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from missions.services.approval.document import content_sha256
-
 from deploy.load.day.kept_promises import rows
 from missions.models import Approval
+from missions.services.approval.document import content_sha256
 
 STUCK_AFTER_S = 90.0  # the sweep comes each second or so, leases are 15 to 30 s, and a new try may need a worker that starts
 MOST = 20  # violations of one kind that are told

@@ -13,16 +13,10 @@ from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.hooks.approval import further_reasons
-from missions.selectors.missions import approval_in_force, mission_of_organisation
-from missions.services.approval.checks import reasons_against
-from missions.services.approval.document import approval_document, content_sha256
-from missions.services.commands.call_signs import give_call_sign
-from missions.services.commands.outbox import end_commands, queue_command
-from missions.services.commands.refused import refuse, refuse_for
 
 from inspection.selectors.ground import held_ground_revision
 from missions.command_rules import SETS_IN_MOTION
+from missions.hooks.approval import further_reasons
 from missions.models import (
     ENDED_STATES,
     OPEN_COMMANDS,
@@ -35,6 +29,12 @@ from missions.models import (
     Uav,
     UavCommand,
 )
+from missions.selectors.missions import approval_in_force, mission_of_organisation
+from missions.services.approval.checks import reasons_against
+from missions.services.approval.document import approval_document, content_sha256
+from missions.services.commands.call_signs import give_call_sign
+from missions.services.commands.outbox import end_commands, queue_command
+from missions.services.commands.refused import refuse, refuse_for
 from missions.services.missions import MissionChanged, note
 from workspace.live.changes import publish_live
 from workspace.models import User

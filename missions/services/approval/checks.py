@@ -6,17 +6,17 @@ from datetime import datetime, timedelta
 
 from django.conf import settings
 from django.utils.translation import gettext as _
+
+from inspection.selectors import ground_heights_m, ground_revision
+from inspection.selectors.planning import planning_read
+from missions.models import Mission, MissionState, Route
 from missions.selectors.missions import mission_of_organisation
 from missions.selectors.stale_plans import causes_on_the_routes
 from missions.selectors.uav_changes import uav_changes
 from missions.services.commands.refused import Reason
 from missions.services.manual_edits.still_separated import separation_of_stored
-from missions.services.planning.over_wires import spans_in_the_way
-
-from inspection.selectors import ground_heights_m, ground_revision
-from inspection.selectors.planning import planning_read
-from missions.models import Mission, MissionState, Route
 from missions.services.missions import MissionChanged
+from missions.services.planning.over_wires import spans_in_the_way
 from missions.services.stored_routes import stored_routes
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}

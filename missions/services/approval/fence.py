@@ -3,13 +3,13 @@
 from dataclasses import replace
 
 from django.conf import settings
-from missions.selectors.zones import flown_route, zone_margins
-from missions.services.planning.requests import lost_link_from_json
 
 from inspection.geodesy import LonLat
 from inspection.selectors.zone_table import zone_table
 from mavlink.fence import FenceRules, FenceZone
 from missions.models import Mission, Route
+from missions.selectors.zones import flown_route, zone_margins
+from missions.services.planning.requests import lost_link_from_json
 from planning.clearance.lost_link import LostLink
 from planning.clearance.nearby_zones import zones_near
 

@@ -5,10 +5,6 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
-from missions.selectors.zones import zone_margins
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import PlanRequest, lost_link_to_json
-from missions.services.planning.zone_choice import zone_choice
 
 from inspection.network.build.network import Network
 from inspection.network.spans import spans_of
@@ -16,6 +12,10 @@ from inspection.selectors.graph import zones_of_table
 from inspection.selectors.planning import heights_at, planning_read
 from inspection.zones.reach import ZoneTable
 from missions.models import Mission
+from missions.selectors.zones import zone_margins
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import PlanRequest, lost_link_to_json
+from missions.services.planning.zone_choice import zone_choice
 from missions.services.stored_routes import stored_routes
 from planning.clearance.lost_link import LostLink, LostLinkPlan, checked_returns
 from planning.clearance.nearby_zones import zones_near

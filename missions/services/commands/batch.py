@@ -7,14 +7,14 @@ from uuid import UUID
 
 from django.db import transaction
 from django.utils.translation import gettext as _
+
+from missions.command_rules import SETS_IN_MOTION
 from missions.hooks.in_air import uavs_never_heard, uavs_on_the_ground
+from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
 from missions.selectors.commands import places_in_flight
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.refused import Reason, Refused, refuse
 from missions.services.commands.steering import command_uav
-
-from missions.command_rules import SETS_IN_MOTION
-from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
 from workspace.models import User
 
 BATCH_KINDS = frozenset({CommandKind.PAUSE, CommandKind.RESUME, CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND})

@@ -7,9 +7,9 @@ from itertools import count
 from django.db import connection
 from django.db.models import Q
 from django.utils import timezone
-from missions.selectors.events import SHOWN_AFTER_END
 
 from missions.models import Mission, MissionState, MissionUav
+from missions.selectors.events import SHOWN_AFTER_END
 
 CALL_NUMBERS_LOCK = 0x05A7_0032  # advisory lock, with the organisation
 ROUTE_COLOURS = 8  # of static/css/tokens.css

@@ -6,7 +6,11 @@ Whoever carries commands works with this module; the rows themselves are kept by
 from uuid import UUID
 
 from django.db import transaction
+
+from missions.command_rules import HAND_OVER, THEN_RETURN
+from missions.models import CommandKind, Mission, UavCommand
 from missions.services.approval.approval import finish_revocation
+from missions.services.commands import outbox
 from missions.services.commands.flight_progress import mark_started
 from missions.services.commands.outbox import (
     CHANNEL,
@@ -26,10 +30,6 @@ from missions.services.commands.outbox import (
 )
 from missions.services.commands.route_swap import go_on_after
 from missions.services.commands.staggered_returns import return_after
-
-from missions.command_rules import HAND_OVER, THEN_RETURN
-from missions.models import CommandKind, Mission, UavCommand
-from missions.services.commands import outbox
 
 __all__ = [
     "CHANNEL",

@@ -8,14 +8,6 @@ from django.db import transaction
 from django.db.models import Q, QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.selectors.commands import upload_of
-from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import change_state, held_mission, uavs_that_may_hold
-from missions.services.approval.checks import look_at, look_that_counts
-from missions.services.approval.document import content_sha256
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.outbox import queue_command
-from missions.services.commands.refused import Reason, refuse, refuse_for
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import FrozenRoute, TakeOff, route_from_json
@@ -32,6 +24,14 @@ from missions.models import (
     Uav,
     UavCommand,
 )
+from missions.selectors.commands import upload_of
+from missions.selectors.missions import approval_in_force
+from missions.services.approval.approval import change_state, held_mission, uavs_that_may_hold
+from missions.services.approval.checks import look_at, look_that_counts
+from missions.services.approval.document import content_sha256
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.outbox import queue_command
+from missions.services.commands.refused import Reason, refuse, refuse_for
 from workspace.models import User
 
 TO_SEND = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)

@@ -12,10 +12,10 @@ from uuid import UUID
 from django.db import transaction
 from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
-from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import change_state
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
+from missions.selectors.missions import approval_in_force
+from missions.services.approval.approval import change_state
 from missions.services.missions import note
 from workspace.live.changes import publish_live
 

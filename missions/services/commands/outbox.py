@@ -15,7 +15,6 @@ from django.db import connection, transaction
 from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
-from missions.services.commands.refused import refuse
 
 from missions.command_rules import ALONG_ROUTE, HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
@@ -31,6 +30,7 @@ from missions.models import (
     UavCommand,
     UavCommandEvent,
 )
+from missions.services.commands.refused import refuse
 from workspace.audit import record_change
 from workspace.live.changes import publish_live
 from workspace.models import User

@@ -10,16 +10,9 @@ from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.hooks.approval import reasons_against_starts
-from missions.selectors.commands import places_in_flight, upload_of
-from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import held_mission
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.outbox import withdraw
-from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
-from missions.services.commands.steering import command_uav, mission_in_hand
 
 from missions.command_rules import SAFETY_RANKS
+from missions.hooks.approval import reasons_against_starts
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
@@ -31,6 +24,13 @@ from missions.models import (
     StartsEnd,
     Uav,
 )
+from missions.selectors.commands import places_in_flight, upload_of
+from missions.selectors.missions import approval_in_force
+from missions.services.approval.approval import held_mission
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.outbox import withdraw
+from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
+from missions.services.commands.steering import command_uav, mission_in_hand
 from missions.services.missions import note
 from workspace.models import User
 

@@ -4,11 +4,10 @@ Each step is given when the one before was seen to be done, in the same transact
 flight meanwhile ends it: that command counts. Where a step fails the UAV stays where it is held.
 """
 
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.outbox import SUPERSEDED, queue_command
-
 from missions.command_rules import HAND_OVER
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.outbox import SUPERSEDED, queue_command
 
 NEXT = {CommandKind.HOLD: CommandKind.UPLOAD_MISSION, CommandKind.UPLOAD_MISSION: CommandKind.START}
 

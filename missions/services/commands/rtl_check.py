@@ -10,9 +10,6 @@ import numpy as np
 from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
-from missions.selectors.zones import departure_s, zone_margins
-from missions.services.approval.document import frozen_route
-from missions.services.approval.fence import rally_points, zones_beside
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
@@ -24,6 +21,9 @@ from mavlink.approved_route import Flight, NotARoute
 from mavlink.fence import fence_of
 from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from missions.models import LinkKind, Mission, Route, Uav
+from missions.selectors.zones import departure_s, zone_margins
+from missions.services.approval.document import frozen_route
+from missions.services.approval.fence import rally_points, zones_beside
 from planning.clearance.nearby_zones import zones_near
 from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
 from planning.clearance.zone_clearance import ZoneFacts

@@ -10,10 +10,10 @@ from typing import Any
 
 from django.db.models import Q
 from django.utils import timezone
-from missions.services.commands.outbox import SUPERSEDED, WITHDRAWN, queue_command
 
 from missions.command_rules import ALONG_ROUTE, HEIGHT_M, THEN_RETURN, WAIT_S
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Uav, UavCommand
+from missions.services.commands.outbox import SUPERSEDED, WITHDRAWN, queue_command
 from workspace.models import User
 
 HEIGHT_WANTED_S = 60.0  # for which a return height is wanted that a return waits for

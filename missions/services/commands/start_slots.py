@@ -10,14 +10,14 @@ from django.db import connection
 from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.hooks.in_air import places_in_the_air
-from missions.selectors.flights import STILL_FLOWN, route_in_time
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.refused import Reason
 
 from inspection.geodesy import LonLat
 from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
+from missions.hooks.in_air import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState
+from missions.selectors.flights import STILL_FLOWN, route_in_time
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.refused import Reason
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts, keep_apart
 

@@ -7,19 +7,10 @@ from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.hooks.in_air import uavs_down_off_plan
-from missions.selectors.commands import route_commands, upload_of
-from missions.selectors.fleet import performance_of
-from missions.selectors.missions import approval_in_force
-from missions.services.approval.checks import Look, look_at, look_that_counts
-from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.outbox import queue_command
-from missions.services.commands.refused import Reason, refuse, refuse_for
-from missions.services.commands.staggered_returns import return_in_steps
-from missions.services.commands.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 
 from mavlink.rtl import own_return
 from missions.command_rules import ALONG_ROUTE, HEIGHT_M, SETS_IN_MOTION, THEN_RETURN, WAIT_S
+from missions.hooks.in_air import uavs_down_off_plan
 from missions.models import (
     Approval,
     CommandKind,
@@ -33,6 +24,15 @@ from missions.models import (
     UavCommand,
     UavState,
 )
+from missions.selectors.commands import route_commands, upload_of
+from missions.selectors.fleet import performance_of
+from missions.selectors.missions import approval_in_force
+from missions.services.approval.checks import Look, look_at, look_that_counts
+from missions.services.commands.flight_progress import ON_ITS_WAY
+from missions.services.commands.outbox import queue_command
+from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.commands.staggered_returns import return_in_steps
+from missions.services.commands.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 
 MIN_SPEED_MPS = 0.5

@@ -12,10 +12,10 @@ from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 from django.utils.crypto import salted_hmac
-from missions.services.fleet.link_changes import refuse_while_needed
-from missions.services.fleet.rows import locked
 
 from missions.models import CredentialKind, Uav, UavCredential
+from missions.services.fleet.link_changes import refuse_while_needed
+from missions.services.fleet.rows import locked
 from workspace.api_tokens import USE_NOTED_EVERY, hash_token
 from workspace.audit import record_change
 from workspace.models import User

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from django.utils.translation import gettext as _
-from missions.hooks.flights import is_in_flight
-from missions.services.commands.refused import Reason, refuse_for
 
+from missions.hooks.flights import is_in_flight
 from missions.models import OPEN_COMMANDS, MissionState, MissionUav, Uav, UavState
+from missions.services.commands.refused import Reason, refuse_for
 
 REACHED_BY = ("link", "mavlink_system_id", "allows_unsigned")
 COMMANDS_WAITING, MISSION_ON_ITS_WAY, IN_FLIGHT = "commands_waiting", "mission_on_its_way", "in_flight"

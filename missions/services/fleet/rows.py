@@ -5,9 +5,9 @@ from typing import Any, TypeVar
 
 from django.db import IntegrityError, transaction
 from django.db.models import ProtectedError
-from missions.selectors.fleet import facts_when_deleted
 
 from missions.models import Base, Uav, UavType
+from missions.selectors.fleet import facts_when_deleted
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 

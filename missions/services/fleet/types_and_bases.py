@@ -5,10 +5,10 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.db.models.functions import Now
-from missions.services.fleet.rows import deleted, facts_to_restore, locked, stored
 
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavType
+from missions.services.fleet.rows import deleted, facts_to_restore, locked, stored
 from workspace.models import Organisation, User
 
 TYPE_FIELDS = (

@@ -8,12 +8,12 @@ from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from missions.services.commands.refused import Refused, refuse, refuse_for
-from missions.services.fleet.link_changes import refuse_to_cut_off, removal_reasons
-from missions.services.fleet.rows import SystemIdQuota, deleted, facts_to_restore, locked, stored
 
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavState, UavType
+from missions.services.commands.refused import Refused, refuse, refuse_for
+from missions.services.fleet.link_changes import refuse_to_cut_off, removal_reasons
+from missions.services.fleet.rows import SystemIdQuota, deleted, facts_to_restore, locked, stored
 from workspace.models import Organisation, User
 
 FIELDS = (

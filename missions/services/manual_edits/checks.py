@@ -6,6 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+
+from inspection.models import AssetKind
+from inspection.network.build.network import Network
+from inspection.network.spans import spans_of
+from inspection.selectors.planning import Edition, heights_at, planning_read
+from missions.models import EndAction, Mission
 from missions.selectors.legs import LegFlyer, speed_words, too_low_text
 from missions.selectors.zones import MetZone, zones_met
 from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
@@ -13,12 +19,6 @@ from missions.services.manual_edits.stored_route import KeptWaypoint, kept_route
 from missions.services.planning.final_check import flown_route
 from missions.services.planning.plan_json import PlannedRoute
 from missions.services.planning.requests import InvalidRequest, PlanRequest
-
-from inspection.models import AssetKind
-from inspection.network.build.network import Network
-from inspection.network.spans import spans_of
-from inspection.selectors.planning import Edition, heights_at, planning_read
-from missions.models import EndAction, Mission
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.clearance.zone_clearance import TAKE_OFF
 from planning.connection_points import tallest_support_m

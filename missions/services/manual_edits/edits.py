@@ -7,6 +7,8 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.db.models import Q
 from django.utils.translation import gettext as _
+
+from missions.models import Mission, Route, Waypoint
 from missions.services.manual_edits.checks import (
     HIGHER_M,
     HandGround,
@@ -20,11 +22,9 @@ from missions.services.manual_edits.legs import step_points, step_row
 from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_waypoints
+from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from missions.services.planning.plan_json import PlannedRoute
 from missions.services.planning.requests import InvalidRequest
-
-from missions.models import Mission, Route, Waypoint
-from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
 from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 

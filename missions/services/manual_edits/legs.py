@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from missions.services.planning.requests import task_from_json
-
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.models import Mission, Route, Waypoint
+from missions.services.planning.requests import task_from_json
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 SAME_PLACE_DIGITS = 7  # of a degree: a centimetre

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
-from missions.services.manual_edits.stored_route import KeptWaypoint
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
+from missions.services.manual_edits.stored_route import KeptWaypoint
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 from workspace.number_text import number_text
 

@@ -6,12 +6,11 @@ from functools import lru_cache
 from typing import NamedTuple
 from uuid import UUID
 
-from missions.services.planning.requests import PlanRequest, task_from_json
-
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import Edition
 from missions.models import Mission, Waypoint
 from missions.services.missions import request_of_mission
+from missions.services.planning.requests import PlanRequest, task_from_json
 from planning.problem import Task
 from planning.trajectory.waypoints import WaypointKind
 

@@ -9,7 +9,6 @@ from missions.services.planning.plan_json import PlannedRoute
 from missions.services.planning.requests import PlanRequest
 from missions.services.targets.least_shortfall import LeastLacks, lack_wh
 from missions.services.targets.refusals import LeftOut
-
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.sorties import wh_of_sorties
 

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from missions.models import EndAction
 from missions.services.planning.best_so_far import OnPlanProgress, PlanProgress, Sketch
 from missions.services.planning.drawing import Drawing
 from missions.services.planning.path_costs import counted, needs_counting
@@ -13,8 +14,6 @@ from missions.services.targets.places import Place
 from missions.services.targets.refusals import Grounding, LeftOut, Scene, asset_gone, groundings, place_height_m, refused_place, zone_at
 from missions.services.targets.unassigned import unreached_places
 from missions.services.targets.visits import visits_of_places
-
-from missions.models import EndAction
 from planning.connection_points import Terminal, ways_between
 from planning.energy.duration import target_s
 from planning.problem import Problem, Solution

@@ -7,11 +7,6 @@ from itertools import accumulate, chain, pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import BaseRequest, InvalidRequest
-from missions.services.targets.assignment import route_end
-from missions.services.targets.planning_context import LaidOut
-from missions.services.targets.refusals import zone_at
 
 from inspection.geodesy import LonLat
 from inspection.network.build.flyable import node_heights_m
@@ -19,6 +14,11 @@ from inspection.network.inspection_graph import NodeKind
 from inspection.network.paths.passed import BEND, passed_on
 from inspection.network.spans import spans_of
 from missions.models import EndAction
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import BaseRequest, InvalidRequest
+from missions.services.targets.assignment import route_end
+from missions.services.targets.planning_context import LaidOut
+from missions.services.targets.refusals import zone_at
 from planning.energy.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from planning.energy.power import NoHeadway
 from planning.problem import Routes

@@ -4,6 +4,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from inspection.geodesy import LonLat
+from inspection.network.zones.zone_index import ZoneIndex
 from missions.services.planning.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.planning.candidate_plans import Attempt
 from missions.services.planning.over_wires import (
@@ -19,9 +21,6 @@ from missions.services.planning.over_wires import (
 from missions.services.planning.plan_json import PlannedRoute
 from missions.services.planning.requests import PlanRequest
 from missions.services.targets.refusals import Scene
-
-from inspection.geodesy import LonLat
-from inspection.network.zones.zone_index import ZoneIndex
 from planning.trajectory.heights import GroundHeights
 
 MAX_TRIES = 6

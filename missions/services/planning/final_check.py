@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from django.conf import settings
-from missions.selectors.zones import zones_met
-from missions.services.planning.plan_json import PlannedRoute
 
 from inspection.zones.reach import ZoneTable
 from missions.models import EndAction
+from missions.selectors.zones import zones_met
+from missions.services.planning.plan_json import PlannedRoute
 from planning.clearance.zone_clearance import FlownRoute
 
 

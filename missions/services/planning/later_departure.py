@@ -7,13 +7,13 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
+
+from inspection.geodesy import LonLat
+from inspection.selectors.planning import planning_read
 from missions.services.planning.planner import make_plan
 from missions.services.planning.requests import PlanRequest, moment_to_json
 from missions.services.planning.zone_choice import near_positions
 from missions.services.targets.places import places_of
-
-from inspection.geodesy import LonLat
-from inspection.selectors.planning import planning_read
 from planning.problem import Objective, Priority
 
 AHEAD_S = 48 * 3_600.0

@@ -2,15 +2,15 @@
 
 import numpy as np
 from django.conf import settings
-from missions.services.planning.requests import PlanRequest
-from missions.services.planning.zone_choice import zone_choice
-from missions.services.targets.refusals import Scene
 
 from inspection.network.build.obstacles import too_tall_walls, with_walls
 from inspection.network.by_length import by_length
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, planning_read
 from inspection.zones.reach import BoolArray
+from missions.services.planning.requests import PlanRequest
+from missions.services.planning.zone_choice import zone_choice
+from missions.services.targets.refusals import Scene
 from planning.clearance.flyable_graph import flyable_graph
 from planning.connection_points import AccessRules
 

@@ -5,10 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 from django.conf import settings
-from missions.services.planning.candidate_plans import Attempt
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import PlanRequest
-from missions.services.targets.refusals import LeftOut
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
@@ -16,6 +12,10 @@ from inspection.network.build.network import Network
 from inspection.network.build.obstacles import index_of_walls, walls_along
 from inspection.network.spans import BESIDE_M, spans_of
 from inspection.network.zones.zone_index import ZoneIndex
+from missions.services.planning.candidate_plans import Attempt
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import PlanRequest
+from missions.services.targets.refusals import LeftOut
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.problem import Reason
 from planning.trajectory.heights import GroundHeights

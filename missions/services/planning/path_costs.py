@@ -3,15 +3,15 @@
 from collections.abc import Sequence
 
 import numpy as np
-from missions.services.planning.requests import PlanRequest
-from missions.services.targets.assignment import route_end
-from missions.services.targets.planning_context import LaidOut
-from missions.services.targets.refusals import Scene
 
 from inspection.geodesy import LonLat
 from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import heights_at, terrain_at
 from missions.models import EndAction
+from missions.services.planning.requests import PlanRequest
+from missions.services.targets.assignment import route_end
+from missions.services.targets.planning_context import LaidOut
+from missions.services.targets.refusals import Scene
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.path_cost import FlightClass, NodeGround
 from planning.problem import Objective

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import orjson
+
+from missions.models import EndAction
 from missions.services.planning.requests import PlanRequest, lock_to_json, moment_to_json, task_to_json
 from missions.services.targets.refusals import LeftOut
 from missions.services.targets.shortfall import Shortfall
 from missions.services.targets.straight_line import straight_json
-
-from missions.models import EndAction
 from planning.energy.charging import ChargingStop
 from planning.energy.conditions import conditions_to_json
 from planning.trajectory.heights import FloatArray

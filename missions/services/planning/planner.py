@@ -8,6 +8,11 @@ from typing import Any, ParamSpec
 
 import numpy as np
 from django.conf import settings
+
+from inspection.geodesy import LonLat
+from inspection.network.build.obstacles import at_all_heights, with_walls
+from inspection.network.zones.zone_index import ZoneIndex
+from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from missions.hooks.in_air import uavs_in_the_air
 from missions.selectors.flights import OtherFlights, flights_at_the_same_time
 from missions.services.approval.lost_link import lost_link_check
@@ -26,11 +31,6 @@ from missions.services.targets.other_limits import with_other_limits
 from missions.services.targets.places import Place, places_of, whole_assets
 from missions.services.targets.refusals import Grounding, Scene
 from missions.services.targets.unassigned import WIND
-
-from inspection.geodesy import LonLat
-from inspection.network.build.obstacles import at_all_heights, with_walls
-from inspection.network.zones.zone_index import ZoneIndex
-from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
 from planning.problem import Objective, Priority
 from planning.separation.report import separation_json

@@ -5,12 +5,12 @@ from dataclasses import replace
 from datetime import datetime
 
 from django.conf import settings
-from missions.services.planning.final_check import keys_of_zones_met
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import PlanRequest
 
 from inspection.zones.reach import ZoneTable
 from missions.models import EndAction
+from missions.services.planning.final_check import keys_of_zones_met
+from missions.services.planning.plan_json import PlannedRoute
+from missions.services.planning.requests import PlanRequest
 from planning.energy.power import NoHeadway
 from planning.separation.separation import Separation, TimedRoute, keep_apart, raised_agl_m, timed_route
 from planning.trajectory.sorties import timing_of_route, wh_of_sorties

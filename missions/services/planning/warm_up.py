@@ -3,12 +3,12 @@
 import logging
 
 from django.db import Error, connections
-from missions.services.planning.map_data import current_scene
 
 from inspection.network.route_index import asset_places, node_tree, route_index
 from inspection.network.spans import spans_of
 from inspection.network.warm_up import rehearse as rehearse_ways
 from inspection.selectors import NoGraph
+from missions.services.planning.map_data import current_scene
 from planning.solver.warm_up import rehearse as rehearse_solvers
 from planning.trajectory.warm_up import rehearse as rehearse_drawing
 

@@ -5,13 +5,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+
+from missions.models import EndAction
 from missions.services.planning.plan_json import ALL_PLANS, WITHOUT_TIMED_ZONES
 from missions.services.planning.requests import LockRequest, PlanRequest, UavRequest
 from missions.services.targets.constraints import may_do
 from missions.services.targets.places import Place
 from missions.services.targets.refusals import Grounding
-
-from missions.models import EndAction
 from planning.connection_points import Ways
 from planning.energy.assignment_costs import FlightCosts
 from planning.energy.duration import ready_s

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
-from missions.selectors.fleet import bases_of_organisation
-from missions.services.planning.requests import BaseRequest, InvalidRequest, LockRequest, PlanRequest, TargetRequest, UavRequest
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
+from missions.selectors.fleet import bases_of_organisation
+from missions.services.planning.requests import BaseRequest, InvalidRequest, LockRequest, PlanRequest, TargetRequest, UavRequest
 from planning.problem import Objective
 from workspace.models import Organisation
 

@@ -12,7 +12,6 @@ from missions.services.targets.least_shortfall import IsClear, Lack, LeastLacks
 from missions.services.targets.refusals import LeftOut
 from missions.services.targets.shortfall import of_battery, with_minutes
 from missions.services.targets.unassigned import LOCKED
-
 from planning.problem import End, Reason
 from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
 from planning.trajectory.heights import GroundHeights

@@ -12,7 +12,6 @@ from missions.services.planning.plan_json import PlannedRoute
 from missions.services.planning.requests import PlanRequest
 from missions.services.targets.assignment import COUNTED_CLOSE
 from missions.services.targets.constraints import may_do
-
 from planning.problem import RANGE_RESERVE
 from planning.solver.cheapest_route import LeastRoutes
 from planning.solver.cost_matrices import NO_WAY_M, Kind

@@ -5,6 +5,7 @@ from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
+
 from missions.services.planning.candidate_plans import Attempt
 from missions.services.planning.requests import PlanRequest
 from missions.services.targets.assignment import allowed_visits
@@ -12,7 +13,6 @@ from missions.services.targets.constraints import has_sensor
 from missions.services.targets.least_shortfall import LeastLacks
 from missions.services.targets.refusals import LeftOut
 from missions.services.targets.unassigned import LOCKED, MAX_NAMED, WIND, in_calm
-
 from planning.problem import BoolArray, Reason
 from planning.solver.reach import NO_WAY, least_needs, needed_range_m
 from planning.trajectory.heights import GroundHeights

@@ -8,12 +8,12 @@ import numpy as np
 from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point, Polygon
 from django.utils.translation import gettext as _
 from django.utils.translation import override
-from missions.services.planning.requests import InvalidRequest, TargetRequest
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_label
 from inspection.selectors.planning import PointAsset, planning_read
+from missions.services.planning.requests import InvalidRequest, TargetRequest
 from planning.problem import Task, default_task
 from planning.trajectory.heights import FloatArray, asset_height_m
 from planning.trajectory.stretches import PlaceOnLine, nearest_on_line, stretch_between

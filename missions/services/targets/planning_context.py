@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from inspection.geodesy import LonLat
 from missions.services.planning.requests import BaseRequest, PlanRequest
 from missions.services.targets.places import Place
 from missions.services.targets.refusals import Scene
-
-from inspection.geodesy import LonLat
 from planning.connection_points import Ways
 from planning.problem import Visit
 

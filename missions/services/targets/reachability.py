@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+
+from inspection.selectors.planning import planning_read
+from missions.models import EndAction
 from missions.services.planning.map_data import scene_on
 from missions.services.planning.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.planning.zone_choice import zone_choice
 from missions.services.targets.refusals import Scene, column_m, groundings, zone_at
-
-from inspection.selectors.planning import planning_read
-from missions.models import EndAction
 from planning.energy.path_cost import FlightClass
 from planning.problem import End, UavStart
 from planning.reachability.reachability import Flight, reach

@@ -5,10 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.conf import settings
-from missions.selectors.fleet import states_out_of_service
-from missions.services.planning.requests import UavRequest
-from missions.services.targets.places import Place
-from missions.services.targets.shortfall import Shortfall
 
 from inspection.geodesy import LonLat
 from inspection.network.build.network import Network
@@ -17,6 +13,10 @@ from inspection.network.route_index import asset_places
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
 from missions.models import UavState
+from missions.selectors.fleet import states_out_of_service
+from missions.services.planning.requests import UavRequest
+from missions.services.targets.places import Place
+from missions.services.targets.shortfall import Shortfall
 from planning.connection_points import AccessRules, tallest_support_m
 from planning.rules import FlightRules
 from planning.trajectory.heights import inspection_agl_m, is_above_limit

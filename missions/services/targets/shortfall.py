@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 
 from missions.services.planning.requests import UavRequest
-
 from planning.energy.power import power_w
 
 

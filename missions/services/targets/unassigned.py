@@ -4,13 +4,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+
 from missions.services.planning.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.targets.assignment import Assignment
 from missions.services.targets.constraints import has_sensor, may_do
 from missions.services.targets.places import Place
 from missions.services.targets.refusals import Grounding, LeftOut, Scene
 from missions.services.targets.shortfall import Shortfall, of_battery, of_range, with_minutes
-
 from planning.connection_points import Ways, is_near_network
 from planning.problem import End, Objective, Problem, Reason, Unassigned
 from planning.solver.reach import NEAREST, needed_range_m, reachable

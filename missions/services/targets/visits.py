@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from missions.services.targets.places import Place
 
 from inspection.geodesy import LonLat, path_length_m
+from missions.services.targets.places import Place
 from planning.problem import Visit
 
 

@@ -8,6 +8,11 @@ from typing import Any
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.zones.zone_index import ZoneIndex
+from missions.models import EndAction
 from missions.services.planning.map_data import current_scene, scene_without_zones
 from missions.services.planning.path_costs import counted
 from missions.services.planning.requests import CALM, InvalidRequest, PlanRequest
@@ -15,11 +20,6 @@ from missions.services.targets.places import Place, places_of
 from missions.services.targets.planning_context import LaidOut
 from missions.services.targets.refusals import Scene, place_height_m, zone_at
 from missions.services.targets.visits import visits_of_places
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.zones.zone_index import ZoneIndex
-from missions.models import EndAction
 from planning.connection_points import Terminal, Ways, ways_between
 from planning.energy.assignment_costs import FlightCosts
 from planning.problem import Amounts, Objective

@@ -5,6 +5,14 @@ from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry import LineString
+from shapely.ops import nearest_points
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.network.build.obstacles import NO_ZONE
+from inspection.network.route_index import node_tree
+from inspection.network.zones.zone_index import widen
+from missions.models import EndAction, UavState
 from missions.selectors.fleet import uavs_of_organisation
 from missions.services.planning.map_data import current_scene
 from missions.services.planning.path_costs import needs_counting
@@ -15,14 +23,6 @@ from missions.services.targets.constraints import may_do, stored_bases
 from missions.services.targets.places import Place, places_of
 from missions.services.targets.refusals import Scene, groundings, place_height_m, zone_at
 from missions.services.targets.visits import visits_of_places
-from shapely.geometry import LineString
-from shapely.ops import nearest_points
-
-from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.network.build.obstacles import NO_ZONE
-from inspection.network.route_index import node_tree
-from inspection.network.zones.zone_index import widen
-from missions.models import EndAction, UavState
 from planning.connection_points import Terminal, Ways, ways_between
 from planning.problem import Objective, Problem, UavStart
 from planning.solver.reach import needed_range_m

@@ -5,14 +5,14 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.utils import timezone
+
+from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
 from missions.selectors.missions import mission_of_organisation
+from missions.services import create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.flight_progress import mark_waypoint_reached
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
-from missions.services import create_mission, plan_mission
 from missions.services.replanning import ask_for_offer, work_out_for_job
 from planning.energy.performance import Performance
 from planning.problem import Objective

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 from django.db.models import F
+
+from missions.models import CommandAxis, CommandKind, CommandState, InspectionTarget, Mission, OfferState, ReplanOffer, Route, UavCommand
 from missions.services.commands.commands import note_applied, note_failed, note_sent
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY, FlightEnd, mark_flight_ended
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandAxis, CommandKind, CommandState, InspectionTarget, Mission, OfferState, ReplanOffer, Route, UavCommand
 from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
 from tests.accounts.users import somebody
 from tests.missions.flights import ground

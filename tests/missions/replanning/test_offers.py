@@ -4,13 +4,13 @@ from datetime import timedelta
 
 import pytest
 from django.utils.dateparse import parse_datetime
+
+from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.commands.commands import note_applied, note_failed, note_sent
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.commands.refused import Refused
 from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.steering import mission_in_hand
-
-from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
 from tests.accounts.users import somebody

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 
 from missions import tasks
 from missions.models import MissionState, OfferState, ReplanOffer
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.replanning import suggest
 from missions.tasks import look_after_offers, replan_mission
 from tests.accounts.users import client_of, somebody

@@ -2,9 +2,9 @@
 
 from hypothesis import given
 from hypothesis import strategies as st
-from missions.selectors.zones import blocked_departures, free_between
 
 from inspection.zones.activity import Span
+from missions.selectors.zones import blocked_departures, free_between
 
 A_DAY = (0.0, 86_400.0)
 

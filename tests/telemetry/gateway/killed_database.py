@@ -59,9 +59,8 @@ def main(places: Places, sockets: Path) -> dict[str, Any]:
 
 
 def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
-    from missions.services.commands.commands import queue_command  # noqa: PLC0415
-
     from missions.models import OPEN_COMMANDS, CommandKind, CommandState, UavCommand  # noqa: PLC0415 - Django is set up by now
+    from missions.services.commands.commands import queue_command  # noqa: PLC0415
     from telemetry.models import TelemetryRecord  # noqa: PLC0415
     from tests.telemetry.gateway.flyer import Flyer  # noqa: PLC0415
     from tests.telemetry.gateway.program import free_port, gateway_program  # noqa: PLC0415

@@ -13,12 +13,12 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.db import connections
-from missions.services.fleet.credentials import make_credential
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message, frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav
+from missions.services.fleet.credentials import make_credential
 from telemetry.gateway.options import Address, Options
 from telemetry.gateway.process import Gateway
 from workspace.models import User

@@ -10,7 +10,6 @@ from uuid import uuid4
 import pytest
 from django.db.models import F
 from django.db.models.functions import Now
-from missions.services.commands.commands import claim_commands, queue_command, renew_claims
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
@@ -24,6 +23,7 @@ from mavlink.timeouts import CommandRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import MAX_PARAMETERS, VehicleState
 from missions.models import CommandAxis, CommandKind
+from missions.services.commands.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.desk import MAX_UPLOADS, Desk

@@ -11,11 +11,11 @@ from typing import Any
 
 import pytest
 from django.db.models import QuerySet
-from missions.services.commands.commands import queue_command
 
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
 from tests.telemetry.gateway.program import free_port, gateway_program
 from tests.telemetry.gateway.station import gateway_at_work, port_of, position, unsigned_uav, wait_for
 from tests.telemetry.vehicles.px4 import Px4

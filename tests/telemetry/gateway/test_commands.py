@@ -1,8 +1,6 @@
 """Commands of the outbox reach vehicles through the gateway, and their rows tell what became of them."""
 
 import pytest
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import dispatch_mission, load_of
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
@@ -11,6 +9,8 @@ from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import dispatch_mission, load_of
 from telemetry.gateway import carriage
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_words import alert_words

@@ -5,11 +5,11 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 import pytest
-from missions.services.commands.commands import queue_command
 
 from mavlink.autopilot_type import PX4_AUTO
 from mavlink.signing import FrameWriter
 from missions.models import CommandKind, CommandState
+from missions.services.commands.commands import queue_command
 from telemetry.gateway import addresses, belief
 from telemetry.gateway.addresses import MAX_ADDRESSES, Addresses
 from telemetry.models import Alert, TelemetryRecord, UavLink

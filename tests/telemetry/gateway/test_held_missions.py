@@ -7,12 +7,12 @@ from contextlib import contextmanager
 
 import pytest
 from django.db import connections, transaction
-from missions.services.approval.approval import held_mission
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import dispatch_mission
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
+from missions.services.approval.approval import held_mission
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import dispatch_mission
 from telemetry.gateway.process import Gateway
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground

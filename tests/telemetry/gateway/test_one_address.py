@@ -4,9 +4,9 @@ import signal
 from contextlib import ExitStack
 
 import pytest
-from missions.services.commands.commands import queue_command
 
 from missions.models import CommandKind, CommandState, Uav, UavCommand
+from missions.services.commands.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream, UavLink
 from tests.accounts.users import somebody
 from tests.telemetry.gateway.flyer import Flyer

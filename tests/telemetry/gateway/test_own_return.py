@@ -1,11 +1,11 @@
 """The parameters of a vehicle's own return are read when it is heard, and once more before its mission is sent."""
 
 import pytest
-from missions.services.commands.rtl_check import return_checks
-from missions.services.commands.steering import command_uav
 
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, Uav
+from missions.services.commands.rtl_check import return_checks
+from missions.services.commands.steering import command_uav
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world

@@ -4,7 +4,6 @@ import time
 from typing import Any
 
 import pytest
-from missions.services.commands.dispatch import dispatch_mission
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.timeouts import TransferRules
@@ -12,6 +11,7 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from missions.command_rules import CommandRules
 from missions.models import CommandState, Mission, Uav
 from missions.serializers.commands import command_json
+from missions.services.commands.dispatch import dispatch_mission
 from telemetry.models import UavLink
 from telemetry.services.loads import Doubt
 from tests.accounts.users import somebody

@@ -2,11 +2,6 @@
 
 import pytest
 from django.utils import timezone
-from missions.selectors.missions import mission_of_organisation
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.dispatch import dispatch_mission, load_of
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
-from missions.services.commands.steering import command_uav
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour
@@ -14,6 +9,11 @@ from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, OfferState, TargetState, Uav, UavCommand
+from missions.selectors.missions import mission_of_organisation
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.dispatch import dispatch_mission, load_of
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
+from missions.services.commands.steering import command_uav
 from missions.services.replanning import accept_offer
 from telemetry.models import Alert, UavLink
 from telemetry.services.command_alerts import settle_command_alerts

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from missions.services.commands.dispatch import load_of
-from missions.services.commands.staggered_returns import stuck_returns
-from missions.services.commands.steering import command_uav
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState, Uav
+from missions.services.commands.dispatch import load_of
+from missions.services.commands.staggered_returns import stuck_returns
+from missions.services.commands.steering import command_uav
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
 from telemetry.services.command_alerts import settle_command_alerts

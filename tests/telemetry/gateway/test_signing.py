@@ -5,10 +5,10 @@ import time
 
 import pytest
 from django.contrib.gis.geos import Point
-from missions.services.fleet.credentials import make_credential
 
 from mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav, UavCredential
+from missions.services.fleet.credentials import make_credential
 from telemetry.gateway import belief
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import somebody

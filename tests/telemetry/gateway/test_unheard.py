@@ -5,7 +5,6 @@ from collections import Counter, deque
 from dataclasses import dataclass, replace
 
 import pytest
-from missions.services.commands.commands import queue_command
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour
@@ -13,6 +12,7 @@ from mavlink.frames import frames_of_datagram
 from mavlink.signing import FrameWriter
 from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, CommandState, UavCommand
+from missions.services.commands.commands import queue_command
 from telemetry.gateway import carriage, desk
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session

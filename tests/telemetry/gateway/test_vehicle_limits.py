@@ -1,8 +1,6 @@
 """What a vehicle would not fly by its own parameters is told before anything is sent to it."""
 
 import pytest
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.dispatch import load_of
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
@@ -10,6 +8,8 @@ from mavlink.mission_sync import limits
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.dispatch import load_of
 from telemetry.gateway.carriage import UNTOLD
 from telemetry.models import UavLink
 from tests.accounts.users import somebody

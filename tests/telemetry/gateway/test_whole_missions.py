@@ -3,12 +3,12 @@
 import time
 
 import pytest
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import load_of
 
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.services import TargetRequest
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import load_of
 from planning.problem import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import client_of, somebody

@@ -20,10 +20,10 @@ import pytest
 from django.conf import settings
 from django.db import connection
 from django.utils import timezone
-from missions.services.fleet.credentials import make_credential
 from websocket import WebSocket, WebSocketException, create_connection
 
 from missions.models import OPEN_COMMANDS, CommandState, CredentialKind, LinkKind, Mission, MissionState, Uav, UavCommand
+from missions.services.fleet.credentials import make_credential
 from scripts.places import WEB_PROGRAMS
 from telemetry.models import TelemetryRecord
 from tests.accounts.users import client_of, somebody

@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 from django.utils import timezone
+
+from missions.models import CommandKind, LinkKind, Mission, MissionUav, OfferState, ReplanOffer, Uav, UavCommand
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.flight_progress import mark_started, mark_target
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
-
-from missions.models import CommandKind, LinkKind, Mission, MissionUav, OfferState, ReplanOffer, Uav, UavCommand
 from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
 from telemetry.selectors.live import MAX_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer

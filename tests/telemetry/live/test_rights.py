@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from django.contrib.sessions.models import Session
 from django.utils import timezone
-from missions.services.fleet.credentials import make_credential
 from websocket import WebSocket, WebSocketBadStatusException
 
 from config.websocket_urls import websocket_urlpatterns
 from missions.models import CredentialKind, Mission
+from missions.services.fleet.credentials import make_credential
 from tests.accounts.users import somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.live.page import Page

@@ -2,9 +2,9 @@
 
 import pytest
 from django.test import Client
-from missions.services.commands.flight_progress import mark_started
 
 from missions.models import Approval, Mission, Uav
+from missions.services.commands.flight_progress import mark_started
 from tests.accounts.users import client_of, somebody
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world

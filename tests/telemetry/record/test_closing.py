@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from missions.services.commands.dispatch import abort_mission
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started
 
 from missions.models import Mission, MissionState, TargetState, Uav
+from missions.services.commands.dispatch import abort_mission
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post

@@ -10,9 +10,9 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 from django.utils import timezone
-from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_waypoint_reached
 
 from missions.models import Approval, InspectionTarget, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
+from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_waypoint_reached
 from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert

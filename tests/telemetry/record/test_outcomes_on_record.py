@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
+
+from missions.models import Approval, CommandKind, Mission, MissionState, TargetState, Uav
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.flight_progress import mark_waypoint_reached
 from missions.services.commands.outbox import queue_command
-
-from missions.models import Approval, CommandKind, Mission, MissionState, TargetState, Uav
 from telemetry.models import AlertLevel, TelemetryRecord, VehicleText
 from telemetry.services.alerts import open_alert
 from tests.telemetry.flown import fly, record_of, route_of

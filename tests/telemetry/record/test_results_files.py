@@ -11,11 +11,11 @@ from xml.etree import ElementTree
 import pytest
 from django.test import Client
 from django.utils import timezone
-from missions.services.commands.dispatch import abort_mission
-from missions.services.commands.flight_progress import mark_started, mark_waypoint_reached
 
 from inspection.models import Asset
 from missions.models import Approval, Mission, Uav
+from missions.services.commands.dispatch import abort_mission
+from missions.services.commands.flight_progress import mark_started, mark_waypoint_reached
 from telemetry.models import TelemetryRecord
 from tests.missions.flights import dispatched, fleet
 from tests.missions.worlds import World

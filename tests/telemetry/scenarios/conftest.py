@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from missions.services.planning.requests import LostLinkRequest
 
 from missions.models import Mission, Uav
 from missions.services import TargetRequest
+from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.problem import Task, TaskKind
 from tests.accounts.users import somebody

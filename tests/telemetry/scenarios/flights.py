@@ -1,14 +1,13 @@
 """A flight of a scenario: brought, started, and in the air."""
 
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import load_of
-
 from inspection.geodesy.wgs84 import short_distance_m
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import load_of
 from tests.telemetry.gateway.station import wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended
 from tests.telemetry.scenarios.vehicle import ScenarioVehicle

@@ -3,11 +3,11 @@
 import signal
 
 import pytest
+
+from missions.models import CommandKind, CommandState, MissionState
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import load_of
 from missions.services.planning.requests import LostLinkRequest
-
-from missions.models import CommandKind, CommandState, MissionState
 from planning.clearance.lost_link import LostLink
 from telemetry.models import TelemetryRecord, TelemetryStream
 from tests.accounts.users import somebody

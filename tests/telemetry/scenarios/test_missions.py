@@ -1,9 +1,9 @@
 """Missions with a fence, a rally point and every task are brought to an ArduCopter and flown to their end, by UDP and TCP."""
 
 import pytest
-from missions.services.commands.dispatch import load_of
 
 from missions.models import MissionState, TargetState
+from missions.services.commands.dispatch import load_of
 from telemetry.models import TelemetryRecord, UavLink
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.scenarios.flights import FLIGHT_S, bring, take_off

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 from django.conf import settings
-from missions.services.approval.approval import approve_mission
-from missions.services.commands.commands import queue_command
-from missions.services.commands.dispatch import dispatch_mission
 
 from inspection.geodesy.wgs84 import short_distance_m
 from inspection.models import Asset
 from missions.models import CommandKind, CommandState, EndAction, Mission, MissionState, Uav
 from missions.services import create_mission, plan_mission
+from missions.services.approval.approval import approve_mission
+from missions.services.commands.commands import queue_command
+from missions.services.commands.dispatch import dispatch_mission
 from telemetry.alerting.detectors.converging import CODE
 from telemetry.models import Alert
 from tests.accounts.users import somebody

@@ -1,0 +1,1 @@
+"""What later apps add: facts that missions ask for, without importing the apps."""

@@ -1,0 +1,1 @@
+"""Reads of missions, fleet, flights and commands, always within one organisation."""

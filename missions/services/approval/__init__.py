@@ -1,0 +1,1 @@
+"""Approval of a plan: its checks, and the document that is frozen."""

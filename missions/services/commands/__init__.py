@@ -1,0 +1,1 @@
+"""Commands to UAVs: the outbox, batches, starts, returns and route swaps."""

@@ -1,0 +1,1 @@
+"""UAV types, bases, UAVs and their credentials."""
