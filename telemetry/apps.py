@@ -26,5 +26,5 @@ class TelemetryConfig(AppConfig):
         register_ground_source("telemetry.selectors.in_the_air.reported_on_the_ground")
         register_never_heard_source("telemetry.selectors.in_the_air.never_heard")
         register_down_source("telemetry.selectors.in_the_air.down_off_plan")
-        register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")
+        register_check("telemetry.services.links.approved_vehicles.reasons_of_vehicles")
         register_start_check("telemetry.services.preflight.reasons_not_ready")

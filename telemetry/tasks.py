@@ -3,7 +3,7 @@
 from celery import shared_task
 
 from telemetry import services
-from telemetry.services import command_alerts
+from telemetry.services.alerts import command_alerts
 from telemetry.services.targets_checked import store_missing_visits
 
 

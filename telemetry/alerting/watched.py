@@ -13,7 +13,7 @@ class WatchedUav:
 
     `approval_id` is of the approval in force, `flight` the one of its route that it flies or will fly next, from 1 on; one past the last
     after all were flown. `newest` is its newest report that is not from the future, None before the first. All else (its link, what it
-    holds, commands, zones) is looked up by telemetry/services/alerting.py.
+    holds, commands, zones) is looked up by telemetry/services/alerts/alerting.py.
     """
 
     uav_id: int

@@ -50,8 +50,8 @@ from telemetry.gateway.preparation import (
 )
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
-from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
-from telemetry.services.mission_alerts import tell_of_mission, tell_of_other_list
+from telemetry.services.alerts.mission_alerts import tell_of_mission, tell_of_other_list
+from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 
 RETRIES = 2  # a parameter that a vehicle does not have draws no answer
 ADVICE = {

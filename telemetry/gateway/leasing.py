@@ -11,7 +11,7 @@ from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
-from telemetry.services.links import UNHEARD_S, renew_leases, take_leases
+from telemetry.services.links.links import UNHEARD_S, renew_leases, take_leases
 from workspace.live.lease_times import held_until_s
 from workspace.live.timed_waits import wait_for_event
 

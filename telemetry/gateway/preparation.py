@@ -19,8 +19,8 @@ from missions.command_rules import ALONG_ROUTE
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
-from telemetry.services.along_route import OnBoard, along_route, held_flight
-from telemetry.services.loads import Loaded, loaded_on
+from telemetry.services.links.onboard_lists import Loaded, loaded_on
+from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
 SAME_M = 1.0  # of two legs that are as near it is on the first
 LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)

@@ -32,8 +32,8 @@ from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.gateway.telling import Telling
 from telemetry.gateway.unknown_senders import UnknownSenders
-from telemetry.services.heard_by_gateway import HeardText
-from telemetry.services.links import LinkState, release_leases
+from telemetry.services.links.gateway_messages import HeardText
+from telemetry.services.links.links import LinkState, release_leases
 
 RETRY_DELAY_S = 1.0
 PLAIN = frozenset(

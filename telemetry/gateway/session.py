@@ -31,8 +31,8 @@ from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
 from telemetry.services.ingest import NewRecord
-from telemetry.services.links import Lease, LinkState
-from telemetry.services.loads import Doubt
+from telemetry.services.links.links import Lease, LinkState
+from telemetry.services.links.onboard_lists import Doubt
 
 WINDOW_S = 10.0
 TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.services.heard_by_gateway import Heard, HeardText, store_heard
 from telemetry.services.ingest import NewRecord
-from telemetry.services.links import LinkState
-from telemetry.services.sightings import Sighting
+from telemetry.services.links.gateway_messages import Heard, HeardText, store_heard
+from telemetry.services.links.links import LinkState
+from telemetry.services.links.sightings import Sighting
 
 logger = logging.getLogger(__name__)
 

@@ -11,9 +11,9 @@ from missions.services.commands.rtl_check import note_own_return
 from missions.services.fleet.credentials import note_mavlink_key_use
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.session import Session
-from telemetry.services.alerts import tell_of_second_sender
+from telemetry.services.alerts.alerts import tell_of_second_sender
 from telemetry.services.flown import note_flown
-from telemetry.services.loads import doubt_loaded
+from telemetry.services.links.onboard_lists import doubt_loaded
 
 logger = logging.getLogger(__name__)
 

@@ -16,7 +16,7 @@ from mavlink.vehicle_class import type_name
 from telemetry.gateway.greeting import position_request
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
-from telemetry.services.sightings import Sighting
+from telemetry.services.links.sightings import Sighting
 
 SYSTEMS = range(1, 255)
 ASK_AGAIN_S = 5.0

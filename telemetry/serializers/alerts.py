@@ -10,7 +10,7 @@ from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST
-from telemetry.services.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
+from telemetry.services.alerts.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
 from workspace.api import strict_serializers as serializers
 from workspace.models import User
 

@@ -9,8 +9,8 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.serializers.returns import ReturnCheckSerializer
 from telemetry.selectors.present import Present
-from telemetry.services.landing_here import LandingHere
-from telemetry.services.present_returns import PresentReturn
+from telemetry.services.returns.landing_here import LandingHere
+from telemetry.services.returns.present_returns import PresentReturn
 
 
 class PresentPositionSerializer(serializers.Serializer):

@@ -8,8 +8,8 @@ from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
-from telemetry.services.approved_vehicles import connection_warnings
-from telemetry.services.loads import Doubt
+from telemetry.services.links.approved_vehicles import connection_warnings
+from telemetry.services.links.onboard_lists import Doubt
 from workspace.api import strict_serializers as serializers
 
 

@@ -6,7 +6,7 @@ from mavlink.mission_sync.flown_items import Flown
 from missions.models import Approval, LinkKind, Uav
 from missions.services.commands.dispatch import DamagedApproval, approved_load
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_waypoint_reached
-from telemetry.services.loads import Doubt, loaded_on
+from telemetry.services.links.onboard_lists import Doubt, loaded_on
 
 OTHERS = frozenset({Doubt.OTHER_STATION, Doubt.OTHER_LENGTH})
 

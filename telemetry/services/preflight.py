@@ -31,7 +31,7 @@ from missions.services.commands.rtl_check import ReturnCheck, ReturnState, retur
 from missions.services.commands.start_slots import reasons_to_wait
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
-from telemetry.services.approved_flights import approved_content
+from telemetry.services.alerts.approved_flights import approved_content
 from workspace.models import Organisation
 
 HEARD_WITHIN = timedelta(seconds=15)  # companions report every 10 s

@@ -14,10 +14,10 @@ from missions.selectors.given import approvals_given_to, is_end_known, number_of
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
-from telemetry.services.down_alerts import tell_of_failed_flight
+from telemetry.services.alerts.down_alerts import tell_of_failed_flight
+from telemetry.services.alerts.replan_hooks import UAV_OUT
 from telemetry.services.flight_events import note_landing
-from telemetry.services.heard import note_on_ground_over_http
-from telemetry.services.replan_hooks import UAV_OUT
+from telemetry.services.links.http_messages import note_on_ground_over_http
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from inspection.views.parameters import invalid
 from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match, unanswered_counts
 from telemetry.serializers import alerts as shapes
-from telemetry.services.alerts import LevelRose, acknowledge_alert, acknowledge_ended, note_alert
-from telemetry.services.down_alerts import ClosedByItself, close_down_alert
+from telemetry.services.alerts.alerts import LevelRose, acknowledge_alert, acknowledge_ended, note_alert
+from telemetry.services.alerts.down_alerts import ClosedByItself, close_down_alert
 from telemetry.views.log_filters import UAV, mission_of, time_of
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent

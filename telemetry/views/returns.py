@@ -11,8 +11,8 @@ from missions.selectors.fleet import uavs_of_organisation
 from missions.views.problems import api_problems
 from missions.views.uavs import uav_or_404
 from telemetry.serializers.returns import LandingHereSerializer, PresentReturnsSerializer, landing_here_json, present_return_json
-from telemetry.services.landing_here import landing_here
-from telemetry.services.present_returns import present_returns
+from telemetry.services.returns.landing_here import landing_here
+from telemetry.services.returns.present_returns import present_returns
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
 

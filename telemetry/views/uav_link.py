@@ -26,10 +26,10 @@ from telemetry.serializers.uav_link import (
     StoredResultsSerializer,
     read_result,
 )
-from telemetry.services.companion_reports import USED_AGAIN, take_reports
-from telemetry.services.heard import note_heard_over_http
+from telemetry.services.links.companion_reports import USED_AGAIN, take_reports
+from telemetry.services.links.http_messages import note_heard_over_http
+from telemetry.services.links.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.services.results import EndedFlight, take_results
-from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_access
 from workspace.api.parsers import MeasuredJSONParser, UavJSONParser
 from workspace.api.renderers import FastJSONRenderer

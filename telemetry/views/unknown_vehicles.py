@@ -16,7 +16,7 @@ from missions.views.uavs import uav_or_404
 from telemetry.models import UnknownVehicle, UnknownVehicleState
 from telemetry.selectors.vehicles import unknown_vehicles
 from telemetry.serializers.vehicles import AdoptionSerializer, UnknownVehiclePageSerializer, UnknownVehicleSerializer, vehicle_json
-from telemetry.services.unknown_vehicles import AlreadySettled, NewUav, NoPlace, adopt_vehicle, heed_vehicle, ignore_vehicle
+from telemetry.services.links.unknown_vehicles import AlreadySettled, NewUav, NoPlace, adopt_vehicle, heed_vehicle, ignore_vehicle
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of
 from workspace.api.permissions import AdministratorsAlone

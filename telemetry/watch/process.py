@@ -31,7 +31,7 @@ from telemetry.selectors.watched import (
     reports_stored_after,
     watched_flights,
 )
-from telemetry.services.alerting import look
+from telemetry.services.alerts.alerting import look
 from telemetry.services.knowledge import knowledge_of
 from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from telemetry.services.watches import (

@@ -3,7 +3,8 @@
 from telemetry.alerting import advice
 from telemetry.alerting.order import DETECTORS
 from telemetry.selectors.alert_words import ADVICES, TEMPLATES
-from telemetry.services import alerts, command_alerts, mission_alerts, uav_outbox
+from telemetry.services.alerts import alerts, command_alerts, mission_alerts
+from telemetry.services.links import uav_outbox
 
 
 def test_every_template_is_named_for_the_catalogues():
