@@ -7,7 +7,6 @@ import shapely
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
-from telemetry.services.alerts.alerts import open_alert
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute
@@ -16,6 +15,7 @@ from missions.models import Approval, InspectionTarget, LinkKind, Mission
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 from telemetry.models import AlertLevel, PositionEstimate, TelemetryRecord
 from telemetry.services import NewRecord, store_records
+from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.targets_checked import TargetChecks
 from tests.telemetry.flown import fly, route_of
 

@@ -10,8 +10,6 @@ import pytest
 from django.db import connection
 from django.db.models import Model
 from django.utils import timezone
-from telemetry.services.alerts.alerts import acknowledge_alert, note_alert, open_alert
-from telemetry.services.links.companion_reports import take_reports
 
 from deploy.load.day import book as kinds
 from deploy.load.day.book import Book, lines
@@ -20,6 +18,8 @@ from deploy.load.invariants import look, look_here
 from missions.models import Approval, Mission, Uav, UavCommand, UavCommandEvent
 from missions.services import MissionChange, change_mission, create_mission
 from telemetry.models import AlertLevel, AlertNote, InspectionResult, TelemetryRecord
+from telemetry.services.alerts.alerts import acknowledge_alert, note_alert, open_alert
+from telemetry.services.links.companion_reports import take_reports
 from telemetry.services.results import EndedFlight, NewResult, take_results
 from tests.accounts.users import somebody
 from tests.missions import flights, worlds

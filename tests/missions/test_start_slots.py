@@ -4,7 +4,6 @@ from datetime import timedelta
 
 import pytest
 from django.utils import timezone
-from telemetry.services.links.uav_outbox import handed_to
 
 from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand, UavState
 from missions.selectors.given import given_to
@@ -14,6 +13,7 @@ from missions.services.commands.start_slots import reasons_to_carry_later, reaso
 from missions.services.commands.steering import command_uav
 from telemetry.models import UavLink, UavWatch
 from telemetry.services.latest import time_text
+from telemetry.services.links.uav_outbox import handed_to
 from tests.accounts.users import client_of
 from tests.missions.api import post
 from tests.missions.flights import an_operator, carry, dispatched, fleet

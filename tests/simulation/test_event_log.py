@@ -10,7 +10,6 @@ from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
-from telemetry.services.alerts.alerts import acknowledge_alert, close_alert, open_alert
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
@@ -21,6 +20,7 @@ from missions.services.replanning.offers import settle_offers
 from telemetry.models import AlertLevel, FlightEvent, VehicleText
 from telemetry.selectors import events as telemetry_events
 from telemetry.services import NewRecord, store_records
+from telemetry.services.alerts.alerts import acknowledge_alert, close_alert, open_alert
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.flights import carry, dispatched, fleet

@@ -6,8 +6,6 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 from django.utils.translation import override
-from telemetry.services.alerts.alerting import Memories, look
-from telemetry.services.alerts.down_alerts import close_down_alert
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
@@ -16,6 +14,8 @@ from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alert_words import alert_words
+from telemetry.services.alerts.alerting import Memories, look
+from telemetry.services.alerts.down_alerts import close_down_alert
 from tests.missions.flights import an_operator, approved, fleet
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import at

@@ -6,12 +6,12 @@ import pytest
 from django.db import connection
 from django.utils import timezone
 from django.utils.translation import override
-from telemetry.services.alerts.alerts import close_alert, open_alert, tell_of_second_sender
 
 from missions.models import Uav, UavType
 from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alert_words import TEMPLATES, alert_words
 from telemetry.selectors.alerts import waiting_to_be_seen
+from telemetry.services.alerts.alerts import close_alert, open_alert, tell_of_second_sender
 from tests.accounts.users import client_of, somebody
 from tests.missions.outbox import a_uav
 from tests.telemetry.records import at

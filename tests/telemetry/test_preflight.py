@@ -5,8 +5,6 @@ from typing import Any
 
 import pytest
 from django.utils import timezone
-from telemetry.services.alerts.alerts import open_alert
-from telemetry.services.alerts.down_alerts import close_down_alert
 
 from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
 from missions.selectors.missions import mission_of_organisation
@@ -16,6 +14,8 @@ from missions.services.commands.refused import Refused
 from missions.services.commands.rtl_check import note_own_return
 from missions.services.commands.steering import command_uav
 from telemetry.models import AlertLevel, UavLink
+from telemetry.services.alerts.alerts import open_alert
+from telemetry.services.alerts.down_alerts import close_down_alert
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post

@@ -1,14 +1,14 @@
 """Which alerts are a reason to plan the rest of a mission again."""
 
 import pytest
-from telemetry.services.alerts.alerts import open_alert
-from telemetry.services.alerts.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
 
 from missions.models import Mission, OfferState, ReplanOffer
 from missions.services.replanning import REPLAN, settle_offers
 from telemetry.alerting.book import CLEARED, LANDED, Closed
 from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
 from telemetry.models import AlertLevel
+from telemetry.services.alerts.alerts import open_alert
+from telemetry.services.alerts.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
 from tests.accounts.users import somebody
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out

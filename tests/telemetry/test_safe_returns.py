@@ -3,8 +3,6 @@
 from typing import Any
 
 import pytest
-from telemetry.services.returns.along_route import AlongRoute
-from telemetry.services.returns.safe_returns import Flown, SafeReturn, safest_returns
 
 from inspection.geodesy import LonLat
 from missions.models import MissionUav, Uav
@@ -12,6 +10,8 @@ from missions.services.commands.rtl_check import ReturnCheck, ReturnState
 from telemetry.alerting.return_path import ReturnPath
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on
 from telemetry.selectors.present import Heard
+from telemetry.services.returns.along_route import AlongRoute
+from telemetry.services.returns.safe_returns import Flown, SafeReturn, safest_returns
 
 HERE, NORTH, HOME = LonLat(10.01, 56.0), LonLat(10.01, 56.01), LonLat(10.0, 56.0)
 

@@ -2,9 +2,6 @@
 
 from uuid import UUID
 
-from telemetry.services.links.links import release_leases, take_leases
-from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, end_loading
-
 from deploy.load.day.site import InAir
 from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import CommandKind, Mission, Uav, UavCommand
@@ -12,6 +9,8 @@ from missions.selectors.missions import approval_in_force
 from missions.services.commands.commands import claim_commands, note_applied, note_sent
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.steering import command_uav
+from telemetry.services.links.links import release_leases, take_leases
+from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, end_loading
 from workspace.models import User
 
 HOLDER = "prepare-day/1"

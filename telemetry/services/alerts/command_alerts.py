@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from typing import Any
 
-from telemetry.services.alerts.alerts import close_alert, open_alert
-
 from missions.command_rules import ALONG_ROUTE
 from missions.hooks.in_air import uavs_on_the_ground
 from missions.models import CommandKind, UavCommand
@@ -12,6 +10,7 @@ from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.staggered_returns import stuck_returns
 from telemetry.alerting.acts import ACTS, RETURN, acts
 from telemetry.models import Alert, AlertLevel
+from telemetry.services.alerts.alerts import close_alert, open_alert
 
 HAND_OVER_FAILED, RETURN_NOT_BEGUN = "hand-over-failed", "return-not-begun"
 IS_STUCK = (

@@ -4,14 +4,14 @@ from uuid import UUID
 
 from django.db import transaction
 from django.utils import timezone
-from telemetry.services.alerts.alerts import CLOSED, alert_was_closed, note_alert, open_alert, step
-from telemetry.services.alerts.approved_flights import flight_model
 
 from inspection.geodesy import LonLat
 from missions.models import Approval, Uav
 from telemetry.alerting.detectors import down
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import BY_PERSON
+from telemetry.services.alerts.alerts import CLOSED, alert_was_closed, note_alert, open_alert, step
+from telemetry.services.alerts.approved_flights import flight_model
 from workspace.models import User
 
 

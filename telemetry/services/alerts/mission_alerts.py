@@ -1,10 +1,9 @@
 """A vehicle that holds something else than what was approved must not fly: reported at once, until it is over."""
 
-from telemetry.services.alerts.alerts import close_alert, open_alert
-
 from missions.models import UavCommand
 from telemetry.models import AlertLevel
 from telemetry.selectors.alerts import MIXED, OTHER_LIST
+from telemetry.services.alerts.alerts import close_alert, open_alert
 
 IS_MIXED = "%(uav)s holds a mix of missions. %(words)s"
 HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on board. %(words)s"

@@ -8,7 +8,6 @@ from typing import Any
 from django.db import connection, transaction
 from django.db.models import Exists, F, OuterRef
 from django.db.models.functions import Now
-from telemetry.services.alerts.alerts import CLOSED, OPENED, step
 
 from missions.models import MissionState
 from telemetry.alerting.advice import answer_of
@@ -18,6 +17,7 @@ from telemetry.alerting.finding import RANK, Finding
 from telemetry.alerting.watched import WatchedUav
 from telemetry.models import Alert
 from telemetry.selectors.alerts import WORST, OpenRow
+from telemetry.services.alerts.alerts import CLOSED, OPENED, step
 
 WORDS_STAND_FOR = timedelta(seconds=5)  # newer figures of the same cause are written no more often
 WATCHED_STATES = (MissionState.DISPATCHED, MissionState.ACTIVE)

@@ -6,13 +6,12 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from telemetry.services.links.http_messages import note_state_over_http
-
 from mavlink.decoding.companion_reports import FaultyReport, Report, read_report
 from mavlink.decoding.measurement import Measurement
 from missions.models import LinkKind, MissionUav
 from telemetry.models import TelemetryRecord
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
+from telemetry.services.links.http_messages import note_state_over_http
 
 USED_AGAIN = "Another record has this number in this stream: take a new stream when the numbers begin anew."
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from django.db import transaction
-from telemetry.services.links.links import LinkState, save_links
-from telemetry.services.links.sightings import Sighting, note_unknown_vehicles
 
 from missions.models import Uav
 from telemetry.models import VehicleText
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
+from telemetry.services.links.links import LinkState, save_links
+from telemetry.services.links.sightings import Sighting, note_unknown_vehicles
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from uuid import UUID
 
 from django.db import transaction
 from django.utils import timezone
-from telemetry.services.alerts.alerts import close_alert, open_alert
 
 from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
 from missions.selectors.given import Given, given_to
@@ -15,6 +14,7 @@ from missions.services.commands.commands import claim_commands, note_acknowledge
 from missions.services.commands.dispatch import ApprovedLoad, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.models import AlertLevel, UavLink
+from telemetry.services.alerts.alerts import close_alert, open_alert
 
 HOLDER = "http-link"  # all processes of the link are one: a UAV may ask any of them
 LEASE_S = 30.0

@@ -6,7 +6,6 @@ from datetime import datetime, timedelta
 import numpy as np
 from django.conf import settings
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.links.onboard_lists import Loaded, loaded_on
 
 from inspection.geodesy import LonLat
 from inspection.network.spans import spans_of
@@ -20,6 +19,7 @@ from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, a
 from missions.services.commands.rtl_check import zones_applying
 from missions.services.commands.steering import mission_in_hand
 from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
+from telemetry.services.links.onboard_lists import Loaded, loaded_on
 
 FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
 

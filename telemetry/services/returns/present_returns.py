@@ -9,16 +9,6 @@ from uuid import UUID
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from telemetry.services.returns.along_route import FURTHER, AlongRoute, along_route, on_board
-from telemetry.services.returns.safe_returns import (
-    BatteryAtLanding,
-    Flown,
-    SafeReturn,
-    along_landing_percent,
-    battery_at_landing,
-    length_m,
-    safest_returns,
-)
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
@@ -35,6 +25,16 @@ from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying
 from telemetry.selectors.in_the_air import reported_in_the_air
 from telemetry.selectors.present import Heard, Present, heard_of
+from telemetry.services.returns.along_route import FURTHER, AlongRoute, along_route, on_board
+from telemetry.services.returns.safe_returns import (
+    BatteryAtLanding,
+    Flown,
+    SafeReturn,
+    along_landing_percent,
+    battery_at_landing,
+    length_m,
+    safest_returns,
+)
 
 MAX_UNCERTAINTY_M = 300.0  # about a position from which a way home is looked at
 MAX_ALONG_UNCERTAINTY_M = 15.0

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from telemetry.services.returns.along_route import AlongRoute
 
 from inspection.geodesy import LonLat, distance_m
 from mavlink.rtl import OwnReturn
@@ -18,6 +17,7 @@ from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute
 from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on
 from telemetry.selectors.present import Heard
+from telemetry.services.returns.along_route import AlongRoute
 
 MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
 MAX_WAIT_S = 600.0

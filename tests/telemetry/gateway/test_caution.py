@@ -11,7 +11,6 @@ import pytest
 from django.db.models import F
 from django.db.models.functions import Now
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.links.links import Lease, save_links, take_leases
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
@@ -34,6 +33,7 @@ from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
 from telemetry.gateway.store import Store
 from telemetry.models import UavLink
+from telemetry.services.links.links import Lease, save_links, take_leases
 from tests.telemetry.gateway.station import unsigned_uav
 
 HERE = LonLat(10.0, 56.0)

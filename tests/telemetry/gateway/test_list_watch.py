@@ -2,10 +2,10 @@
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.links.onboard_lists import Doubt
 
 from mavlink.vehicle_state import VehicleState
 from telemetry.gateway.session import QUIET_S, ListWatch
+from telemetry.services.links.onboard_lists import Doubt
 
 LOADED_S, LATER_S = 100.0, 100.0 + QUIET_S + 1.0
 

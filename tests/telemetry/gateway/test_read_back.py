@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.links.onboard_lists import Doubt
 
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
@@ -14,6 +13,7 @@ from missions.models import CommandState, Mission, Uav
 from missions.serializers.commands import command_json
 from missions.services.commands.dispatch import dispatch_mission
 from telemetry.models import UavLink
+from telemetry.services.links.onboard_lists import Doubt
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world

@@ -3,7 +3,6 @@
 import pytest
 from django.utils import timezone
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.alerts.command_alerts import settle_command_alerts
 
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
@@ -17,6 +16,7 @@ from missions.services.commands.flight_progress import FlightEnd, mark_flight_en
 from missions.services.commands.steering import command_uav
 from missions.services.replanning import accept_offer
 from telemetry.models import Alert, UavLink
+from telemetry.services.alerts.command_alerts import settle_command_alerts
 from tests.accounts.users import somebody
 from tests.cases import long
 from tests.missions.flights import ground

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.alerts.command_alerts import settle_command_alerts
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
@@ -13,6 +12,7 @@ from missions.services.commands.staggered_returns import stuck_returns
 from missions.services.commands.steering import command_uav
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
+from telemetry.services.alerts.command_alerts import settle_command_alerts
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around

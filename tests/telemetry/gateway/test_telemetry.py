@@ -4,10 +4,10 @@ import socket
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.services.links.unknown_vehicles import NewUav, adopt_vehicle
 
 from mavlink.signing import FrameWriter
 from telemetry.models import TelemetryRecord, UavLink, UnknownVehicle, VehicleText
+from telemetry.services.links.unknown_vehicles import NewUav, adopt_vehicle
 from tests.accounts.users import somebody
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for
 from workspace.models import Role

@@ -10,12 +10,12 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 from django.utils import timezone
-from telemetry.services.alerts.alerts import open_alert
 
 from missions.models import Approval, InspectionTarget, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_waypoint_reached
 from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
+from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks, store_missing_visits
 from tests.accounts.users import client_of, somebody
 from tests.telemetry.flown import fly, record_of, route_of

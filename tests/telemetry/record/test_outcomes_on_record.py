@@ -6,13 +6,13 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from telemetry.services.alerts.alerts import open_alert
 
 from missions.models import Approval, CommandKind, Mission, MissionState, TargetState, Uav
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.flight_progress import mark_waypoint_reached
 from missions.services.commands.outbox import queue_command
 from telemetry.models import AlertLevel, TelemetryRecord, VehicleText
+from telemetry.services.alerts.alerts import open_alert
 from tests.telemetry.flown import fly, record_of, route_of
 from workspace.models import User
 

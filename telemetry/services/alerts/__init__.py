@@ -1,0 +1,1 @@
+"""Alerts: opened with their cause, closed with it, acknowledged and noted by users."""
