@@ -23,7 +23,7 @@ from planning.rules import FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.weather import Weather
+from simulation.flight.faults import Weather
 from tests.simulation.planned_flights import climbs, compared, holds
 from tests.simulation.planned_flights import square as square_route
 

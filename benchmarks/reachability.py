@@ -37,8 +37,7 @@ from planning.energy.performance import Performance
 from planning.problem import End
 from planning.reachability.reachability import Flight, reach
 from planning.reachability.reachable_assets import Reach, Verdict
-from planning.rules import FlightRules
-from planning.solver.rules import RoutingRules
+from planning.rules import FlightRules, RoutingRules
 
 MAX_S = 1.0
 RANGE_M = 40_000.0

@@ -21,11 +21,11 @@ from inspection.geodesy import LonLat, path_length_m
 from inspection.geodesy.local_frame import LocalFrame
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.faults import Weather
 from simulation.flight.plant import PHYSICS_HZ
 from simulation.flight.route_file import RouteFile
 from simulation.flight.route_flight import RouteFlight, fly_route
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 
 HOME = LonLat(9.0, 47.0)
 SIDE_M, HEIGHT_M = 500.0, 30.0

@@ -8,9 +8,7 @@ from typing import Any
 
 import dj_database_url
 
-from config.environment import entries, flag, mebibytes, number, secret
-from config.log_settings import log_settings
-from config.mail import mail_settings
+from config.environment import entries, flag, log_settings, mail_settings, mebibytes, number, secret
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from inspection.network.flown_heights import FlownHeights
@@ -20,8 +18,7 @@ from mavlink.timeouts import CommandRules as VehicleCommandRules
 from mavlink.timeouts import TransferRules
 from missions.command_rules import CommandRules
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
-from planning.rules import FlightRules, SeparationRules
-from planning.solver.rules import RoutingRules
+from planning.rules import FlightRules, RoutingRules, SeparationRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()
@@ -100,7 +97,7 @@ INSTALLED_APPS = [
 MIDDLEWARE = [
     "config.observed_requests.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
-    "missions.views.short_way.PlansShortWay",
+    "missions.views.small_plans.PlansShortWay",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",
@@ -221,7 +218,7 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_PERMISSION_CLASSES": ["workspace.api.permissions.RolePermission"],
     "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
     "DEFAULT_PARSER_CLASSES": ["workspace.api.parsers.StrictJSONParser"],
-    "DEFAULT_CONTENT_NEGOTIATION_CLASS": "workspace.api.negotiation.ProblemNegotiation",
+    "DEFAULT_CONTENT_NEGOTIATION_CLASS": "workspace.api.renderers.ProblemNegotiation",
     "DEFAULT_THROTTLE_CLASSES": ["workspace.api.throttling.ScopedRate"],
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,

@@ -11,9 +11,8 @@ from missions.views.explanations import LaterDeparture, MissionExplanation, WhyR
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.plans import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
-from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList
-from missions.views.starts import MissionPlannedStarts, PlannedStartsList
+from missions.views.starts import MissionPlannedStarts, MissionReturns, PlannedStartsList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),

@@ -116,7 +116,7 @@ class SimulationChange(models.Model):
     vehicle = models.ForeignKey(SimulatedVehicle, on_delete=models.CASCADE, null=True, blank=True, related_name="changes")
     speed = models.FloatField(null=True, blank=True)
     conditions = models.JSONField(null=True, blank=True)
-    faults = models.JSONField(null=True, blank=True, help_text="as simulation/flight/faults_told.py has them")
+    faults = models.JSONField(null=True, blank=True, help_text="as simulation/flight/faults.py has them")
     created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     done_at = models.DateTimeField(null=True, blank=True)

@@ -25,8 +25,8 @@ from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdic
 from inspection.serializers.scene import SceneSerializer, scene_json
 from inspection.services.geometry_input import area_m2, asset_shape, length_m, zone_shape
 from inspection.views.parameters import BOX_TEXT, box_of, invalid
-from workspace.api.negotiation import OneAnswer
 from workspace.api.permissions import CURATORS
+from workspace.api.renderers import OneAnswer
 
 TILE_TYPE = "application/vnd.mapbox-vector-tile"
 

@@ -20,7 +20,7 @@ from missions.serializers.fleet import (
     base_json,
     uav_type_json,
 )
-from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
+from missions.views.problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import changed_since, page_of
 from workspace.api.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision

@@ -1,14 +1,86 @@
 """What the errors of planning and missions are as answers."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from django.utils.translation import gettext as _
+from django.utils.translation import ngettext
+from drf_spectacular.utils import OpenApiResponse
 
 from inspection.selectors import NoGraph
-from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan
+from missions.selectors.fleet import last_change
+from missions.services import (
+    ExternalIdTaken,
+    FleetChanged,
+    FleetRowInUse,
+    GraphOutdated,
+    InvalidRequest,
+    MissionChanged,
+    MissionFrozen,
+    NameTaken,
+    NotDeleted,
+    NothingToPlan,
+    SystemIdQuota,
+    SystemIdTaken,
+)
 from missions.services.commands.refused import Refused
 from workspace.api.errors import ApiProblem
+from workspace.api.preconditions import PRECONDITION_ANSWERS
+
+TAKEN = {409: OpenApiResponse(description="The name, the external id or the MAVLink system id is taken.")}
+CHANGE_ANSWERS = {**TAKEN, **PRECONDITION_ANSWERS}
+DELETE_ANSWERS = {204: None, 409: OpenApiResponse(description="Something still points at it."), **PRECONDITION_ANSWERS}
+RESTORE_CONFLICT = {409: OpenApiResponse(description="It was not deleted, or its name is taken in the meantime.")}
+
+
+@contextmanager
+def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
+    """current: the row as it is now, for whoever was too late; None where it is gone."""
+    try:
+        yield
+    except NameTaken as error:
+        messages = {
+            "uav": _("Another UAV has this name."), "uav_type": _("Another type has this name."), "base": _("Another base has this name.")
+        }  # fmt: skip
+        raise ApiProblem(409, "name_taken", messages[error.subject], details={"name": [messages[error.subject]]}) from error
+    except ExternalIdTaken as error:
+        message = _("Another UAV has this external id.")
+        raise ApiProblem(409, "external_id_taken", message, details={"external_id": [message]}) from error
+    except SystemIdTaken as error:
+        message = _("Another UAV has this MAVLink system id.")
+        raise ApiProblem(409, "system_id_taken", message, details={"mavlink_system_id": [message]}) from error
+    except SystemIdQuota as error:
+        message = _("Your organisation has %(limit)s MAVLink system ids already. Retire a UAV to free its id.") % {"limit": error.limit}
+        raise ApiProblem(409, "system_id_quota", message, details={"mavlink_system_id": [message]}) from error
+    except FleetRowInUse as error:
+        raise ApiProblem(409, f"{error.subject}_in_use", _in_use(error)) from error
+    except NotDeleted as error:
+        raise ApiProblem(409, "not_deleted", _("It was not deleted: there is nothing to bring back.")) from error
+    except FleetChanged as error:
+        raise _changed(error, current() if current else None) from error
+
+
+def _in_use(error: FleetRowInUse) -> str:
+    if error.subject == "uav":
+        return ngettext(
+            "A mission uses this UAV. Retire it instead.", "%(count)d missions use this UAV. Retire it instead.", error.users
+        ) % {"count": error.users}
+    if error.subject == "base":
+        return ngettext(
+            "A UAV has this base. Give it another one first.", "%(count)d UAVs have this base. Give them another one first.", error.users
+        ) % {"count": error.users}
+    return ngettext(
+        "A UAV is of this type. Give it another one first.", "%(count)d UAVs are of this type. Give them another one first.", error.users
+    ) % {"count": error.users}
+
+
+def _changed(error: FleetChanged, current: Any) -> ApiProblem:
+    last = last_change(error.subject, error.key)
+    who = last.actor.display_name if last and last.actor else _("a program")
+    message = _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}
+    return ApiProblem(412, "changed", message, details={"current": current, "changed_by": who, "changed_at": last and last.recorded_at})
+
 
 RETRY_AFTER_S = 3  # a new graph is built within seconds
 

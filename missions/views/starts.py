@@ -1,5 +1,6 @@
 """Starting a mission's UAVs in planned order."""
 
+from dataclasses import asdict
 from datetime import timedelta
 from uuid import UUID
 
@@ -10,6 +11,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import PlannedStarts
+from missions.serializers.returns import ReturnChecksSerializer
 from missions.serializers.starts import (
     MissionStartsSerializer,
     PlannedStartsListSerializer,
@@ -19,12 +21,29 @@ from missions.serializers.starts import (
     waiting_json,
 )
 from missions.services.commands.planned_starts import begin_planned_starts, stop_planned_starts, waiting_for_start
+from missions.services.commands.rtl_check import return_checks
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals
 from workspace.api.idempotency import idempotent
 from workspace.api.permissions import FLYING
 from workspace.api.signed_in import SignedInRequest
+
+
+class MissionReturns(APIView):
+    @extend_schema(
+        operation_id="get_mission_returns",
+        summary="What is in the way when UAVs of a mission are told to return or abort",
+        description="An autopilot then flies home straight and as high as its own parameters say, whatever was approved. From all along"
+        " each route that way is looked at against zones, the ground, towers and wires, at the height that was last read from the UAV.",
+        responses=ReturnChecksSerializer,
+    )
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        with api_problems():
+            checks = return_checks(mission)
+        return Response(ReturnChecksSerializer({"results": [asdict(check) for check in checks]}).data)
+
 
 SHOWN_AFTER = timedelta(minutes=5)
 

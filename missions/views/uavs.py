@@ -15,8 +15,7 @@ from missions.models import Uav, UavState
 from missions.selectors import fleet
 from missions.serializers.fleet import UavMissionPageSerializer
 from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSerializer, UavFlatSerializer, flat_uav, uav_feature
-from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
-from missions.views.problems import refusals
+from missions.views.problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems, refusals
 from workspace.api.errors import ApiProblem
 from workspace.api.external_data import EXTERNAL_ID, asked_external_id
 from workspace.api.idempotency import idempotent

@@ -13,6 +13,20 @@ from planning.solver.plan_state import Ground, Workspace, ground_of, routes_of, 
 from planning.solver.problem_arrays import Arcs
 from planning.solver.ruin_and_recreate import anneal, construct
 
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a search is. `best_routes` are the best so far, visits by UAV; `bound` is in the unit of the problem's objective."""
+
+    share: float
+    message: str
+    best_routes: Routes | None = None
+    bound: float | None = None
+
+
+OnProgress = Callable[[Progress], None]
+
+
 Stop = Callable[[], bool]
 
 CHAINS = 2

@@ -7,9 +7,8 @@ from planning.solver import exact
 from planning.solver.locks import reduced
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.problem_arrays import Arcs
-from planning.solver.progress import OnProgress, Progress
 from planning.solver.reach import needed_range_m, reachable, reasons
-from planning.solver.search import Found, best_found
+from planning.solver.search import Found, OnProgress, Progress, best_found
 from planning.solver.sorties import by_uav, joined, unfolded
 
 PROVEN_GAP = 1e-8  # the bound stays a hair below what it proves

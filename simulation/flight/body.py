@@ -10,9 +10,8 @@ from inspection.geodesy.local_frame import LocalFrame
 from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
 from simulation.flight.airframe import Airframe
 from simulation.flight.course import Vector
-from simulation.flight.ground import Ground
-from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Motion, Plant
-from simulation.flight.weather import Weather
+from simulation.flight.faults import Weather
+from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Ground, Motion, Plant
 
 DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
 WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time

@@ -1,6 +1,45 @@
 """What goes wrong: a value that can be replaced in flight."""
 
-from dataclasses import dataclass
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from planning.energy.conditions import Conditions
+
+MAX_GUSTS_MPS = 15.0
+MAX_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe
+GUST_TIME_S = 3.0
+
+
+class ImpossibleWeather(ValueError):
+    """Gusts or turbulence that cannot be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Weather:
+    """Wind by height and temperature as a mission's conditions have them, and what the air does around its mean.
+
+    gusts_mps              standard deviation of gusts to north and to east; a quarter of it up and down
+    gust_time_s            how long a gust lasts: the time constant of a Gauss-Markov process
+    turbulence_mps_at_20ft the wind at 20 ft that makes Dryden turbulence as MIL-F-8785C has it; 0: none
+    """
+
+    conditions: Conditions = field(default_factory=Conditions)
+    gusts_mps: float = 0.0
+    gust_time_s: float = GUST_TIME_S
+    turbulence_mps_at_20ft: float = 0.0
+
+    def __post_init__(self) -> None:
+        _check("gusts_mps", self.gusts_mps, 0.0, MAX_GUSTS_MPS)
+        _check("gust_time_s", self.gust_time_s, 0.1, 600.0)
+        _check("turbulence_mps_at_20ft", self.turbulence_mps_at_20ft, 0.0, MAX_TURBULENCE_MPS)
+
+
+def _check(name: str, value: float, least: float, most: float) -> None:
+    if not (math.isfinite(value) and least <= value <= most):
+        raise ImpossibleWeather(f"{name} must be from {least:g} to {most:g}, not {value:g}.")
+
 
 MOTORS = 4
 
@@ -41,3 +80,42 @@ class Faults:
 
     def is_gps_lost(self, now_s: float) -> bool:
         return now_s < self.gps_lost_until_s
+
+
+FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
+WHOLE = frozenset({"motor_failed", "stuck_item"})
+LASTING = ("link_lost", "gps_lost")
+
+Changed = Callable[[Faults, float], Faults]
+
+
+class WrongFaults(ValueError):
+    """Faults that no UAV can be given."""
+
+
+def faults_told(told: Any) -> Changed:
+    """From the faults before and simulated seconds to those from now on; what is not told stays as it is. Raises WrongFaults."""
+    if not isinstance(told, Mapping) or not told.keys() <= FAULTS:
+        raise WrongFaults(f"only {', '.join(sorted(FAULTS))} can be told")
+    values: dict[str, Any] = {name: _value(name, value) for name, value in told.items()}
+    lasting = {f"{name}_until_s": values.pop(f"{name}_for_s") or 0.0 for name in LASTING if f"{name}_for_s" in values}
+
+    def changed(before: Faults, now_s: float) -> Faults:
+        until: dict[str, Any] = {name: now_s + for_s for name, for_s in lasting.items()}
+        return replace(before, **values, **until)
+
+    try:
+        changed(Faults(), 0.0)
+    except (ImpossibleFault, TypeError) as error:
+        raise WrongFaults(str(error)) from error
+    return changed
+
+
+def _value(name: str, value: Any) -> Any:
+    if value is None:
+        return 0.0 if name == "clock_offset_s" else None
+    if isinstance(value, bool) or (name in WHOLE and not isinstance(value, int)):
+        raise WrongFaults(f"{name} is a whole number or null")
+    if not isinstance(value, int | float) or not math.isfinite(value):
+        raise WrongFaults(f"{name} is a number")
+    return value if name in WHOLE else float(value)

@@ -1,9 +1,10 @@
 """The flight model in the units of the house: placed on the ground, stepped, read and written; what is not a number stops it."""
 
 import math
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 from xml.etree import ElementTree
 
 import jsbsim
@@ -12,6 +13,23 @@ import numpy as np
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import Airframe
 from simulation.flight.faults import MOTORS
+
+
+class Ground(Protocol):
+    """Anything that knows how high the ground lies above sea level [m]; NaN where it does not."""
+
+    def elevation_m(self, position: LonLat) -> float: ...
+
+
+@dataclass(frozen=True, slots=True)
+class FlatGround:
+    """The same height everywhere."""
+
+    height_m: float = 0.0
+
+    def elevation_m(self, position: LonLat) -> float:
+        return self.height_m
+
 
 MODELS = Path(__file__).resolve().parent.parent / "aircraft_models"
 ROTORS = 4

@@ -11,12 +11,12 @@ from inspection.geodesy import LonLat, path_length_m
 from inspection.geodesy.local_frame import LocalFrame
 from simulation.flight.airframe import Airframe
 from simulation.flight.events import ItemReached, ModeChanged, Said
+from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending, Flown, fly_mission
 from simulation.flight.orders import FlyTo, orders
 from simulation.flight.route_file import RouteFile, items_of
 from simulation.flight.states import Mode, Severity
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 
 FloatArray = NDArray[np.float64]
 TRACK_STEPS = 5  # a line of the track each 0.2 s

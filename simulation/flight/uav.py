@@ -8,18 +8,16 @@ from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import Airframe
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body
-from simulation.flight.camera import Camera
 from simulation.flight.cockpit import Cockpit
 from simulation.flight.events import Event
-from simulation.flight.faults import Faults
-from simulation.flight.ground import FlatGround, Ground
+from simulation.flight.faults import Faults, Weather
 from simulation.flight.guidance import Guidance
 from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOff
-from simulation.flight.mission import Mission, first_to_fly
+from simulation.flight.mission import Camera, Mission, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
+from simulation.flight.plant import FlatGround, Ground
 from simulation.flight.settings import Settings
 from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, Severity, UavState
-from simulation.flight.weather import Weather
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
 SETTLES_S = 2.0  # on the ground, until the model rests

@@ -1,6 +1,6 @@
 """The air of a set of conditions, as simulated UAVs fly in it."""
 
-from simulation.flight.weather import MAX_GUSTS_MPS, MAX_TURBULENCE_MPS, Weather
+from simulation.flight.faults import MAX_GUSTS_MPS, MAX_TURBULENCE_MPS, Weather
 from simulation.rehearsing.sky import Sky
 
 

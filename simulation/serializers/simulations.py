@@ -11,7 +11,7 @@ from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from simulation.end_reasons import reason_words
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.faults_told import WrongFaults, faults_told
+from simulation.flight.faults import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
 from workspace.api import strict_serializers as serializers

@@ -15,7 +15,7 @@ from inspection.selectors.planning import heights_at, planning_read
 from missions.models import CredentialKind, Uav
 from missions.services.fleet.credentials import mavlink_signing_key
 from operation import pulse
-from simulation.flight.faults_told import WrongFaults, faults_told
+from simulation.flight.faults import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from simulation.rehearsing.ground import BlockedGround
 from simulation.rehearsing.sky import sky_from_json

@@ -8,8 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from queue import Empty, SimpleQueue
 
-from simulation.flight.faults import Faults
-from simulation.flight.weather import Weather
+from simulation.flight.faults import Faults, Weather
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 
 RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mavlink.frames import message_of
-from simulation.flight.faults import Faults
+from simulation.flight.faults import Faults, Weather
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 from simulation.vehicle_endpoint.radio import Radio
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.flavour import Flavour

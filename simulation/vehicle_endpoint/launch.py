@@ -6,10 +6,9 @@ from dataclasses import dataclass, field, replace
 
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES, Airframe
-from simulation.flight.faults import Faults
-from simulation.flight.ground import FlatGround, Ground
+from simulation.flight.faults import Faults, Weather
+from simulation.flight.plant import FlatGround, Ground
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio

@@ -6,9 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
-from simulation.flight.faults import Faults
-from simulation.flight.faults_told import WrongFaults, faults_told
-from simulation.flight.weather import ImpossibleWeather, Weather
+from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFaults, faults_told
 from simulation.vehicle_endpoint.fleet import Change
 
 WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 from typing import Any
 
-from telemetry.alerting.acts import LAND, RETURN
+from telemetry.alerting.finding import LAND, RETURN
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.surroundings import Order
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from uuid import UUID
 
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.memory import Memory
@@ -9,8 +10,29 @@ from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.said import Said
 from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
-from telemetry.alerting.watched import WatchedUav
+from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
+
+
+@dataclass(frozen=True, slots=True)
+class WatchedUav:
+    """A UAV of a mission that was sent to it or flies, or that is still in the air after its mission ended.
+
+    `approval_id` is of the approval in force, `flight` the one of its route that it flies or will fly next, from 1 on; one past the last
+    after all were flown. `newest` is its newest report that is not from the future, None before the first. All else (its link, what it
+    holds, commands, zones) is looked up by telemetry/services/alerts/alerting.py.
+    """
+
+    uav_id: int
+    organisation_id: int
+    name: str
+    mission_id: UUID
+    approval_id: UUID
+    flight: int = 1
+    newest: Report | None = None
+    estimate: Estimate | None = None
+    is_twin: bool = False  # simulated, beside the UAV that it is the twin of
+
 
 Key = tuple[str, str]  # code and subject
 FRESH_S, FRESH_INTERVALS = 5.0, 2.5

@@ -2,11 +2,23 @@
 
 import asyncio
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Protocol
 
+from django.conf import settings
+
+from mavlink.addressing import Ends
+from mavlink.autopilot_type import RESTARTS, Flavour
+from mavlink.commands.home_request import HomeReading
 from mavlink.frames import Message
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.download import Download
+from mavlink.mission_sync.upload import TransferState
+from mavlink.mission_sync.wire import held_list, held_sha256
+from mavlink.parameters import ParameterReading
+from mavlink.vehicle_plan import FlightLoad, MissionType
 from telemetry.gateway.session import Session
 from workspace.live.timed_waits import wait_for_event
 
@@ -65,3 +77,77 @@ class Conversation:
         nap_s = MAX_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), MAX_NAP_S)
         if await wait_for_event(self._heard, nap_s):
             self._heard.clear()
+
+
+OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
+READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
+
+
+@dataclass(frozen=True)
+class Reading:
+    """`code` and `words` say why it is not `is_aboard`."""
+
+    is_aboard: bool
+    code: str = ""
+    words: str = ""
+
+
+def _tell(on_item: Callable[[int], None], before: int, done: int) -> None:
+    on_item(before + done)
+
+
+async def read_aboard(
+    session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
+) -> Reading | None:
+    """None once it is not wanted any more. `on_item` is told how many items were read of all lists.
+
+    `beside` names lists of the vehicle's own that were left there, and told, when the load was brought.
+    """
+    before = 0
+    for kind in MissionType:
+        for _ in range(READINGS):
+            reading = await _read(session, load, kind, beside, is_wanted, partial(_tell, on_item, before))
+            if reading is None or reading.is_aboard:
+                break
+        if reading is None or not reading.is_aboard:
+            return reading
+        before += len(load.of(kind))
+    return Reading(True)
+
+
+async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
+    """Its state then has its home, and of an ArduPilot in the air how it would go on; what it does not tell is as old as it was."""
+    ends, rules = Ends(session.uav.system), settings.TRANSFER_RULES
+    asked: list[Keeper] = [HomeReading(session.state, ends, rules)]
+    if session.flavour is Flavour.ARDUPILOT and session.state.is_in_air:
+        session.state.parameters.pop(RESTARTS, None)
+        asked.append(ParameterReading((RESTARTS,), session.state, ends, rules))
+    for keeper in asked:
+        await Conversation(session, keeper, is_wanted).run(on_change=lambda: None)
+
+
+async def _read(
+    session: Session,
+    load: FlightLoad,
+    kind: MissionType,
+    beside: Mapping[str, str],
+    is_wanted: Callable[[], bool],
+    on_item: Callable[[int], None],
+) -> Reading | None:
+    download = Download(kind, Ends(session.uav.system), settings.TRANSFER_RULES)
+    most = len(load.of(kind))
+    outcome = await Conversation(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
+    if outcome is None:
+        return None
+    name = kind.name.lower()
+    if outcome.code == "unsupported" and not load.of(kind):
+        return Reading(True)  # it has no such list
+    if outcome.state is not TransferState.DONE:
+        return Reading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
+    flavour = session.flavour or Flavour.OTHER
+    held = held_list(download.read, kind, flavour)
+    found = differences(load.of(kind), held, flavour)
+    if not found or (not load.of(kind) and beside.get(name) == held_sha256(held)):
+        return Reading(True)
+    more = f" and {len(found) - 1} more" if len(found) > 1 else ""
+    return Reading(False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")

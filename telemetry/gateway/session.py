@@ -26,7 +26,7 @@ from missions.models import LinkKind
 from telemetry.gateway import greeting
 from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
-from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.leasing import KnownUav
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions

@@ -26,7 +26,7 @@ from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, on_track, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
 from workspace.api.errors import ApiProblem
-from workspace.api.negotiation import OneAnswer
+from workspace.api.renderers import OneAnswer
 from workspace.api.signed_in import SignedInRequest
 
 BY_TIME = ("measured_at", "pk")

@@ -22,7 +22,7 @@ from telemetry.serializers.mission_record import MissionRecordSerializer
 from telemetry.services.record_file import record_file
 from telemetry.views.exports import NOTHING, file_stem
 from workspace.api.errors import ApiProblem
-from workspace.api.negotiation import OneAnswer
+from workspace.api.renderers import OneAnswer
 from workspace.api.signed_in import SignedInRequest
 
 

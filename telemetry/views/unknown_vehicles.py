@@ -10,8 +10,7 @@ from rest_framework.views import APIView
 from missions.models import Uav
 from missions.selectors.fleet import types_of_organisation
 from missions.serializers.uavs import UavFeatureSerializer, uav_feature
-from missions.views.fleet_problems import TAKEN, fleet_problems
-from missions.views.problems import refusals
+from missions.views.problems import TAKEN, fleet_problems, refusals
 from missions.views.uavs import uav_or_404
 from telemetry.models import UnknownVehicle, UnknownVehicleState
 from telemetry.selectors.vehicles import unknown_vehicles

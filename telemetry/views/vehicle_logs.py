@@ -16,8 +16,8 @@ from telemetry.models import FlightLog
 from telemetry.selectors.vehicles import LogFileMissing, connection_of, file_of, flight_logs_of, texts_of
 from telemetry.serializers.log import FlightLogPageSerializer, VehicleTextPageSerializer, VehicleTextSerializer
 from telemetry.serializers.vehicles import UavConnectionSerializer, connection_json
-from workspace.api.negotiation import OneAnswer
 from workspace.api.paging import page_of
+from workspace.api.renderers import OneAnswer
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 

@@ -11,7 +11,7 @@ from django.core import mail
 from django.core.cache import cache
 from django.test import Client
 
-from config.mail import WrongMailAddress, mail_settings
+from config.environment import WrongMailAddress, mail_settings
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db

@@ -12,7 +12,7 @@ from missions import tasks
 from missions.models import Mission
 from missions.services import NO_SHORTFALL
 from planning.solver import solver
-from planning.solver.progress import Progress
+from planning.solver.search import Progress
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world

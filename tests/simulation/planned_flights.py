@@ -17,10 +17,10 @@ from planning.rules import FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending, fly_mission
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 from tests.telemetry.estimation.routes import drawn_route, route_on_line
 
 HOME = LonLat(9.0, 47.0)

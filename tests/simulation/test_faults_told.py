@@ -2,8 +2,7 @@
 
 import pytest
 
-from simulation.flight.faults import Faults
-from simulation.flight.faults_told import WrongFaults, faults_told
+from simulation.flight.faults import Faults, WrongFaults, faults_told
 
 BEFORE = Faults(motor_failed=1, link_lost_until_s=50.0, clock_offset_s=3.0)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from mavlink.vehicle_plan import MissionType
-from simulation.flight.ground import FlatGround
+from simulation.flight.plant import FlatGround
 from simulation.flight.states import Mode
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour

@@ -14,7 +14,7 @@ from mavsdk.plugins.mission_raw import MissionRaw, MissionRawError
 from mavsdk.plugins.param import Param, ParamError
 from mavsdk.plugins.telemetry import Telemetry
 
-from simulation.flight.ground import FlatGround
+from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour

@@ -7,7 +7,7 @@ from mavlink.vehicle_plan import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
-from simulation.flight.ground import FlatGround
+from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
 from telemetry.models import TelemetryRecord, UavLink

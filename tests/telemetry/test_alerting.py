@@ -10,7 +10,7 @@ from django.utils.translation import override
 from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
 from missions.services.commands.outbox import queue_command
-from telemetry.alerting.watched import WatchedUav
+from telemetry.alerting.situation import WatchedUav
 from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alert_words import alert_words

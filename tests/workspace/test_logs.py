@@ -17,7 +17,7 @@ from django.test import Client, override_settings
 from django.urls import reverse
 from django.utils import timezone
 
-from config.log_settings import log_settings
+from config.environment import log_settings
 from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
 from operation.redaction import without_secrets

@@ -11,7 +11,7 @@ from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.passed import passed_on
 from planning.connection_points import Ways
 from planning.problem import End, Objective, Problem, Routes
-from planning.solver.progress import Progress
+from planning.solver.search import Progress
 from planning.trajectory.heights import FloatArray
 
 UNITS = {Objective.TOTAL: "m", Objective.MAKESPAN: "s", Objective.TIME: "s", Objective.ENERGY: "Wh"}

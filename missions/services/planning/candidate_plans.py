@@ -17,7 +17,7 @@ from missions.services.targets.visits import visits_of_places
 from planning.connection_points import Terminal, ways_between
 from planning.energy.duration import target_s
 from planning.problem import Problem, Solution
-from planning.solver.progress import OnProgress, Progress
+from planning.solver.search import OnProgress, Progress
 from planning.solver.solver import Stop
 from planning.trajectory.heights import GroundHeights, inspection_agl_m
 

@@ -18,7 +18,7 @@ from planning.energy.duration import ready_s
 from planning.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
 from planning.rules import FlightRules
 from planning.solver.exact import MAX_TARGETS
-from planning.solver.progress import OnProgress, Progress
+from planning.solver.search import OnProgress, Progress
 from planning.solver.solver import PROVEN_GAP, Stop, solve
 from planning.solver.sorties import merit_of
 

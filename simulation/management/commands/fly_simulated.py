@@ -14,7 +14,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.ground import FlatGround
+from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, WrongPace
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of

@@ -22,7 +22,7 @@ export const EMPTY = Object.freeze({
   ...UNSAID,
 });
 
-export const MAX_TARGETS = 500; // of a mission: planning/solver/rules.py
+export const MAX_TARGETS = 500; // of a mission: planning/rules.py
 
 /**
  * Two picks of the same place are one target: the asset whole, or one point of it.

@@ -4,7 +4,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from telemetry.alerting.acts import ACTS, LAND, RETURN, acts
 from telemetry.alerting.advice import (
     COMES_DOWN_LOW,
     FALLS_SHORT,
@@ -19,7 +18,7 @@ from telemetry.alerting.advice import (
 )
 from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.finding import CRITICAL, RANK, WARNING, Finding
+from telemetry.alerting.finding import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Finding, acts
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.said import is_worse, words_of_battery
 from telemetry.alerting.situation import Situation

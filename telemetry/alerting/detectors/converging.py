@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from telemetry.alerting.acts import ACTS, HOLD, acts
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, WARNING, Finding, acts
 from telemetry.alerting.meetings import FAR_HEIGHT_M, FAR_M
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting

@@ -3,9 +3,8 @@
 import math
 
 from inspection.geodesy import LonLat
-from telemetry.alerting.acts import ACTS, HOLD, LAND, TAKE_OVER, acts
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, LAND, TAKE_OVER, WARNING, Finding, acts
 from telemetry.alerting.memory import position_of
 from telemetry.alerting.situation import Situation
 from telemetry.estimation.report import Report

@@ -13,9 +13,8 @@ from telemetry.alerting.limits import Limits, sound_limits
 from telemetry.alerting.meetings import elsewhere, meetings, ways_of
 from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.order import CODES, DETECTORS
-from telemetry.alerting.situation import Situation
+from telemetry.alerting.situation import Situation, WatchedUav
 from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
-from telemetry.alerting.watched import WatchedUav
 from telemetry.selectors.alert_facts import (
     Loaded,
     closed_by_people,

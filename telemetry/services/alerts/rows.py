@@ -14,7 +14,7 @@ from telemetry.alerting.advice import answer_of
 from telemetry.alerting.book import Closed, Opened
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
-from telemetry.alerting.watched import WatchedUav
+from telemetry.alerting.situation import WatchedUav
 from telemetry.models import Alert
 from telemetry.selectors.alerts import WORST, OpenRow
 from telemetry.services.alerts.alerts import CLOSED, OPENED, step

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from planning.problem import End, Objective, Problem, Reason, Routes, UavStart, Visit, merit
 from planning.solver.exact import best_plan
-from planning.solver.progress import Progress
 from planning.solver.reach import needed_range_m, reachable
+from planning.solver.search import Progress
 from planning.solver.solver import never, no_report, searched_plan, solve
 from tests.cases import long
 from tests.planning.solver.random_problems import BY_WAYS, best_merit, mixed_problem, random_problem

@@ -9,9 +9,9 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.events import Event, ItemReached
+from simulation.flight.faults import Weather
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 
 HOME = LonLat(9.0, 47.0)
 EARTH = Geod(ellps="WGS84")

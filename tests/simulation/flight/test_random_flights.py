@@ -10,10 +10,9 @@ from pymavlink.dialects.v20 import common as mavlink
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.faults import Faults
+from simulation.flight.faults import Faults, Weather
 from simulation.flight.states import Gps, Mode, UavState
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 from tests.simulation.flight.lists import HOME, NAN, place, wind
 
 COMMANDS = (16, 16, 16, 17, 18, 19, 20, 21, 22, 22, 93, 115, 177, 178, 178, 183, 195, 197, 203, 206, 2000, 2001, 31_000)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending
 from simulation.flight.route_file import RouteFile
 from simulation.flight.route_flight import RouteFlight, fly_route
-from simulation.flight.weather import Weather
 from tests.simulation.flight.lists import HOME, off_m, place, wind
 from tests.simulation.flight.track_judge import beside_m
 

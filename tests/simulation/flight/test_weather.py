@@ -8,8 +8,8 @@ import pytest
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.body import VERTICAL_SHARE, Gusts
+from simulation.flight.faults import ImpossibleWeather, Weather
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import ImpossibleWeather, Weather
 from tests.simulation.flight.lists import HOME, airborne, step, wind
 
 IRIS = AIRFRAMES["iris"]

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionType
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.ground import FlatGround
+from simulation.flight.plant import FlatGround
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.flavour import Flavour

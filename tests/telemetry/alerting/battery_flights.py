@@ -9,7 +9,7 @@ import numpy as np
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL
-from telemetry.alerting.watched import WatchedUav
+from telemetry.alerting.situation import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, State, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch

@@ -11,8 +11,8 @@ import shapely
 
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.limits import Limits
+from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import Held, NearZone, Order
-from telemetry.alerting.watched import WatchedUav
 from tests.telemetry.alerting.truth import START_S, State, TrueFlight
 
 LIMITS = Limits()

@@ -8,12 +8,11 @@ import pytest
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from mavlink.rtl import own_return
-from telemetry.alerting.acts import acts_of
 from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detectors import battery
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding, acts_of
+from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import LinkFacts, Order
-from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch

@@ -10,8 +10,8 @@ from telemetry.alerting.detector import POLL_INTERVAL_S
 from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import LinkFacts
-from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault, link_lost
 from tests.telemetry.alerting.truth import MISSION, START_S, Instruments, TrueFlight, true_flight

@@ -3,11 +3,10 @@
 import pytest
 
 from mavlink.decoding.measurement import Measurement
-from telemetry.alerting.acts import acts_of
 from telemetry.alerting.detectors import gps
-from telemetry.alerting.finding import CRITICAL, WARNING
+from telemetry.alerting.finding import CRITICAL, WARNING, acts_of
+from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import LinkFacts
-from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S
 from tests.telemetry.alerting.watch import Watch

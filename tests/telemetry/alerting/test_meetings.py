@@ -15,8 +15,8 @@ from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.meetings import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
 from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import FlightModel
-from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.estimate import Ellipse, Estimate
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.faults import LIMITS

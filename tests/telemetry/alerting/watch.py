@@ -7,9 +7,8 @@ from telemetry.alerting.book import RANK, Closed, changes
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.memory import Memory
 from telemetry.alerting.order import DETECTORS
-from telemetry.alerting.situation import Situation
+from telemetry.alerting.situation import Situation, WatchedUav
 from telemetry.alerting.surroundings import Held
-from telemetry.alerting.watched import WatchedUav
 
 
 @dataclass

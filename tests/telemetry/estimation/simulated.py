@@ -22,9 +22,9 @@ from mavlink.vehicle_plan import MissionItem
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.events import ItemReached
+from simulation.flight.faults import Weather
 from simulation.flight.states import MissionState, Mode
 from simulation.flight.uav import SimulatedUav
-from simulation.flight.weather import Weather
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mode_numbers import usual_number
 from telemetry.estimation.knowledge import Knowledge
