@@ -20,6 +20,13 @@ from operation.log_context import ABOUT_REQUEST, REQUEST_ID_HEADER, Facts, about
 from operation.metrics import REQUEST_SECONDS, REQUESTS
 from operation.readiness import NO_DATABASE, database_faults, redis_faults
 
+logger = logging.getLogger("spanwise.request")
+METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
+NO_ROUTE = "none"
+_KWARGS = {"mission_id": "mission", "uav_id": "uav", "job_id": "job"}
+_counters: dict[tuple[str, str, int], Counter] = {}
+_timers: dict[tuple[str, str], Histogram] = {}
+
 
 @never_cache
 @require_safe
@@ -58,16 +65,6 @@ def missing_ground() -> list[str]:
 
 
 PROBES: dict[str, Callable[[HttpRequest], HttpResponse]] = {"/healthz": healthz, "/readyz": readyz}
-
-
-logger = logging.getLogger("spanwise.request")
-
-METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
-NO_ROUTE = "none"
-_KWARGS = {"mission_id": "mission", "uav_id": "uav", "job_id": "job"}
-
-_counters: dict[tuple[str, str, int], Counter] = {}
-_timers: dict[tuple[str, str], Histogram] = {}
 
 
 class ObservedRequests:

@@ -32,6 +32,7 @@ TAKEN = {409: OpenApiResponse(description="The name, the external id or the MAVL
 CHANGE_ANSWERS = {**TAKEN, **PRECONDITION_ANSWERS}
 DELETE_ANSWERS = {204: None, 409: OpenApiResponse(description="Something still points at it."), **PRECONDITION_ANSWERS}
 RESTORE_CONFLICT = {409: OpenApiResponse(description="It was not deleted, or its name is taken in the meantime.")}
+RETRY_AFTER_S = 3  # a new graph is built within seconds
 
 
 @contextmanager
@@ -80,9 +81,6 @@ def _changed(error: FleetChanged, current: Any) -> ApiProblem:
     who = last.actor.display_name if last and last.actor else _("a program")
     message = _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}
     return ApiProblem(412, "changed", message, details={"current": current, "changed_by": who, "changed_at": last and last.recorded_at})
-
-
-RETRY_AFTER_S = 3  # a new graph is built within seconds
 
 
 @contextmanager

@@ -29,6 +29,8 @@ from workspace.api.idempotency import idempotent
 from workspace.api.permissions import FLYING
 from workspace.api.signed_in import SignedInRequest
 
+SHOWN_AFTER = timedelta(minutes=5)
+
 
 class MissionReturns(APIView):
     @extend_schema(
@@ -43,9 +45,6 @@ class MissionReturns(APIView):
         with api_problems():
             checks = return_checks(mission)
         return Response(ReturnChecksSerializer({"results": [asdict(check) for check in checks]}).data)
-
-
-SHOWN_AFTER = timedelta(minutes=5)
 
 
 class PlannedStartsList(APIView):

@@ -10,6 +10,10 @@ from planning.energy.conditions import Conditions
 MAX_GUSTS_MPS = 15.0
 MAX_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe
 GUST_TIME_S = 3.0
+MOTORS = 4
+FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
+WHOLE = frozenset({"motor_failed", "stuck_item"})
+LASTING = ("link_lost", "gps_lost")
 
 
 class ImpossibleWeather(ValueError):
@@ -39,9 +43,6 @@ class Weather:
 def _check(name: str, value: float, least: float, most: float) -> None:
     if not (math.isfinite(value) and least <= value <= most):
         raise ImpossibleWeather(f"{name} must be from {least:g} to {most:g}, not {value:g}.")
-
-
-MOTORS = 4
 
 
 class ImpossibleFault(ValueError):
@@ -81,10 +82,6 @@ class Faults:
     def is_gps_lost(self, now_s: float) -> bool:
         return now_s < self.gps_lost_until_s
 
-
-FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
-WHOLE = frozenset({"motor_failed", "stuck_item"})
-LASTING = ("link_lost", "gps_lost")
 
 Changed = Callable[[Faults, float], Faults]
 

@@ -9,6 +9,10 @@ from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOf
 from simulation.flight.orders import TakePhotos
 from simulation.flight.states import Mode
 
+MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
+STOPPED_WITHIN_M = 0.5
+MAX_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
+
 
 class Camera:
     """`number` photos have been taken since the start."""
@@ -47,11 +51,6 @@ class Camera:
                 self._due_s = now_s
         self.number += 1
         return True
-
-
-MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
-STOPPED_WITHIN_M = 0.5
-MAX_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
 
 
 class Mission:

@@ -14,24 +14,6 @@ from inspection.geodesy import LonLat
 from simulation.flight.airframe import Airframe
 from simulation.flight.faults import MOTORS
 
-
-class Ground(Protocol):
-    """Anything that knows how high the ground lies above sea level [m]; NaN where it does not."""
-
-    def elevation_m(self, position: LonLat) -> float: ...
-
-
-@dataclass(frozen=True, slots=True)
-class FlatGround:
-    """The same height everywhere."""
-
-    height_m: float = 0.0
-
-    def elevation_m(self, position: LonLat) -> float:
-        return self.height_m
-
-
-MODELS = Path(__file__).resolve().parent.parent / "aircraft_models"
 ROTORS = 4
 AXES = ("thrust", "roll", "pitch", "yaw")
 FOOT_M = 0.3048
@@ -66,6 +48,25 @@ _SET_POINTS = (
     "setpoint/accel-down-mps2",
     "setpoint/heading-rad",
 )
+
+
+class Ground(Protocol):
+    """Anything that knows how high the ground lies above sea level [m]; NaN where it does not."""
+
+    def elevation_m(self, position: LonLat) -> float: ...
+
+
+@dataclass(frozen=True, slots=True)
+class FlatGround:
+    """The same height everywhere."""
+
+    height_m: float = 0.0
+
+    def elevation_m(self, position: LonLat) -> float:
+        return self.height_m
+
+
+MODELS = Path(__file__).resolve().parent.parent / "aircraft_models"
 
 
 def flight_model(code: str, step_s: float, seed: int) -> jsbsim.FGFDMExec:

@@ -9,6 +9,8 @@ HOLD, RETURN, LAND = "hold", "return", "land"  # commands
 TAKE_OVER = "take-over"  # no command: a pilot on site flies it
 KINDS = (HOLD, RETURN, LAND, TAKE_OVER)
 _OF_CODE = {"no-progress": HOLD, "off-route": HOLD, "zone": HOLD, "weather": RETURN, "height-off": HOLD}
+CRITICAL, WARNING, ADVISORY = "critical", "warning", "advisory"
+RANK = {ADVISORY: 1, WARNING: 2, CRITICAL: 3}
 
 
 def acts(*kinds: str, uav_id: int) -> list[dict[str, Any]]:
@@ -21,10 +23,6 @@ def acts_of(code: str, uav_id: int | None, details: Mapping[str, Any]) -> list[d
     if ACTS in details:
         return [act | {"kind": HOLD} if act["kind"] == "pause" else act for act in details[ACTS]]  # of before there was one Hold
     return acts(_OF_CODE[code], uav_id=uav_id) if uav_id is not None and code in _OF_CODE else []
-
-
-CRITICAL, WARNING, ADVISORY = "critical", "warning", "advisory"
-RANK = {ADVISORY: 1, WARNING: 2, CRITICAL: 3}
 
 
 @dataclass(frozen=True, slots=True)

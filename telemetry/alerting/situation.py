@@ -13,6 +13,11 @@ from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meetin
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
 
+Key = tuple[str, str]  # code and subject
+FRESH_S, FRESH_INTERVALS = 5.0, 2.5
+AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
+AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
+
 
 @dataclass(frozen=True, slots=True)
 class WatchedUav:
@@ -32,12 +37,6 @@ class WatchedUav:
     newest: Report | None = None
     estimate: Estimate | None = None
     is_twin: bool = False  # simulated, beside the UAV that it is the twin of
-
-
-Key = tuple[str, str]  # code and subject
-FRESH_S, FRESH_INTERVALS = 5.0, 2.5
-AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
-AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,10 @@ from telemetry.services.links.sightings import Sighting
 SYSTEMS = range(1, 255)
 ASK_AGAIN_S = 5.0
 POSITION = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
+SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
+SECOND_SENDER = "second-sender"
+LATE_BY_S = 1.0  # that a frame may have been under way for longer than others before it
+COPIED = "copied"  # taken before, and brought by a second address
 
 
 @dataclass
@@ -77,12 +81,6 @@ class UnknownSenders:
                 latitude_deg=None if position is None else position.lat,
             )
         )
-
-
-SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
-SECOND_SENDER = "second-sender"
-LATE_BY_S = 1.0  # that a frame may have been under way for longer than others before it
-COPIED = "copied"  # taken before, and brought by a second address
 
 
 @dataclass

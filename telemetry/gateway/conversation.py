@@ -23,6 +23,8 @@ from telemetry.gateway.session import Session
 from workspace.live.timed_waits import wait_for_event
 
 MAX_NAP_S = 0.5
+OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
+READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
 
 
 class Keeper(Protocol):
@@ -77,10 +79,6 @@ class Conversation:
         nap_s = MAX_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), MAX_NAP_S)
         if await wait_for_event(self._heard, nap_s):
             self._heard.clear()
-
-
-OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
-READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,12 @@ from telemetry.services.links.links import UNHEARD_S, renew_leases, take_leases
 from workspace.live.lease_times import held_until_s
 from workspace.live.timed_waits import wait_for_event
 
+logger = logging.getLogger(__name__)
+LEASES_INTERVAL_S = 1.0
+RETRY_S = 0.5
+GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
+WAITED_TOO_LONG_S = 15.0
+
 
 @dataclass(frozen=True)
 class KnownUav:
@@ -51,13 +57,6 @@ def known_uavs() -> dict[int, KnownUav]:
         credential_id, key = own[0] if own else (None, None)
         known[system] = KnownUav(uav_id, organisation_id, name, system, allows_unsigned, credential_id, key, tuple(own[1:]))
     return known
-
-
-logger = logging.getLogger(__name__)
-LEASES_INTERVAL_S = 1.0
-RETRY_S = 0.5
-GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
-WAITED_TOO_LONG_S = 15.0
 
 
 def served_until_s(asked_s: float, lease_s: float) -> float:
