@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from accounts.account_pages import (
+from accounts.pages.password import (
     ChangePasswordPage,
     LostPasswordPage,
     LostPasswordSentPage,
@@ -10,9 +10,9 @@ from accounts.account_pages import (
     NewPasswordSetPage,
     PasswordChangedPage,
 )
-from accounts.second_factor_pages import CodePage, NewCodesPage, RemovePage, SetUpPage
-from accounts.sign_in_pages import SignInPage, SignOutPage
-from accounts.user_pages import AccountPage, AdministrationPage, InvitationPage
+from accounts.pages.second_factors import CodePage, NewCodesPage, RemovePage, SetUpPage
+from accounts.pages.sign_in import SignInPage, SignOutPage
+from accounts.pages.users import AccountPage, AdministrationPage, InvitationPage
 from workspace.offline_pages import OfflinePage, service_worker
 
 urlpatterns = [

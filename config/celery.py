@@ -9,8 +9,8 @@ import os
 from celery import Celery
 from celery.signals import beat_init, task_postrun, worker_before_create_process, worker_process_init
 
-from config.watched_tasks import LoopPulse, watch_tasks
-from config.worker_end import SoftEnd
+from config.task_instrumentation import LoopPulse, watch_tasks
+from config.worker_shutdown import SoftEnd
 from operation.garbage import give_back, keep_what_is_there
 from operation.program import program_begins
 from operation.tracing import begin_tracing
@@ -51,7 +51,7 @@ def give_back_after_task(**_: object) -> None:
 @beat_init.connect
 def tell_of_the_installation(**_: object) -> None:
     """The schedule runs once, so it is the one that tells how long queues are."""
-    from config.state_figures import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
+    from config.system_metrics import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
     InstallationState(app).snapshot().__enter__()
     program_begins("beat")

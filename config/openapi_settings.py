@@ -40,7 +40,7 @@ def openapi_settings() -> dict[str, Any]:
             "Units": "workspace.models.Units",
             "Language": "workspace.models.Language",
             "SignInOutcome": "workspace.models.SignInOutcome",
-            "InvitationState": "accounts.user_serializers.InvitationState",
+            "InvitationState": "accounts.serializers.InvitationState",
             "ProposalState": "inspection.models.ProposalState",
             "GapState": "inspection.models.GapState",
             "MissionState": "missions.models.MissionState",

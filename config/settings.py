@@ -95,9 +95,9 @@ INSTALLED_APPS = [
 ]
 
 MIDDLEWARE = [
-    "config.observed_requests.ObservedRequests",
+    "config.request_instrumentation.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
-    "missions.views.small_plans.PlansShortWay",
+    "missions.views.fast_path.PlansShortWay",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",
@@ -251,7 +251,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # what is not done by then goes back to the queue: config/worker_end.py
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # what is not done by then goes back to the queue: config/worker_shutdown.py
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,
@@ -301,7 +301,7 @@ CELERY_BEAT_SCHEDULE = {
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
-CELERY_BEAT_SCHEDULER = "config.watched_tasks:WatchedScheduler"
+CELERY_BEAT_SCHEDULER = "config.task_instrumentation:WatchedScheduler"
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
 # The field's own rules, each with a unit in its name.

@@ -8,10 +8,10 @@ from django.conf import settings
 
 from inspection import services
 from inspection.models import ImportProposal
-from inspection.services import subscriptions
+from inspection.services.imports import subscriptions
+from inspection.services.imports.uploads import forget_old_uploads as forget_uploads
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
-from inspection.services.uploads import forget_old_uploads as forget_uploads
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.fair_queue import next_waiting, start_fair_job
 from workspace.jobs.job_watch import JobWatch

@@ -4,11 +4,11 @@ from django.urls import path
 
 from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionClose, MissionDispatch, MissionRevoke
-from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
+from missions.views.manual_edits import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.plans import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.selections import SelectionDetail, SelectionList

@@ -14,7 +14,7 @@ from inspection.admin_json import StrictJSONField
 from inspection.admin_map import GeoJSONField
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
-from inspection.services.subscriptions import change_subscription
+from inspection.services.imports.subscriptions import change_subscription
 from inspection.zones.schedule import checked_schedule
 from workspace.api.signed_in import user_of
 

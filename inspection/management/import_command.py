@@ -12,9 +12,9 @@ from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import transaction
 
 from inspection.models import MAX_REMOVED_PERCENT, DataImport, ImportProposal, ProposalState
+from inspection.services.imports.uploads import PART_BYTES, UploadTooLarge, check_size_for, store_upload
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.bounds import KINDS
-from inspection.services.uploads import PART_BYTES, UploadTooLarge, check_size_for, store_upload
 from inspection.tasks import send_job_of
 
 Progress = Callable[[str, float], None]

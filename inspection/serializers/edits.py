@@ -6,7 +6,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind, HeightReference
-from inspection.services.geometry_input import asset_shape, bridge_stored, stored, zone_shape
+from inspection.services.imports.geometry import asset_shape, bridge_stored, stored, zone_shape
 from inspection.zones.schedule import checked_schedule
 from workspace.api import strict_serializers as serializers
 from workspace.api.errors import ApiProblem

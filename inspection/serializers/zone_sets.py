@@ -5,7 +5,7 @@ from typing import Any
 from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSetVersion, ZoneSubscription
 from inspection.selectors.zone_sets import CountedZoneSet
 from inspection.serializers.features import SourceSerializer, source_json
-from inspection.services.zone_import import FORMAT_NAMES
+from inspection.services.imports.zones import FORMAT_NAMES
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.http_client import OutgoingRefused, check_address

@@ -3,14 +3,14 @@
 from inspection.importers.rows import AssetFileError
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.zones.zone_file import ZoneFileError
-from inspection.services.asset_import import UnfinishedMapping, import_assets
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
 from inspection.services.gaps import find_gaps
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
-from inspection.services.osm_import import import_osm
-from inspection.services.terrain_import import import_terrain
-from inspection.services.zone_import import import_zones
+from inspection.services.imports.assets import UnfinishedMapping, import_assets
+from inspection.services.imports.osm import import_osm
+from inspection.services.imports.terrain import import_terrain
+from inspection.services.imports.zones import import_zones
 
 __all__ = [
     "AssetFileError",

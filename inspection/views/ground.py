@@ -23,7 +23,7 @@ from inspection.selectors import Box, GroundSummary, NoSuchTile, ground_edition
 from inspection.selectors.scene import RECIPE, UnfitBox, check_box, scene_in
 from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdictSerializer
 from inspection.serializers.scene import SceneSerializer, scene_json
-from inspection.services.geometry_input import area_m2, asset_shape, length_m, zone_shape
+from inspection.services.imports.geometry import area_m2, asset_shape, length_m, zone_shape
 from inspection.views.parameters import BOX_TEXT, box_of, invalid
 from workspace.api.permissions import CURATORS
 from workspace.api.renderers import OneAnswer

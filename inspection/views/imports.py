@@ -26,9 +26,9 @@ from inspection.serializers.imports import (
     change_feature,
     proposal_json,
 )
-from inspection.services.overpass import area_of
+from inspection.services.imports.overpass import area_of
+from inspection.services.imports.uploads import UploadTooLarge, check_size_for
 from inspection.services.proposals import pipeline
-from inspection.services.uploads import UploadTooLarge, check_size_for
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone

@@ -27,7 +27,7 @@ from inspection.serializers.terrain import (
     zone_along_json,
     zone_margins_json,
 )
-from inspection.services.terrain_import import remove_terrain
+from inspection.services.imports.terrain import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from
 from inspection.terrain.profile import samples_along
 from inspection.views.parameters import LON_LAT, invalid

@@ -12,7 +12,7 @@ from rest_framework.views import APIView
 from inspection.models import Upload
 from inspection.selectors.imports import upload_of_id
 from inspection.serializers.imports import UploadInputSerializer, UploadSerializer, upload_json
-from inspection.services.uploads import (
+from inspection.services.imports.uploads import (
     TooManyUploads,
     UploadGap,
     UploadInUse,

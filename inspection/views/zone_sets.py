@@ -27,10 +27,10 @@ from inspection.serializers.zone_sets import (
     version_json,
     zone_set_json,
 )
+from inspection.services.imports.subscriptions import AlreadySubscribed, ask_to_fetch, change_subscription, subscribe, unsubscribe
+from inspection.services.imports.zone_sets import empty_zone_set
 from inspection.services.proposals.pipeline import start_proposal
 from inspection.services.proposals.zones import roll_back_name
-from inspection.services.subscriptions import AlreadySubscribed, ask_to_fetch, change_subscription, subscribe, unsubscribe
-from inspection.services.zone_sets import empty_zone_set
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from workspace.api.errors import ApiProblem

@@ -17,8 +17,8 @@ from missions.serializers.plain_request import plain_request
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.services.targets.reachability import reachability
+from missions.views.fast_path import small_plan
 from missions.views.problems import api_problems
-from missions.views.small_plans import small_plan
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.renderers import FastJSONRenderer

@@ -3,8 +3,8 @@
 import math
 
 from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
-from simulation.flight.cockpit import Cockpit
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
+from simulation.flight.manoeuvre_context import Cockpit
 from simulation.flight.manoeuvres import Hold, Land, Manoeuvre, Return
 from simulation.flight.mission import Mission
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart

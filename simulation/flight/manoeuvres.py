@@ -3,8 +3,8 @@
 import math
 from typing import Protocol
 
-from simulation.flight.cockpit import Cockpit
 from simulation.flight.course import Vector, Via
+from simulation.flight.manoeuvre_context import Cockpit
 from simulation.flight.states import Mode
 
 INSIDE_M = 0.1  # by which the chords may lie inside the circle

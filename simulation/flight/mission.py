@@ -1,10 +1,10 @@
 """A mission as a manoeuvre: the orders of its items, one run between two stops after the other."""
 
 from simulation.flight import orders as flown
-from simulation.flight.cockpit import Cockpit
 from simulation.flight.course import Via
 from simulation.flight.events import ItemReached, MissionEnded
 from simulation.flight.guidance import Gate
+from simulation.flight.manoeuvre_context import Cockpit
 from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOff
 from simulation.flight.orders import TakePhotos
 from simulation.flight.states import Mode

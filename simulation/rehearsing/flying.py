@@ -10,7 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from mavlink.approved_route import HOVER, Flight, FrozenRoute
 from mavlink.vehicle_plan import MissionItem
-from simulation.verdict.flown import NO_WAYPOINT, Ending, FlownFlight, FlownRoute, FlownTrack
+from simulation.assessment.flown import NO_WAYPOINT, Ending, FlownFlight, FlownRoute, FlownTrack
 
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
 STEP_S = 0.04  # of a UAV's step

@@ -7,8 +7,8 @@ import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute
-from simulation.verdict.flown import FloatArray
-from simulation.verdict.judging import Surroundings
+from simulation.assessment.flown import FloatArray
+from simulation.assessment.judging import Surroundings
 
 BESIDE_DEG = 0.02  # some 2 km beside the waypoints, as far as verdicts tell of zones
 LOOK_EACH_M = 30.0  # at heights, along the routes

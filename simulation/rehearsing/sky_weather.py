@@ -1,7 +1,7 @@
 """The air of a set of conditions, as simulated UAVs fly in it."""
 
 from simulation.flight.faults import MAX_GUSTS_MPS, MAX_TURBULENCE_MPS, Weather
-from simulation.rehearsing.sky import Sky
+from simulation.rehearsing.weather_scenario import Sky
 
 
 def weather_of(sky: Sky) -> Weather:

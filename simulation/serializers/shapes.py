@@ -2,7 +2,7 @@
 
 from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
-from simulation.rehearsing.sky import Named
+from simulation.rehearsing.weather_scenario import Named
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared, JobErrorField
 from workspace.models import JobState

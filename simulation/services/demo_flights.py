@@ -16,7 +16,7 @@ from missions.services.commands.refused import refuse
 from missions.services.commands.steering import command_uav
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation, SimulationState
-from simulation.rehearsing.sky import Named, named_sky
+from simulation.rehearsing.weather_scenario import Named, named_sky
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.vehicle_models import PRESENT
 from workspace.models import User

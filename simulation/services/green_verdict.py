@@ -7,7 +7,7 @@ from inspection.selectors.planning import planning_read
 from missions.models import Mission
 from missions.services.commands.refused import Reason, Refused
 from simulation.models import Rehearsal, RehearsalRule, VerdictLevel
-from simulation.rehearsing.sky import Named, named_sky, sky_to_json
+from simulation.rehearsing.weather_scenario import Named, named_sky, sky_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan

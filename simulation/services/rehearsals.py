@@ -16,6 +16,11 @@ from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
 from missions.services.missions import note
+from simulation.assessment.finding import Finding, Level, worst
+from simulation.assessment.flown import FlownRoute
+from simulation.assessment.judging import Verdict, judge, wind_finding
+from simulation.assessment.limits import Limits, limits_to_json
+from simulation.assessment.stored import track_to_json, verdict_to_json
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said
 from simulation.flight.states import Mode, Outcome, Severity, UavState
@@ -23,17 +28,12 @@ from simulation.flight.uav import SimulatedUav
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import MakeVehicle, Start, Vehicle, fly
 from simulation.rehearsing.ground import BlockedGround, Heights
-from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
 from simulation.rehearsing.sky_weather import weather_of
+from simulation.rehearsing.weather_scenario import Sky, sky_from_json, sky_to_json
 from simulation.services.fleet import StandIn, stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan, surroundings_of
 from simulation.vehicle_protocol.havens import havens_of
-from simulation.verdict.finding import Finding, Level, worst
-from simulation.verdict.flown import FlownRoute
-from simulation.verdict.judging import Verdict, judge, wind_finding
-from simulation.verdict.limits import Limits, limits_to_json
-from simulation.verdict.stored import track_to_json, verdict_to_json
 from workspace.jobs.services import cancel_job, create_job_within, finish_job
 from workspace.models import Job, User
 

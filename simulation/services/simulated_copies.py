@@ -19,7 +19,7 @@ from missions.services.commands.refused import Reason, refuse, refuse_for
 from missions.services.fleet.uavs import change_uav, create_uav
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
-from simulation.rehearsing.sky import Sky
+from simulation.rehearsing.weather_scenario import Sky
 from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.simulated_flights import FLOWN, start_simulated_flights
 from simulation.vehicle_models import PRESENT

@@ -14,7 +14,7 @@ from missions.services.fleet.rows import SystemIdQuota
 from missions.services.fleet.uavs import change_uav
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.rehearsing.flying import RouteToFly
-from simulation.rehearsing.sky import Sky, sky_to_json
+from simulation.rehearsing.weather_scenario import Sky, sky_to_json
 from simulation.services.fleet import StandIn
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.simulations import check_quota, hold_starts, lifetime_end, note_start

@@ -16,7 +16,7 @@ from django.utils import timezone
 
 from inspection.geodesy import LonLat
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState, VehicleFlavour
-from simulation.rehearsing.sky import Sky, sky_to_json
+from simulation.rehearsing.weather_scenario import Sky, sky_to_json
 from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
 from workspace.audit import record_change

@@ -5,12 +5,12 @@ import numpy as np
 from inspection.network.spans import Spans, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.planning import PlanningGround, heights_at
+from simulation.assessment.flown import FloatArray
+from simulation.assessment.judging import Surroundings
+from simulation.assessment.obstacles import Standing
 from simulation.rehearsing.ground import Heights
 from simulation.rehearsing.ground_content import ground_content
 from simulation.services.plan_to_fly import PlanToFly
-from simulation.verdict.flown import FloatArray
-from simulation.verdict.judging import Surroundings
-from simulation.verdict.obstacles import Standing
 
 SAME_DEG = 1e-6
 BESIDE_DEG = 0.01  # some kilometre beside the waypoints: flights that stray farther have failed by then

@@ -18,8 +18,8 @@ from operation import pulse
 from simulation.flight.faults import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from simulation.rehearsing.ground import BlockedGround
-from simulation.rehearsing.sky import sky_from_json
 from simulation.rehearsing.sky_weather import weather_of
+from simulation.rehearsing.weather_scenario import sky_from_json
 from simulation.services.simulator_leases import (
     end_single_ones,
     end_those_over,

@@ -18,7 +18,7 @@ from missions.views.problems import refusals
 from planning.energy.conditions import conditions_from_json
 from simulation import selectors
 from simulation.models import Rehearsal
-from simulation.rehearsing.sky import Named
+from simulation.rehearsing.weather_scenario import Named
 from simulation.serializers import shapes
 from simulation.serializers.representations import planned_points, rehearsal_detail_json, rehearsal_json, track_json
 from simulation.services.plan_to_fly import plan_to_fly

@@ -5,7 +5,7 @@ from typing import Any
 
 from inspection.views.parameters import invalid
 from planning.energy.conditions import Conditions, InvalidConditions
-from simulation.rehearsing.sky import Named, Sky, named_sky, own_sky
+from simulation.rehearsing.weather_scenario import Named, Sky, named_sky, own_sky
 
 
 def skies_of(asked: Sequence[Any], planned: Conditions) -> list[Sky]:

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
-from telemetry.alerting.memory import position_of
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import NEAR_VERTEX_M
-from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.report import Report
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import Limits
-from telemetry.alerting.situation import Situation
 
 POLL_INTERVAL_S = 1.0
 

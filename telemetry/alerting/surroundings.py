@@ -102,7 +102,7 @@ class Meeting:
 
     Distances `lateral_m` and `height_m` are at the closest, with the places as estimated; `least_` at the worst of their bounds, by which
     an alert is raised; `now_` of this moment, as measured or estimated, within `bound_m` across the ground (95 of 100 times). closing_mps
-    is above 0 while they come nearer. `yields_id` is the UAV that is best held, `why` a reason of telemetry/alerting/meetings.py.
+    is above 0 while they come nearer. `yields_id` is the UAV that is best held, `why` a reason of telemetry/alerting/conflicts.py.
     """
 
     other_id: int

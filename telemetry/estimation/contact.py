@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from telemetry.estimation.along_track_filter import clock_of
 from telemetry.estimation.motion import State
 from telemetry.estimation.outlook import end_of
-from telemetry.estimation.pace import clock_of
 from telemetry.estimation.profile import Profile
 
 FloatArray = NDArray[np.float64]

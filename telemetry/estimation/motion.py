@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from telemetry.estimation.belief import CHI2_95, Belief, reach2_of, round_covariance
-from telemetry.estimation.pace import Pace, ahead, velocity
+from telemetry.estimation.along_track_filter import Pace, ahead, velocity
 from telemetry.estimation.phases import Phase
 from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, Profile
+from telemetry.estimation.state_estimate import CHI2_95, Belief, reach2_of, round_covariance
 
 FloatArray = NDArray[np.float64]
 

@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 
-from telemetry.estimation.belief import NORMAL_95
+from telemetry.estimation.along_track_filter import clock_of
 from telemetry.estimation.estimate import Arrival
 from telemetry.estimation.motion import State, Track
-from telemetry.estimation.pace import clock_of
+from telemetry.estimation.state_estimate import NORMAL_95
 
 SURE_S = 2.0
 LASTS_SHARE = 0.1  # by which a whole flight's pace may differ from what was seen of it: winds that come up

@@ -8,13 +8,13 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.decoding.measurement import Measurement
-from telemetry.estimation.belief import Belief
+from telemetry.estimation.along_track_filter import PLACES, Pace, Seen, anywhere, at_start, seen
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after
-from telemetry.estimation.pace import PLACES, Pace, Seen, anywhere, at_start, seen
 from telemetry.estimation.phases import Phase, phase_of
 from telemetry.estimation.profile import Profile, way_home
 from telemetry.estimation.report import Report
+from telemetry.estimation.state_estimate import Belief
 
 GPS_VARIANCE_M2 = 0.45**2  # each way, of what no two reports share
 BARO_VARIANCE_M2 = 0.25**2

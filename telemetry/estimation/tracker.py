@@ -12,7 +12,6 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from telemetry.estimation.belief import Belief
 from telemetry.estimation.contact import PROMPT_S, SILENT_INTERVALS, SILENT_S, Hearing
 from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
 from telemetry.estimation.knowledge import Knowledge
@@ -22,6 +21,7 @@ from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.phases import Phase
 from telemetry.estimation.profile import profile_of
 from telemetry.estimation.report import Report, sound
+from telemetry.estimation.state_estimate import Belief
 from telemetry.estimation.step import Course, first_state, next_state
 
 KEPT_S = 300.0  # of reports: one that comes later than that changes nothing

@@ -21,16 +21,16 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.frames import Frame, message_of
 from missions.services.commands.commands import CHANNEL
 from operation import pulse
-from telemetry.gateway.belief import UnknownSenders
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.desk import Desk
+from telemetry.gateway.dispatcher import Desk
 from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
 from telemetry.gateway.leasing import KnownUav, Leasing, known_uavs
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
+from telemetry.gateway.reporter import Telling
+from telemetry.gateway.sender_authentication import UnknownSenders
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
-from telemetry.gateway.telling import Telling
 from telemetry.services.links.gateway_messages import HeardText
 from telemetry.services.links.links import LinkState, release_leases
 

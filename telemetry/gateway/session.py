@@ -23,13 +23,13 @@ from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.signing import FrameWriter, Refusal
 from mavlink.vehicle_state import VehicleState
 from missions.models import LinkKind
-from telemetry.gateway import greeting
+from telemetry.gateway import heartbeat
 from telemetry.gateway.addresses import MAX_ADDRESSES
-from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
 from telemetry.gateway.leasing import KnownUav
+from telemetry.gateway.message_requests import Questions
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
-from telemetry.gateway.questions import Questions
+from telemetry.gateway.sender_authentication import SENDER_SILENT_S, Belief, is_within
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links.links import Lease, LinkState
 from telemetry.services.links.onboard_lists import Doubt
@@ -274,7 +274,7 @@ class Session:
         if self.lease is None or not self._has_address(now_s):
             return
         if is_manned:
-            self._send([greeting.heartbeat()], now_s)
+            self._send([heartbeat.heartbeat()], now_s)
         if is_within(self.heard_s, now_s, SENDER_SILENT_S):
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
             self.send(self.questions.due(self.state, time.monotonic(), has_position=has_position), now_s)
@@ -324,7 +324,7 @@ class Session:
         if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
             self._greeted[peer.name] = now_s
             self._writer.key = self.belief.key_of(frame)
-            peer.send(self._writer.frame_of(greeting.heartbeat(), now_s))
+            peer.send(self._writer.frame_of(heartbeat.heartbeat(), now_s))
 
     def _take(self, message: Message, now_s: float) -> None:
         kind = message.get_type()

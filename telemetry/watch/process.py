@@ -18,7 +18,7 @@ from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from operation import pulse
 from operation.metrics import ESTIMATED_UAVS, ESTIMATOR_ERROR_M, ESTIMATOR_INNOVATIONS, ESTIMATOR_ROUND_SECONDS
-from telemetry.alerting.situation import WatchedUav
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.estimation.innovation import innovation
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker

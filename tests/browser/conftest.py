@@ -56,7 +56,7 @@ for name, role in {USERS!r}.items():
 """
 MADE_DATA = """
 from inspection.models import DataImport, ImportKind
-from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
+from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 DataImport.objects.filter(kind=ImportKind.OSM).update(is_synthetic=True, attribution=SYNTHETIC_ATTRIBUTION)
 """
 NO_LEFTOVERS = """

@@ -17,10 +17,10 @@ import pytest
 from django.conf import settings
 from django.db import connection
 from django.utils import timezone
+from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportKind, ImportProposal, NoFlyZone, ProposedChange, ZoneSet
 from inspection.services.proposals.pipeline import ask_to_apply, start_proposal
-from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import somebody
 from workspace.jobs.job_watch import INTERVAL_S

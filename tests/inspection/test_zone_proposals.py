@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 from django.db import connection, connections, transaction
+from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportProposal, NoFlyZone, ZoneSet
 from inspection.services import import_zones, save_zone
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read
-from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import somebody
 from tests.inspection.zone_sets import zone_file

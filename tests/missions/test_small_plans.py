@@ -12,10 +12,10 @@ from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone, translation
+from missions.views.fast_path import small_plan
 
 from inspection.models import GraphSnapshot
 from missions import services
-from missions.views.small_plans import small_plan
 from tests.accounts.users import somebody
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
@@ -25,7 +25,7 @@ from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, Role, User
 
 pytestmark = pytest.mark.django_db
-SHORT_WAYS = ("missions.views.small_plans.small_plan", "missions.views.plans.small_plan")
+SHORT_WAYS = ("missions.views.fast_path.small_plan", "missions.views.plans.small_plan")
 CSRF_TOKEN = "k" * 32
 TOLD = ("Content-Type", "Cache-Control", "Vary", "X-Frame-Options", "X-Content-Type-Options")
 
@@ -254,7 +254,7 @@ def test_without_a_network_the_view_says_so(here: World) -> None:
     assert (short.status_code, short.json()["error"]["code"]) == (503, "no_graph")
 
 
-@pytest.mark.parametrize("where", ["missions.views.small_plans.holder_of", "missions.services.planning.planner.edition_now"])
+@pytest.mark.parametrize("where", ["missions.views.fast_path.holder_of", "missions.services.planning.planner.edition_now"])
 def test_without_the_database_the_view_says_so(here: World, where: str) -> None:
     client = program_of(somebody(Role.OPERATOR))
     with mock.patch(where, side_effect=OperationalError("away")):

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from config.system_metrics import InstallationState
 from django.utils import timezone
 
-from config import state_figures
+from config import system_metrics
 from config.celery import app
-from config.state_figures import InstallationState
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import GraphSnapshot, Ground
@@ -75,14 +75,14 @@ def test_beat_tells_of_jobs_by_queue_and_of_a_graph_that_is_behind() -> None:
     GraphSnapshot.objects.create(ground_revision=1, rules={}, arrays=b"", arrays_sha256="", build_s=0.1, **counts)
     Ground.objects.update_or_create(pk=1, defaults={"revision": 2, "changed_at": timezone.now() - timedelta(seconds=700)})
     told = InstallationState(app).read()
-    assert told[state_figures.DATABASE] == told[state_figures.REDIS] == {(): 1.0}
-    assert told[state_figures.JOBS]["planning", "queued"] == 2
-    assert told[state_figures.JOBS]["simulation", "queued"] == 1
-    assert told[state_figures.JOBS]["data", "queued"] == 0
-    assert 89 <= told[state_figures.JOB_AGE]["planning", "queued"] < 500
-    assert told[state_figures.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
-    assert told[state_figures.GRAPH_BEHIND][()] >= 699
-    assert told.keys() == {one.name for one in state_figures.DESCRIBED}
+    assert told[system_metrics.DATABASE] == told[system_metrics.REDIS] == {(): 1.0}
+    assert told[system_metrics.JOBS]["planning", "queued"] == 2
+    assert told[system_metrics.JOBS]["simulation", "queued"] == 1
+    assert told[system_metrics.JOBS]["data", "queued"] == 0
+    assert 89 <= told[system_metrics.JOB_AGE]["planning", "queued"] < 500
+    assert told[system_metrics.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
+    assert told[system_metrics.GRAPH_BEHIND][()] >= 699
+    assert told.keys() == {one.name for one in system_metrics.DESCRIBED}
 
 
 def test_without_redis_the_rest_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,4 +92,4 @@ def test_without_redis_the_rest_is_told(monkeypatch: pytest.MonkeyPatch) -> None
         raise ConnectionRefusedError
 
     monkeypatch.setattr(app, "connection_for_read", away)
-    assert state._of_redis() == {state_figures.REDIS: {(): 0.0}}
+    assert state._of_redis() == {system_metrics.REDIS: {(): 0.0}}

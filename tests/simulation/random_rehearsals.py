@@ -7,6 +7,7 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
+from simulation.assessment.judging import Verdict, judge
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
@@ -20,7 +21,6 @@ from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
-from simulation.verdict.judging import Verdict, judge
 from tests.simulation.rehearsed import loaded, skies
 from workspace.models import User
 

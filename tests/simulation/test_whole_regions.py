@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
+from simulation.assessment.judging import judge
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -19,7 +20,6 @@ from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
-from simulation.verdict.judging import judge
 from tests.missions.flights import an_operator
 from tests.missions.ground_judge import Hills
 from tests.missions.random_flights import cut_out

@@ -1,10 +1,10 @@
 """Which alerts are a reason to plan the rest of a mission again."""
 
 import pytest
+from telemetry.alerting.state_machine import CLEARED, LANDED, Closed
 
 from missions.models import Mission, OfferState, ReplanOffer
 from missions.services.replanning import REPLAN, settle_offers
-from telemetry.alerting.book import CLEARED, LANDED, Closed
 from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
 from telemetry.models import AlertLevel
 from telemetry.services.alerts.alerts import open_alert

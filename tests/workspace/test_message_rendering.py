@@ -47,7 +47,7 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
         "missions/services/targets/assignment.py",
         "planning/solver/solver.py",
         "inspection/importers/osm/reader.py",
-        "inspection/services/osm_import.py",
+        "inspection/services/imports/osm.py",
     ],
 )
 def test_every_step_of_a_job_has_a_word_in_german(path: str) -> None:

@@ -13,7 +13,8 @@ from inspection.importers.assets.suggestion import suggested_mapping
 from inspection.importers.assets.survey import Survey, survey_of
 from inspection.importers.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, Asset, AssetSet, DataImport
-from inspection.services.asset_import import (
+from inspection.services.facts import ASSET_FACTS, asset_facts, differing
+from inspection.services.imports.assets import (
     EXPLANATIONS,
     UNCHANGED,
     Difference,
@@ -28,8 +29,7 @@ from inspection.services.asset_import import (
     told,
     with_what_is_known,
 )
-from inspection.services.facts import ASSET_FACTS, asset_facts, differing
-from inspection.services.imported_ids import count_of_ids
+from inspection.services.imports.external_ids import count_of_ids
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 

@@ -10,7 +10,7 @@ from django.contrib.gis.geos import GEOSGeometry
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.models import ChangeAction, DataImport
 from inspection.services.facts import differing
-from inspection.services.osm_import import OsmDifference, difference_of_osm, import_osm
+from inspection.services.imports.osm import OsmDifference, difference_of_osm, import_osm
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 

@@ -15,8 +15,8 @@ from inspection.importers.terrain.terrain_file import NEEDS_DATUM, datum_of, ope
 from inspection.importers.terrain.vertical_datum import DatumFault
 from inspection.models import ROW_ACTIONS, ChangeAction, DataImport, TerrainTile
 from inspection.selectors.terrain import ground_truth
+from inspection.services.imports.terrain import facts_of, import_terrain, imports_of_name, same_import, sha256_of
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
-from inspection.services.terrain_import import facts_of, import_terrain, imports_of_name, same_import, sha256_of
 from inspection.terrain.height_grid import HeightGrid
 from workspace.models import User
 

@@ -11,8 +11,8 @@ from inspection.importers.zones.records import UnreadRecord, ZoneRecord
 from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
 from inspection.services.facts import differing, zone_facts
-from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
-from inspection.services.zone_import import (
+from inspection.services.imports.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
+from inspection.services.imports.zones import (
     FORMAT_NAMES,
     import_zones,
     make_so,
@@ -21,7 +21,7 @@ from inspection.services.zone_import import (
     set_name_of,
     zone_counts,
 )
-from inspection.services.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
+from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 
 MIN_DEG = 0.0005

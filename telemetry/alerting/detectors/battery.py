@@ -18,10 +18,10 @@ from telemetry.alerting.advice import (
 )
 from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Finding, acts
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.said import is_worse, words_of_battery
-from telemetry.alerting.situation import Situation
 
 CODE = "battery-short"
 TURN_BACK = "%(uav)s: battery %(percent)s %%, just enough to return (%(home)s %%) with the reserve of %(reserve)s %%."

@@ -2,10 +2,10 @@
 
 from typing import Any
 
+from telemetry.alerting.conflicts import FAR_HEIGHT_M, FAR_M
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, WARNING, Finding, acts
-from telemetry.alerting.meetings import FAR_HEIGHT_M, FAR_M
-from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting
 
 CODE = "converging"

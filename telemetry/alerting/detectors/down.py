@@ -5,10 +5,10 @@ from collections.abc import Iterable
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import Memory, position_of
 from telemetry.alerting.finding import CRITICAL, Finding
-from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.route_line import RouteLine
-from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Order
 
 CODE = "down-off-plan"

@@ -4,9 +4,9 @@ import math
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, LAND, TAKE_OVER, WARNING, Finding, acts
-from telemetry.alerting.memory import position_of
-from telemetry.alerting.situation import Situation
 from telemetry.estimation.report import Report
 
 CODE = "gps"

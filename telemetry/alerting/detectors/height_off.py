@@ -1,8 +1,8 @@
 """It flies its list, but higher or lower than approved."""
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.situation import Situation
 
 CODE = "height-off"
 ABOVE = "%(uav)s flies %(metres)s m above the height of its route; %(limit)s m are allowed."

@@ -17,10 +17,10 @@ from telemetry.alerting.advice import (
     advice,
 )
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.modes import ModeKind
-from telemetry.alerting.situation import Situation
 
 CODE = "link-lost"
 LATE = "%(uav)s: no telemetry for %(seconds)s s."

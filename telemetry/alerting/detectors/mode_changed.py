@@ -1,10 +1,10 @@
 """Its mode is not what we told it: it acts by itself, or somebody else flies it."""
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import AT_THE_END, LEADS_TO, RETURN_ALONG, WITHOUT_ORDER, ModeKind
 from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
-from telemetry.alerting.situation import Situation
 
 CODE = "mode-changed"
 RETURNS = "%(uav)s is returning (%(mode)s): failsafe or pilot, not commanded from here."

@@ -1,9 +1,9 @@
 """It is to fly its list and does not come on."""
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import Progress
 from telemetry.alerting.finding import WARNING, Finding
-from telemetry.alerting.memory import Progress
-from telemetry.alerting.situation import Situation
 
 CODE = "no-progress"
 WORDS = "%(uav)s flies its route, but has not come on for %(seconds)s s."

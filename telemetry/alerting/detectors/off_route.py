@@ -1,8 +1,8 @@
 """It flies its list, but beside the approved route."""
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.situation import Situation
 
 CODE = "off-route"
 WORDS = "%(uav)s is %(metres)s m beside its route; %(limit)s m are allowed."

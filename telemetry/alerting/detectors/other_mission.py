@@ -1,9 +1,9 @@
 """What it holds, or flies, is not what was approved."""
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import ModeKind
-from telemetry.alerting.situation import Situation
 
 CODE = "other-mission"
 FLIES_OTHER = "%(uav)s flies a mission that is not the approved one."

@@ -4,8 +4,8 @@ import math
 
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.situation import Situation
 
 CODE = "weather"
 WORDS = "Wind %(wind)s m/s at %(uav)s (limit %(limit)s m/s)."

@@ -7,10 +7,10 @@ import shapely
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.memory import position_of
 from telemetry.alerting.route_line import RouteLine
-from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import NearZone
 
 CODE = "zone"

@@ -7,13 +7,13 @@ from datetime import datetime
 from typing import Any
 
 from mavlink.autopilot_type import Flavour
-from telemetry.alerting.book import Closed, Opened, changes
+from telemetry.alerting.conflicts import elsewhere, meetings, ways_of
+from telemetry.alerting.detector_input import Situation, WatchedUav
+from telemetry.alerting.detector_state import Memory, position_of
 from telemetry.alerting.detectors import down
 from telemetry.alerting.limits import Limits, sound_limits
-from telemetry.alerting.meetings import elsewhere, meetings, ways_of
-from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.order import CODES, DETECTORS
-from telemetry.alerting.situation import Situation, WatchedUav
+from telemetry.alerting.state_machine import Closed, Opened, changes
 from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
 from telemetry.selectors.alert_facts import (
     Loaded,

@@ -9,8 +9,8 @@ from django.db.models import F, Q
 from django.utils import timezone
 
 from missions.models import Mission, Uav
-from telemetry.alerting.book import CLEARED
 from telemetry.alerting.finding import RANK
+from telemetry.alerting.state_machine import CLEARED
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import waiting_to_be_seen
 from workspace.audit import record_change

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 from uuid import UUID
 
 from missions.services.replanning import suggest, withdraw
-from telemetry.alerting.book import CLEARED, Closed
 from telemetry.alerting.detectors import battery, down, link, mode_changed
 from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.modes import ModeKind, mode_kind
+from telemetry.alerting.state_machine import CLEARED, Closed
 from telemetry.models import Alert
 
 UAV_OUT, BATTERY_SHORT = "uav-out", "battery-short"

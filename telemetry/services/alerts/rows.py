@@ -11,10 +11,10 @@ from django.db.models.functions import Now
 
 from missions.models import MissionState
 from telemetry.alerting.advice import answer_of
-from telemetry.alerting.book import Closed, Opened
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
-from telemetry.alerting.situation import WatchedUav
+from telemetry.alerting.state_machine import Closed, Opened
 from telemetry.models import Alert
 from telemetry.selectors.alerts import WORST, OpenRow
 from telemetry.services.alerts.alerts import CLOSED, OPENED, step

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL
-from telemetry.alerting.situation import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, State, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch

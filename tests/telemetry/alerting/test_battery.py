@@ -4,6 +4,7 @@ import math
 from datetime import UTC, datetime
 
 import pytest
+from telemetry.alerting.detector_input import WatchedUav
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
@@ -11,7 +12,6 @@ from mavlink.rtl import own_return
 from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding, acts_of
-from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight

@@ -5,6 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
+from telemetry.alerting.detector_input import WatchedUav
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -13,9 +15,7 @@ from mavlink.decoding.measurement import Measurement
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.meetings import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
 from telemetry.alerting.route_line import RouteLine
-from telemetry.alerting.situation import WatchedUav
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.estimation.estimate import Ellipse, Estimate
 from telemetry.estimation.report import Report

@@ -3,11 +3,12 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from telemetry.alerting.book import RANK, Closed, changes
+from telemetry.alerting.detector_input import Situation, WatchedUav
+from telemetry.alerting.detector_state import Memory
+from telemetry.alerting.state_machine import RANK, Closed, changes
+
 from telemetry.alerting.limits import Limits
-from telemetry.alerting.memory import Memory
 from telemetry.alerting.order import DETECTORS
-from telemetry.alerting.situation import Situation, WatchedUav
 from telemetry.alerting.surroundings import Held
 
 

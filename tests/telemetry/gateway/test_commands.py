@@ -11,7 +11,7 @@ from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
-from telemetry.gateway import carriage
+from telemetry.gateway import delivery
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_words import alert_words
 from tests.accounts.users import somebody
@@ -203,7 +203,7 @@ def test_a_list_that_nobody_approved_is_not_resumed(uav, mission, tmp_path):
 
 
 def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission, tmp_path, monkeypatch):
-    monkeypatch.setattr(carriage, "CLEAR_AGAIN_IN_S", 0.2)
+    monkeypatch.setattr(delivery, "CLEAR_AGAIN_IN_S", 0.2)
     vehicle = ArduPilot()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(mission))

@@ -10,7 +10,7 @@ from mavlink.autopilot_type import PX4_AUTO
 from mavlink.signing import FrameWriter
 from missions.models import CommandKind, CommandState
 from missions.services.commands.commands import queue_command
-from telemetry.gateway import addresses, belief
+from telemetry.gateway import addresses, sender_authentication
 from telemetry.gateway.addresses import MAX_ADDRESSES, Addresses
 from telemetry.models import Alert, TelemetryRecord, UavLink
 from tests.accounts.users import somebody
@@ -95,7 +95,7 @@ def test_frames_of_before_a_restart_are_refused_though_they_were_never_stored(tm
         wait_for(lambda: TelemetryRecord.objects.count() == 1)
         writer = vehicle.writer
     kept = [writer.frame_of(position(2_000 + n, lon=20.0), time.time()) for n in range(5)]  # while no gateway was there
-    time.sleep(belief.LATE_BY_S + 0.2)
+    time.sleep(sender_authentication.LATE_BY_S + 0.2)
     with gateway_at_work(tmp_path, name="one") as gateway, Link(port_of(gateway), 3, key) as vehicle:
         vehicle.send_raw(*kept)
         vehicle.writer = writer

@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.signing import FrameWriter
-from telemetry.gateway import questions
+from telemetry.gateway import message_requests
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -15,7 +15,7 @@ LISTENS_S, FLOWN_S = 1.0, 4.0
 
 @pytest.mark.parametrize("has_station", [False, True])
 def test_streams_are_stopped_where_no_other_station_is_heard(has_station, settings, tmp_path, monkeypatch):
-    monkeypatch.setattr(questions, "LISTENS_S", LISTENS_S)
+    monkeypatch.setattr(message_requests, "LISTENS_S", LISTENS_S)
     settings.FLIGHT_LOG_DIR = tmp_path
     unsigned_uav(7)
     station = FrameWriter(250, mavlink.MAV_COMP_ID_MISSIONPLANNER)

@@ -9,7 +9,7 @@ from django.contrib.gis.geos import Point
 from mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.fleet.credentials import make_credential
-from telemetry.gateway import belief
+from telemetry.gateway import sender_authentication
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import somebody
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
@@ -112,7 +112,7 @@ def test_the_key_before_counts_until_the_new_one_was_used(uav_and_key, tmp_path)
 
 def test_who_speaks_without_the_key_that_was_shown_is_not_believed_though_unsigned_frames_are_allowed(uav_and_key, tmp_path, monkeypatch):
     """Not even once the UAV is silent, nor by another gateway: its system id would be stolen."""
-    monkeypatch.setattr(belief, "SENDER_SILENT_S", 0.2)
+    monkeypatch.setattr(sender_authentication, "SENDER_SILENT_S", 0.2)
     uav, key = uav_and_key
     Uav.objects.filter(pk=uav.pk).update(allows_unsigned=True)
     for name in ("one", "two"):

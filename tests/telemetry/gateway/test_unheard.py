@@ -13,7 +13,7 @@ from mavlink.signing import FrameWriter
 from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, CommandState, UavCommand
 from missions.services.commands.commands import queue_command
-from telemetry.gateway import carriage, desk
+from telemetry.gateway import delivery, dispatcher
 from telemetry.gateway.leasing import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session
 from telemetry.models import UavLink
@@ -30,7 +30,7 @@ RETURNING = {Flavour.PX4: 4 << 16 | 5 << 24, Flavour.ARDUPILOT: 6}
 
 @pytest.fixture(autouse=True)
 def soon_silent(monkeypatch):
-    for module in (carriage, desk):
+    for module in (delivery, dispatcher):
         monkeypatch.setattr(module, "HEARD_WITHIN_S", 1.5)
 
 

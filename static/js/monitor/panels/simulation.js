@@ -32,7 +32,7 @@ import {
 const EVERY_MS = 2000;
 const LASTS_S = 60; // of the clock on the wall, until somebody says otherwise
 const MAX_FAULT_S = 86_400;
-const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
+const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/weather_scenario.py
 
 /** @param {string} id @param {(readonly [number | string, string])[]} entries value and words of each */
 const choice = (id, entries) =>

@@ -5,7 +5,7 @@ import { t } from "../../../text.js";
 import { SPEED_UNIT } from "../../../units.js";
 import { CONDITIONS, conditionWords, ownConditions } from "../../rehearsal/rehearsal.js";
 
-const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
+const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/weather_scenario.py
 /** @param {number} mps */
 const typedSpeed = (mps) => Math.floor(mps / SPEED_UNIT.mps);
 const FIGURES = [

@@ -11,8 +11,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from telemetry.alerting.memory import position_of
-from telemetry.alerting.situation import Situation
+from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.surroundings import Meeting
 
 STANDS_BELOW_MPS = 1.0

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from uuid import UUID
 
+from telemetry.alerting.detector_state import Memory
 from telemetry.alerting.limits import Limits
-from telemetry.alerting.memory import Memory
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.said import Said

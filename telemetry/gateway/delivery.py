@@ -37,7 +37,6 @@ from missions.services.commands.commands import (
     note_sent,
     note_sent_unheard,
 )
-from telemetry.gateway.conversation import OTHER_LIST_READ, Conversation, ask_for_the_present, read_aboard
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (
     CannotCarry,
@@ -48,6 +47,7 @@ from telemetry.gateway.preparation import (
     return_by_list,
     task_of,
 )
+from telemetry.gateway.protocol_driver import OTHER_LIST_READ, Conversation, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.services.alerts.mission_alerts import tell_of_mission, tell_of_other_list
 from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading

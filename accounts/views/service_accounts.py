@@ -1,15 +1,6 @@
 """The API's endpoints for administrators about service accounts and their tokens."""
 
-from django.http import Http404
-from django.urls import reverse
-from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.response import Response
-from rest_framework.views import APIView
-
-from accounts import service_accounts, services
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
-from accounts.user_serializers import (
+from accounts.serializers import (
     NewTokenSerializer,
     ServiceAccountChangeSerializer,
     ServiceAccountInputSerializer,
@@ -20,6 +11,15 @@ from accounts.user_serializers import (
     TokenSerializer,
     with_secret,
 )
+from django.http import Http404
+from django.urls import reverse
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from accounts import service_accounts, services
+from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import page_of
 from workspace.api.permissions import AdministratorsInTheBrowser

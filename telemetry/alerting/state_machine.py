@@ -4,10 +4,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from telemetry.alerting.detector import Detector
+from telemetry.alerting.detector_input import Key, Situation
+from telemetry.alerting.detector_state import Cause
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
-from telemetry.alerting.memory import Cause
-from telemetry.alerting.situation import Key, Situation
 
 CLEARED, LANDED = "cleared", "landed"  # why an alert is over
 

@@ -16,8 +16,8 @@ from django.conf import settings
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands.commands import claim_commands, expire_overdue, note_released, renew_claims
-from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.delivery import Carriage
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from workspace.live.lease_times import held_until_s

@@ -10,8 +10,8 @@ from mavlink.autopilot_type import Flavour
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.vehicle_state import VehicleState
-from telemetry.gateway import greeting
-from telemetry.gateway.own_return import OwnReturn
+from telemetry.gateway import heartbeat
+from telemetry.gateway.rtl_parameters import OwnReturn
 
 ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
 MISSING_INTERVALS = 3.0  # of a message, after which it does not come
@@ -70,25 +70,25 @@ class Questions:
         self._first_s = now_s if self._first_s is None else self._first_s
         if flavour is Flavour.ARDUPILOT and has_position and self._may_stop_streams(now_s):
             self._are_streams_settled, self._asked_s = True, now_s
-            asked = greeting.interval_requests(system, greeting.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S))
-            return [greeting.streams(system, is_on=False), *asked]  # stopping ends intervals, too
+            asked = heartbeat.interval_requests(system, heartbeat.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S))
+            return [heartbeat.streams(system, is_on=False), *asked]  # stopping ends intervals, too
         if now_s - self._asked_s < (self._ask_again_s if has_position else ASK_AGAIN_S):
             return []
         is_first = self._asked_s == -math.inf
-        wanted_s = greeting.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S)
+        wanted_s = heartbeat.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S)
         missing_s = {number: every_s for number, every_s in wanted_s.items() if is_first or self._is_missing(number, every_s, now_s)}
         if not missing_s and has_position:
             return []
         self._asked_s = now_s
         self._ask_again_s = min(2 * self._ask_again_s, ASK_SELDOM_S)
         self._rounds += not has_position
-        asked = greeting.interval_requests(system, missing_s)
+        asked = heartbeat.interval_requests(system, missing_s)
         if flavour is Flavour.PX4:
             return asked
         needs_streams = not has_position and (self._are_intervals_refused or self._rounds > UNANSWERED_ROUNDS)
         if needs_streams:
             self._are_streams_settled = True
-            return [*asked, greeting.streams(system, is_on=True)]
+            return [*asked, heartbeat.streams(system, is_on=True)]
         return asked
 
     def _may_stop_streams(self, now_s: float) -> bool:
@@ -105,5 +105,5 @@ class Questions:
 
     def _once(self, state: VehicleState) -> list[Message]:
         is_told = state.firmware is not None and state.home is not None
-        limits = greeting.limit_questions(state.system) if self.may_ask_limits(state) else []
-        return [*([] if is_told else greeting.questions(state.system)), *limits]
+        limits = heartbeat.limit_questions(state.system) if self.may_ask_limits(state) else []
+        return [*([] if is_told else heartbeat.questions(state.system)), *limits]
