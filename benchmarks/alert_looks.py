@@ -17,11 +17,11 @@ django.setup()
 
 from django.db import connection, transaction  # noqa: E402
 from django.test.utils import CaptureQueriesContext  # noqa: E402
-from telemetry.alerting.detector_input import WatchedUav  # noqa: E402
 
 from mavlink.decoding.measurement import Measurement  # noqa: E402
 from missions.models import Approval, Mission  # noqa: E402
 from missions.services.approval.document import content_sha256  # noqa: E402
+from telemetry.alerting.detector_input import WatchedUav  # noqa: E402
 from telemetry.estimation.report import Report  # noqa: E402
 from telemetry.models import Alert, UavLink  # noqa: E402
 from telemetry.services.alerts.alerting import Memories, look  # noqa: E402

@@ -33,7 +33,6 @@ from django.contrib.gis.geos import Point  # noqa: E402
 from django.db import connection, connections  # noqa: E402
 from django.utils import timezone  # noqa: E402
 from pymavlink.dialects.v20 import ardupilotmega as mavlink  # noqa: E402
-from simulation.rehearsing.weather_scenario import Named, named_sky, sky_to_json  # noqa: E402
 
 from benchmarks.gateway_rate import OTHER_SENDER_S, cpu_s, free_port, gateway  # noqa: E402
 from benchmarks.report import machine, table, write_section  # noqa: E402
@@ -45,6 +44,7 @@ from planning.energy.conditions import Conditions  # noqa: E402
 from simulation.flight.states import Mode  # noqa: E402
 from simulation.management.commands.run_simulator import SWITCH_S  # noqa: E402
 from simulation.models import SimulatedVehicle, Simulation, SimulationState  # noqa: E402
+from simulation.rehearsing.weather_scenario import Named, named_sky, sky_to_json  # noqa: E402
 from simulation.simulator.flight import Flight  # noqa: E402
 from simulation.simulator.options import Options  # noqa: E402
 from simulation.simulator.process import Simulator  # noqa: E402

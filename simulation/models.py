@@ -59,7 +59,7 @@ class RehearsalRun(models.Model):
     sequence = models.PositiveSmallIntegerField()
     conditions = models.JSONField(help_text="wind, gusts, battery; see rehearsing/sky.py")
     level = models.CharField(max_length=10, choices=VerdictLevel.choices, blank=True, help_text="empty until it has been flown")
-    verdict = models.JSONField(null=True, blank=True, help_text="see verdict/stored.py")
+    verdict = models.JSONField(null=True, blank=True, help_text="see assessment/stored.py")
     took_s = models.FloatField(null=True, blank=True, help_text="of the worker's time")
     finished_at = models.DateTimeField(null=True, blank=True)
 
@@ -79,7 +79,7 @@ class RehearsalTrack(models.Model):
 
     run = models.ForeignKey(RehearsalRun, on_delete=models.CASCADE, related_name="tracks")
     uav = models.PositiveSmallIntegerField(help_text="its place in the mission")
-    flights = models.JSONField(help_text="columns of each flight; see verdict/stored.py")
+    flights = models.JSONField(help_text="columns of each flight; see assessment/stored.py")
 
     class Meta:
         ordering = ["uav"]

@@ -1,5 +1,14 @@
 """The API's doors to one's own account."""
 
+from django.contrib.auth import update_session_auth_hash
+from django.db.models import F
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from accounts import services
+from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from accounts.serializers import (
     AccountChangeSerializer,
     AccountSerializer,
@@ -12,15 +21,6 @@ from accounts.serializers import (
     TokenSerializer,
     with_secret,
 )
-from django.contrib.auth import update_session_auth_hash
-from django.db.models import F
-from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.response import Response
-from rest_framework.views import APIView
-
-from accounts import services
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from accounts.sign_in_log import record_sign_in
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import page_of

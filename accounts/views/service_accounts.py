@@ -1,5 +1,14 @@
 """The API's endpoints for administrators about service accounts and their tokens."""
 
+from django.http import Http404
+from django.urls import reverse
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from accounts import service_accounts, services
+from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from accounts.serializers import (
     NewTokenSerializer,
     ServiceAccountChangeSerializer,
@@ -11,15 +20,6 @@ from accounts.serializers import (
     TokenSerializer,
     with_secret,
 )
-from django.http import Http404
-from django.urls import reverse
-from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.response import Response
-from rest_framework.views import APIView
-
-from accounts import service_accounts, services
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import page_of
 from workspace.api.permissions import AdministratorsInTheBrowser

@@ -1,7 +1,5 @@
 """The API's doors to sessions in browsers: one's own, one by one, and until when the one that asks still lasts."""
 
-from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
-from accounts.views.account import check_password
 from django.contrib.auth import update_session_auth_hash
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
@@ -11,6 +9,8 @@ from rest_framework.views import APIView
 
 from accounts import services
 from accounts.reauthentication import PASSWORD_NEEDED, note_proof, require_proof
+from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
+from accounts.views.account import check_password
 from workspace.api.errors import ApiProblem
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.api.signed_in import SignedInRequest

@@ -3,19 +3,6 @@
 from datetime import timedelta
 from typing import Any
 
-from accounts.serializers import (
-    InvitationInputSerializer,
-    InvitationPageSerializer,
-    InvitationSerializer,
-    NewInvitationSerializer,
-    PersonChangeSerializer,
-    PersonPageSerializer,
-    PersonSerializer,
-    SecondFactorRuleSerializer,
-    SignInPageSerializer,
-    SignInSerializer,
-    with_secret,
-)
 from django.conf import settings
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet
 from django.http import Http404
@@ -29,6 +16,19 @@ from rest_framework.views import APIView
 from accounts import invitations, second_factors, services
 from accounts.invitations import InvitationState
 from accounts.public_address import public_address
+from accounts.serializers import (
+    InvitationInputSerializer,
+    InvitationPageSerializer,
+    InvitationSerializer,
+    NewInvitationSerializer,
+    PersonChangeSerializer,
+    PersonPageSerializer,
+    PersonSerializer,
+    SecondFactorRuleSerializer,
+    SignInPageSerializer,
+    SignInSerializer,
+    with_secret,
+)
 from accounts.users import NoAdministratorLeft, OperatorsAlone
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import asked_choice, page_of

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from simulation.assessment.flown import FloatArray, FlownRoute, FlownTrack, IntArray
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight
+from simulation.assessment.flown import FloatArray, FlownRoute, FlownTrack, IntArray
 
 
 @dataclass(frozen=True)

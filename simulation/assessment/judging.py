@@ -5,6 +5,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+
+from inspection.zones.reach import ZoneTable
+from mavlink.approved_route import FrozenRoute
+from planning.energy.conditions import Conditions
 from simulation.assessment.finding import Facts, Finding, Level, level_of
 from simulation.assessment.flown import Ending, FloatArray, FlownRoute
 from simulation.assessment.following import Following, following_of
@@ -13,10 +17,6 @@ from simulation.assessment.meeting import Meeting, meetings_of
 from simulation.assessment.obstacles import Approach, Standing, lowest_of, nearest_standing
 from simulation.assessment.reaching import Visit, visits_of
 from simulation.assessment.zone_approach import ZoneApproach, zone_approaches
-
-from inspection.zones.reach import ZoneTable
-from mavlink.approved_route import FrozenRoute
-from planning.energy.conditions import Conditions
 
 MEETING_STEP_S = 0.2
 AS_PLANNED = 1.05  # of the planned energy

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from simulation.assessment.flown import Ending, FloatArray, FlownRoute, FlownTrack, IntArray, frame_of
 
 from inspection.geodesy.local_frame import LocalFrame
+from simulation.assessment.flown import Ending, FloatArray, FlownRoute, FlownTrack, IntArray, frame_of
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from simulation.assessment.flown import BoolArray, FloatArray, FlownFlight, FlownTrack
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from simulation.assessment.flown import BoolArray, FloatArray, FlownFlight, FlownTrack
 
 LOOK_M = 60.0  # across the ground: what is farther is not told of
 

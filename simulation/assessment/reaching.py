@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from simulation.assessment.flown import FlownRoute, FlownTrack
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenWaypoint
+from simulation.assessment.flown import FlownRoute, FlownTrack
 
 
 @dataclass(frozen=True)

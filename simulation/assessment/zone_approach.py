@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from simulation.assessment.flown import BoolArray, FloatArray, FlownTrack
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.zones.reach import Limits, ZoneTable
+from simulation.assessment.flown import BoolArray, FloatArray, FlownTrack
 
 NEAR_DEG = 0.02  # some 2 km: farther zones are not told of
 

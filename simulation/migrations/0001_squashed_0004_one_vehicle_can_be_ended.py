@@ -155,7 +155,7 @@ class Migration(migrations.Migration):
                         max_length=10,
                     ),
                 ),
-                ("verdict", models.JSONField(blank=True, help_text="see verdict/stored.py", null=True)),
+                ("verdict", models.JSONField(blank=True, help_text="see assessment/stored.py", null=True)),
                 ("took_s", models.FloatField(blank=True, help_text="of the worker's time", null=True)),
                 ("finished_at", models.DateTimeField(blank=True, null=True)),
                 (
@@ -179,7 +179,7 @@ class Migration(migrations.Migration):
             fields=[
                 ("id", models.BigAutoField(auto_created=True, primary_key=True, serialize=False, verbose_name="ID")),
                 ("uav", models.PositiveSmallIntegerField(help_text="its place in the mission")),
-                ("flights", models.JSONField(help_text="columns of each flight; see verdict/stored.py")),
+                ("flights", models.JSONField(help_text="columns of each flight; see assessment/stored.py")),
                 (
                     "run",
                     models.ForeignKey(on_delete=django.db.models.deletion.CASCADE, related_name="tracks", to="simulation.rehearsalrun"),

@@ -6,10 +6,10 @@ from contextlib import suppress
 
 from celery import Celery
 from celery.signals import worker_process_init
-from config.worker_shutdown import SoftEnd
 from redis import Redis
 
 from config.celery import warm_up_process
+from config.worker_shutdown import SoftEnd
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 worker_process_init.disconnect(warm_up_process)  # nothing is planned here

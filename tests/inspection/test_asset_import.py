@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from django.core.management import CommandError, call_command
 from django.test import Client
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import Asset, AssetSet, DataImport, ImportProposal
 from inspection.selectors import current_graph, ground_revision
 from inspection.services import AssetFileError, UnfinishedMapping, build_graph, delete_asset, import_assets, save_asset
+from inspection.services.imports.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.assets.made_files import geojson, line, point

@@ -4,10 +4,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportProposal, NoFlyZone
 from inspection.services import import_zones
+from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody

@@ -8,11 +8,11 @@ import pytest
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportProposal, NoFlyZone, ProposedChange, ZoneSetVersion
 from inspection.selectors import ground_revision
 from inspection.services import save_zone
+from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from tests.accounts.users import client_of, somebody

@@ -17,9 +17,9 @@ import pytest
 from django.conf import settings
 from django.db import connection
 from django.utils import timezone
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportKind, ImportProposal, NoFlyZone, ProposedChange, ZoneSet
+from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals.pipeline import ask_to_apply, start_proposal
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import somebody

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from inspection.services.imports.osm import difference_of_osm
 
 from inspection.models import Asset, DataImport, Ground
 from inspection.services import delete_asset, import_osm, save_asset
+from inspection.services.imports.osm import difference_of_osm
 from inspection.services.proposals import osm
 from inspection.services.proposals.reading import Change, FileRefused, Provenance, Reading
 from tests.accounts.users import somebody

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from inspection.services.imports import overpass
 
 from inspection.importers.osm.overpass import WrongArea, area_km2, checked_box, complaint, question
 from inspection.models import Asset, DataImport
+from inspection.services.imports import overpass
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody
 from tests.workspace.loopback import Server, body, serving

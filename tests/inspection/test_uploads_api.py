@@ -7,6 +7,8 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
+
+from inspection.models import Upload, UploadPart
 from inspection.services.imports.uploads import (
     PART_BYTES,
     UploadRefused,
@@ -16,8 +18,6 @@ from inspection.services.imports.uploads import (
     upload_as_file,
     upload_folder,
 )
-
-from inspection.models import Upload, UploadPart
 from tests.accounts.users import client_of, somebody
 from workspace.models import Organisation, Role
 

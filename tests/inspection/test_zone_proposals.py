@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 from django.db import connection, connections, transaction
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import ImportProposal, NoFlyZone, ZoneSet
 from inspection.services import import_zones, save_zone
+from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read

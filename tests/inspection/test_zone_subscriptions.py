@@ -11,12 +11,12 @@ import pytest
 from django.db import connections
 from django.test import Client
 from django.utils import timezone
-from inspection.services.imports import subscriptions
-from inspection.services.imports.subscriptions import start_due_fetches
-from inspection.services.imports.uploads import upload_folder
 
 from inspection.models import ImportProposal, NoFlyZone, Upload, ZoneSet, ZoneSubscription
 from inspection.services import delete_zone
+from inspection.services.imports import subscriptions
+from inspection.services.imports.subscriptions import start_due_fetches
+from inspection.services.imports.uploads import upload_folder
 from inspection.tasks import fetch_due_subscriptions, fetch_subscription
 from tests.accounts.users import client_of, somebody
 from tests.inspection.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file

@@ -15,10 +15,10 @@ from django.core.management.base import CommandError
 from django.db import connection
 from django.test import Client
 from django.utils import timezone
-from inspection.services.imports.uploads import store_upload
 
 from inspection.models import Asset, ImportProposal, NoFlyZone
 from inspection.selectors import ground_revision
+from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from missions.models import Mission, MissionState

@@ -12,10 +12,10 @@ from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone, translation
-from missions.views.fast_path import small_plan
 
 from inspection.models import GraphSnapshot
 from missions import services
+from missions.views.fast_path import small_plan
 from tests.accounts.users import somebody
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world

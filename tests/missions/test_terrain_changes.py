@@ -8,12 +8,12 @@ from unittest import mock
 import numpy as np
 import pytest
 from django.test import Client
-from inspection.services.imports.terrain import remove_terrain
 
 from inspection.models import TerrainTile
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import Edition
 from inspection.services import import_terrain
+from inspection.services.imports.terrain import remove_terrain
 from missions.services import make_plan
 from missions.services.planning import planner
 from tests.accounts.users import client_of, somebody

@@ -3,9 +3,9 @@
 from typing import Any
 
 import numpy as np
-from simulation.assessment.flown import FlownRoute
 
 from inspection.models import Asset, NoFlyZone
+from simulation.assessment.flown import FlownRoute
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.ground_judge import Hills
 from tests.missions.plane import east_north

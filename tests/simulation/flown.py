@@ -9,10 +9,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from simulation.assessment.flown import Ending, FlownFlight, FlownRoute, FlownTrack
-from simulation.assessment.judging import Surroundings
-from simulation.assessment.limits import Limits
-from simulation.assessment.obstacles import Standing
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -23,6 +19,10 @@ from inspection.zones.schedule import Schedule
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
+from simulation.assessment.flown import Ending, FlownFlight, FlownRoute, FlownTrack
+from simulation.assessment.judging import Surroundings
+from simulation.assessment.limits import Limits
+from simulation.assessment.obstacles import Standing
 
 HERE = LonLat(10.0, 56.0)
 FRAME = LocalFrame.around(*HERE)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
-from simulation.assessment.judging import Verdict, judge
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
@@ -17,6 +16,7 @@ from missions.services import PlanRequest, TargetRequest, UavRequest, create_mis
 from missions.services.commands.refused import Refused
 from planning.energy.performance import Performance
 from planning.problem import Objective, Task, TaskKind
+from simulation.assessment.judging import Verdict, judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker

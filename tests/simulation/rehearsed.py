@@ -2,12 +2,11 @@
 
 from typing import Any
 
-from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
-
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
 from planning.energy.conditions import conditions_from_json
 from simulation.models import Rehearsal
+from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
 from simulation.services.rehearsals import start_rehearsal
 from simulation.tasks import rehearse_mission
 from workspace.models import User

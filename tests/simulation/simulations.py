@@ -4,13 +4,13 @@ from datetime import timedelta
 from typing import Any
 
 from django.utils import timezone
-from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
 
 from inspection.geodesy import LonLat
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation
+from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.services.simulations import PoolUav, start_pool
 from simulation.services.simulator_leases import Held, take_simulation

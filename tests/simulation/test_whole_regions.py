@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
-from simulation.assessment.judging import judge
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -16,6 +15,7 @@ from missions.models import EndAction
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from planning.energy.performance import Performance
 from planning.problem import Objective
+from simulation.assessment.judging import judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker

@@ -6,11 +6,11 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 from django.utils.translation import override
-from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
 from missions.services.commands.outbox import queue_command
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alert_words import alert_words

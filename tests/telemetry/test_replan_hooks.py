@@ -1,11 +1,11 @@
 """Which alerts are a reason to plan the rest of a mission again."""
 
 import pytest
-from telemetry.alerting.state_machine import CLEARED, LANDED, Closed
 
 from missions.models import Mission, OfferState, ReplanOffer
 from missions.services.replanning import REPLAN, settle_offers
 from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
+from telemetry.alerting.state_machine import CLEARED, LANDED, Closed
 from telemetry.models import AlertLevel
 from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.alerts.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed

@@ -12,8 +12,6 @@ import shapely
 from django.contrib.gis.geos import GEOSGeometry
 from django.db import connection, transaction
 from django.db.backends.utils import CursorWrapper
-from inspection.services.imports.external_ids import count_of_ids, give_ids
-from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.assets.asset_file import AssetFile, Row, RowFaults, opened_asset_file
@@ -22,6 +20,8 @@ from inspection.importers.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, Asset, AssetSet, ChangeAction, DataImport, ImportKind
 from inspection.services.facts import asset_facts, says_the_same
 from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.imports.external_ids import count_of_ids, give_ids
+from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Progress, Provenance
 from inspection.services.supports import number_supports
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User

@@ -16,13 +16,13 @@ from django.db.backends.utils import CursorWrapper
 from django.db.models import Count
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import gettext as _
-from inspection.services.imports import osm_merge
 
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
 from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 from inspection.models import Asset, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.imports import osm_merge
 from inspection.services.proposals.reading import Provenance
 from inspection.services.supports import number_supports
 from workspace.models import DEFAULT_ORGANISATION_ID, User

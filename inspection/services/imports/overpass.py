@@ -9,11 +9,11 @@ from urllib.parse import urlencode
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from inspection.services.imports.uploads import private_folder, store_upload
 
 from inspection.importers.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
 from inspection.importers.osm.records import Extent
 from inspection.models import ImportKind, Upload
+from inspection.services.imports.uploads import private_folder, store_upload
 from inspection.services.proposals.reading import Fault, FileRefused, Progress
 from workspace.http_client import OutgoingError, OutgoingFailed, fetch
 from workspace.models import User

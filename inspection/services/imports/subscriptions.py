@@ -10,13 +10,13 @@ from django.conf import settings
 from django.db import IntegrityError, transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from inspection.services.imports.uploads import plain_name, store_upload, upload_folder
-from inspection.services.imports.zone_sets import difference_of
-from inspection.services.imports.zones import read_zone_file, stated_validity
 
 from inspection.importers.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
 from inspection.models import ImportKind, ImportProposal, ProposalOrigin, ProposalState, ZoneSet, ZoneSubscription
 from inspection.selectors.zone_sets import FETCH_TASK, open_fetch_of
+from inspection.services.imports.uploads import plain_name, store_upload, upload_folder
+from inspection.services.imports.zone_sets import difference_of
+from inspection.services.imports.zones import read_zone_file, stated_validity
 from inspection.services.proposals.pipeline import LostJob, WrongState, discard_proposal, start_proposal
 from inspection.services.proposals.reading import Progress
 from workspace.audit import record_change

@@ -10,14 +10,14 @@ import shapely
 from django.contrib.gis.geos import Polygon
 from django.db import transaction
 from django.utils.dateparse import parse_datetime
-from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
-from inspection.services.imports.zone_sets import ZoneDifference, difference_of, keep_what_was, store_version, write_difference
 
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.zones.records import UnreadRecord
 from inspection.importers.zones.zone_file import MAX_FILE_BYTES, ZoneFile, ZoneFileError, read_zones
 from inspection.models import DataImport, ImportKind, ZoneSet
 from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
+from inspection.services.imports.zone_sets import ZoneDifference, difference_of, keep_what_was, store_version, write_difference
 from inspection.services.proposals.reading import Provenance
 from workspace.models import User
 

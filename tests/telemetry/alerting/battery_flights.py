@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL
 from telemetry.estimation.report import Report

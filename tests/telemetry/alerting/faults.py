@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-from telemetry.alerting.detector_input import WatchedUav
 
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.surroundings import Held, NearZone, Order

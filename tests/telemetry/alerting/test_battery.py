@@ -4,12 +4,12 @@ import math
 from datetime import UTC, datetime
 
 import pytest
-from telemetry.alerting.detector_input import WatchedUav
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from mavlink.rtl import own_return
 from telemetry.alerting.advice import ADVICE, OWN_ACT
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding, acts_of
 from telemetry.alerting.surroundings import LinkFacts, Order

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from telemetry.alerting.conflicts import Flying, Why, meetings, ways_of, yielding
 from telemetry.alerting.detector_input import WatchedUav
-
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING, acts_of
 from telemetry.estimation.knowledge import Knowledge

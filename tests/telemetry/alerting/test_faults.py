@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detector import POLL_INTERVAL_S
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.order import DETECTORS

@@ -1,9 +1,9 @@
 """What is said of a UAV that has lost its GPS, and what is proposed."""
 
 import pytest
-from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import gps
 from telemetry.alerting.finding import CRITICAL, WARNING, acts_of
 from telemetry.alerting.surroundings import LinkFacts

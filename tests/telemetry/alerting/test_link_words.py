@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 import pytest
-from telemetry.alerting.detector_input import WatchedUav
 
 from mavlink.decoding.measurement import Measurement
 from planning.clearance.lost_link import LostLink, LostLinkPlan
 from telemetry.alerting.advice import ADVICE
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import link
 from telemetry.alerting.surroundings import FlightModel, LinkFacts
 from telemetry.estimation.report import Report

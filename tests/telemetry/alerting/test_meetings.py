@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
-from telemetry.alerting.detector_input import WatchedUav
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
 from planning.trajectory.waypoints import WaypointKind
+from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
+from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.route_line import RouteLine

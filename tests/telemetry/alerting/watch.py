@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 
 from telemetry.alerting.detector_input import Situation, WatchedUav
 from telemetry.alerting.detector_state import Memory
-from telemetry.alerting.state_machine import RANK, Closed, changes
-
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.order import DETECTORS
+from telemetry.alerting.state_machine import RANK, Closed, changes
 from telemetry.alerting.surroundings import Held
 
 

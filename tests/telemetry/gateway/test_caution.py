@@ -11,8 +11,6 @@ import pytest
 from django.db.models import F
 from django.db.models.functions import Now
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.gateway.delivery import Carriage
-from telemetry.gateway.dispatcher import MAX_UPLOADS, Desk
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
@@ -27,6 +25,8 @@ from mavlink.vehicle_state import MAX_PARAMETERS, VehicleState
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.database import DatabaseAway
+from telemetry.gateway.delivery import Carriage
+from telemetry.gateway.dispatcher import MAX_UPLOADS, Desk
 from telemetry.gateway.leasing import KnownUav
 from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id

@@ -1,11 +1,11 @@
 """Which messages a vehicle is asked for: by intervals, by streams only where intervals bring nothing, and within a budget."""
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from telemetry.gateway.heartbeat import FRAME_BYTES, INTERVALS_S, MAX_STRETCH_FACTOR, intervals_s
-from telemetry.gateway.message_requests import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
 
 from mavlink.autopilot_type import Flavour
 from mavlink.vehicle_state import VehicleState
+from telemetry.gateway.heartbeat import FRAME_BYTES, INTERVALS_S, MAX_STRETCH_FACTOR, intervals_s
+from telemetry.gateway.message_requests import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
 
 POSITION, BATTERY = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS
 WANTED = set(intervals_s(Flavour.ARDUPILOT, 0.0))

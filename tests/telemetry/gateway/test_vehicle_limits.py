@@ -1,7 +1,6 @@
 """What a vehicle would not fly by its own parameters is told before anything is sent to it."""
 
 import pytest
-from telemetry.gateway.delivery import UNTOLD
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
@@ -11,6 +10,7 @@ from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import load_of
+from telemetry.gateway.delivery import UNTOLD
 from telemetry.models import UavLink
 from tests.accounts.users import somebody
 from tests.missions.flights import ground, planned

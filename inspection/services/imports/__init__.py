@@ -1,0 +1,1 @@
+"""Files as infrastructure, zones and terrain: uploaded, compared, applied, and fetched again."""
