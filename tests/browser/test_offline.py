@@ -8,8 +8,8 @@ from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, stores_mission, targets, wait_for_map
+from tests.browser.planning.test_unsaved_changes import opens_mission, picks_from_the_search, removes_first_target
 from tests.browser.regions import region
-from tests.browser.test_unsaved_changes import opens_mission, picks_from_the_search, removes_first_target
 
 pytestmark = pytest.mark.browser
 

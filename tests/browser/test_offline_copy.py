@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import BrowserContext, Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.frozen_line import line_to
+from tests.browser.flying.frozen_line import line_to
 from tests.browser.operator_map import TOO_WIDE, wait_for_map
 from tests.browser.pictures import Picture
 from tests.browser.simulated_mission import beside, retires, simulated_uavs, two_towers

@@ -40,7 +40,7 @@ RELIABILITY = (
             Tests(
                 "10,000 commands, 30 % lost each way, carriers killed 5 times",
                 "0 lost, 0 out of order, every step told; p99 wait of the top priority at most 10 % of the lowest's",
-                ("tests/telemetry/test_command_delivery.py",), "{passed} of {all} tests",
+                ("tests/telemetry/links/test_command_delivery.py",), "{passed} of {all} tests",
             ),
             Tests(
                 "1,300 commands to 40 UAVs by MAVLink, 30 % lost each way, the gateway killed 5 times; overload with and without kills",
@@ -115,12 +115,12 @@ RELIABILITY = (
         (
             Tests(
                 "a job longer than the visibility timeout; the same job delivered 5 times", "its effect exactly once, 5 of 5 harmless",
-                ("tests/missions/test_delivered_again.py",), "{passed} of {all} tests",
+                ("tests/missions/commands/test_delivered_again.py",), "{passed} of {all} tests",
             ),
             Tests(
                 "100 large plans, 20 workers killed", "every job ends once, every mission is planned once",
                 ("tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py",
-                 "tests/simulation/test_lost_rehearsals.py"),
+                 "tests/simulation/rehearsals/test_lost_rehearsals.py"),
                 "{passed} of {all} tests",
             ),
         ),
@@ -138,8 +138,8 @@ RELIABILITY = (
             Experiment("the gateway, a worker and the web an hour and ten years off", "wrong_clocks", "see the row"),
             Tests(
                 "a UAV's clock is wrong", "stored and flagged, never shown as the latest, nothing held up",
-                ("tests/telemetry/test_ingest.py", "tests/telemetry/test_latest.py", "tests/telemetry/test_link_telemetry.py",
-                 "tests/telemetry/test_link_results.py", f"{GATEWAY}/test_caution.py"),
+                ("tests/telemetry/test_ingest.py", "tests/telemetry/test_latest.py", "tests/telemetry/links/test_link_telemetry.py",
+                 "tests/telemetry/links/test_link_results.py", f"{GATEWAY}/test_caution.py"),
                 "{passed} of {all} tests", "future or clock or late or order",
             ),
         ),
@@ -214,8 +214,8 @@ SECURITY = (
         (
             Tests(
                 "every address of the API by every role, with rows of another organisation; UAVs as other UAVs", "0 wrongly allowed",
-                (f"{WORKSPACE}/test_foreign_rows.py", f"{WORKSPACE}/test_roles.py", "tests/telemetry/test_link_authentication.py",
-                 "tests/telemetry/test_link_route.py", f"{LIVE}/test_rights.py"),
+                (f"{WORKSPACE}/test_foreign_rows.py", f"{WORKSPACE}/test_roles.py", "tests/telemetry/links/test_link_authentication.py",
+                 "tests/telemetry/links/test_link_route.py", f"{LIVE}/test_rights.py"),
                 "{passed} of {all} tests",
             ),
         ),
@@ -237,7 +237,7 @@ SECURITY = (
                 "zip and PBF bombs, slips, links, many entries, deep and large JSON, NaN, files cut and flipped anywhere",
                 "refused, memory and disk bounded, nothing left",
                 ("tests/inspection/importers/assets/test_hostile_files.py", "tests/inspection/importers/osm/test_hostile_files.py",
-                 "tests/inspection/test_uploads_api.py", "tests/inspection/geodesy/test_geometry_validator.py"),
+                 "tests/inspection/imports/test_uploads_api.py", "tests/inspection/geodesy/test_geometry_validator.py"),
                 "{passed} of {all} tests",
             ),
         ),
@@ -251,7 +251,7 @@ SECURITY = (
             ),
             Tests(
                 "2,200 random missions over real regions, judged by an exact test of their own", "0 routes cross a zone",
-                ("tests/missions/test_random_missions.py", "tests/missions/test_zone_race.py"), "{passed} of {all} runs",
+                ("tests/missions/property_tests/test_random_missions.py", "tests/missions/planning/test_zone_race.py"), "{passed} of {all} runs",
             ),
         ),
     ),
@@ -358,7 +358,7 @@ FLIGHT = (
         (
             Tests(
                 "when planning, and in flight", "refused with what lacks; told",
-                ("tests/missions/test_batteries.py", "tests/telemetry/test_replan_hooks.py"), "{passed} of {all} tests",
+                ("tests/missions/planning/test_batteries.py", "tests/telemetry/test_replan_hooks.py"), "{passed} of {all} tests",
             ),
         ),
     ),
@@ -368,7 +368,7 @@ FLIGHT = (
             Tests(
                 "two missions at one time and place; two UAVs that meet, 50 pairs", "not both approved; told in time and once",
                 ("tests/missions/test_approval.py::test_two_missions_on_the_same_way_at_the_same_time_are_not_both_approved",
-                 "tests/missions/test_other_flights.py", "tests/telemetry/alerting/test_meetings.py"),
+                 "tests/missions/planning/test_other_flights.py", "tests/telemetry/alerting/test_meetings.py"),
                 "{passed} of {all} tests",
             ),
         ),

@@ -13,7 +13,7 @@ from inspection.models import Asset, AssetReference
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
 from tests.accounts.users import client_of, somebody
-from tests.inspection.osm_files import small_line, write_osm
+from tests.inspection.imports.osm_files import small_line, write_osm
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

@@ -13,7 +13,7 @@ from inspection.services import find_gaps, save_zone
 from inspection.services.gaps import dismiss_gap
 from tests.accounts.users import client_of, somebody
 from tests.inspection import ground
-from tests.inspection.zone_sets import SETS, stored
+from tests.inspection.imports.zone_sets import SETS, stored
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

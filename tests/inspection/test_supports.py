@@ -9,7 +9,7 @@ from inspection.services import delete_asset, import_osm, save_asset
 from inspection.services.supports import number_supports
 from tests.accounts.users import somebody
 from tests.inspection.ground import line, tower
-from tests.inspection.osm_files import small_line, write_osm
+from tests.inspection.imports.osm_files import small_line, write_osm
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

@@ -20,7 +20,7 @@ from inspection.terrain.heights import REFERENCES, UnknownReference, amsl_m, cou
 from inspection.terrain.profile import MAX_SAMPLES, samples_along
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_hgt
-from tests.inspection.test_terrain_import import geotiff, plane, post
+from tests.inspection.imports.test_terrain_import import geotiff, plane, post
 from workspace.models import AuditEntry, Role
 
 METRES = st.floats(-400, 8_800)

@@ -16,7 +16,7 @@ from missions.services.commands.dispatch import dispatch_mission
 from tests.accounts.users import somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
-from tests.missions.outbox import a_uav, claim, fence
+from tests.missions.commands.outbox import a_uav, claim, fence
 from workspace.models import User
 
 

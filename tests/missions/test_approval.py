@@ -35,8 +35,8 @@ from missions.services.commands.refused import Refused
 from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from tests.missions import worlds
+from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
-from tests.missions.outbox import claim, fence, now
 from tests.missions.worlds import World, world
 from workspace.models import User
 

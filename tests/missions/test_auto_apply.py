@@ -24,10 +24,10 @@ from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from missions.models import Mission, MissionState
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
-from tests.inspection.osm_files import small_line, write_osm
-from tests.inspection.zone_sets import zone_file
+from tests.inspection.imports.osm_files import small_line, write_osm
+from tests.inspection.imports.zone_sets import zone_file
 from tests.missions.api import mission_body, post
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.missions.worlds import World, world
 from tests.workspace.api.test_token_scopes import with_token
 from workspace.models import Job, Organisation, Role, User

@@ -19,7 +19,7 @@ from missions.services.planning import planner
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
-from tests.missions.test_planning import request
+from tests.missions.planning.test_planning import request
 from tests.missions.worlds import World, world
 from workspace.models import Role
 

@@ -41,7 +41,7 @@ class Site:
     def start(self, name: str) -> None:
         socket = self.places.state / f"{name}.sock"
         socket.unlink(missing_ok=True)
-        command = [*self._programs[name].command[:-1], "tests.scripts.slow_application:application"]
+        command = [*self._programs[name].command[:-1], "tests.scripts.proxy.slow_application:application"]
         self._processes[name] = subprocess.Popen(command, cwd=PROJECT_DIR)
         wait_for(socket.exists)
 

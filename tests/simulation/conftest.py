@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.simulation.random_rehearsals import bring_in_demo_region
+from tests.simulation.rehearsals.random_rehearsals import bring_in_demo_region
 
 RowsForAModule = Callable[[Callable[[], None]], AbstractContextManager[None]]
 

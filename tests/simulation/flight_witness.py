@@ -7,7 +7,7 @@ import numpy as np
 from inspection.models import Asset, NoFlyZone
 from simulation.assessment.flown import FlownRoute
 from tests.exact_geometry import segment_meets_polygon
-from tests.missions.ground_judge import Hills
+from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.plane import east_north
 
 PASSED_M = 2.0

@@ -17,8 +17,8 @@ from simulation.services.demo_missions import (
     want_demo_missions,
 )
 from tests.accounts.users import client_of, somebody
-from tests.simulation.random_rehearsals import rehearse_mission
-from tests.simulation.test_random_rehearsals import faults_of
+from tests.simulation.rehearsals.random_rehearsals import rehearse_mission
+from tests.simulation.rehearsals.test_random_rehearsals import faults_of
 from workspace.models import Job, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -32,8 +32,8 @@ from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.simulations import end_now
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
+from tests.missions.commands.outbox import give
 from tests.missions.flights import carry, fleet, ground, planned
-from tests.missions.outbox import give
 from tests.missions.worlds import world
 from workspace.models import Organisation, Role, User
 

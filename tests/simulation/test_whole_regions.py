@@ -21,11 +21,11 @@ from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
 from tests.missions.flights import an_operator
-from tests.missions.ground_judge import Hills
-from tests.missions.random_flights import cut_out
-from tests.missions.random_missions import put_random_zones
+from tests.missions.oracles.terrain_oracle import Hills
+from tests.missions.property_tests.random_flights import cut_out
+from tests.missions.property_tests.random_missions import put_random_zones
 from tests.simulation.flight_witness import things_hit, waypoints_missed, zones_entered
-from tests.simulation.rehearsed import loaded, skies
+from tests.simulation.rehearsals.rehearsed import loaded, skies
 
 pytestmark = [pytest.mark.django_db, pytest.mark.long]
 

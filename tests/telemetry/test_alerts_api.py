@@ -13,7 +13,7 @@ from telemetry.selectors.alert_words import TEMPLATES, alert_words
 from telemetry.selectors.alerts import waiting_to_be_seen
 from telemetry.services.alerts.alerts import close_alert, open_alert, tell_of_second_sender
 from tests.accounts.users import client_of, somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at
 from workspace.models import AuditEntry, Organisation, Role
 

@@ -11,7 +11,7 @@ from telemetry.models import PositionEstimate
 from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.services import retention, store_records
 from tests.accounts.users import client_of, somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import START, at, record
 from workspace.models import Organisation, Role
 

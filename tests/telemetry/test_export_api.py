@@ -13,7 +13,7 @@ from missions.models import Mission, Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.accounts.users import client_of, somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import record
 from workspace.models import Role
 

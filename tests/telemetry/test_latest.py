@@ -13,7 +13,7 @@ from missions.models import Uav
 from telemetry.live.uavs import measured_json
 from telemetry.models import UavWatch
 from telemetry.services import store_records
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at, record
 from workspace.live.changes import changes
 from workspace.models import Organisation

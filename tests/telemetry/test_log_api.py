@@ -15,7 +15,7 @@ from telemetry.models import FlightLog, TelemetryRecord, VehicleText
 from telemetry.selectors.log import LogFilter, latest_record, records_that_match
 from telemetry.services import store_records
 from tests.accounts.users import client_of, somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import START, at, record
 from workspace.models import Organisation, Role
 

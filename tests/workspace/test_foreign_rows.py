@@ -33,7 +33,7 @@ from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
 from tests.accounts.users import client_of, somebody
-from tests.missions.outbox import a_uav, give
+from tests.missions.commands.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
 from tests.workspace.sessions.test_roles import SAFE, stand_in
 from workspace.jobs.services import create_job

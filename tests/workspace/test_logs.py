@@ -22,7 +22,7 @@ from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
 from operation.redaction import without_secrets
 from tests.accounts.users import client_of, somebody
-from tests.telemetry.uav_clients import LINK, linked_uav, report
+from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 from workspace.api_tokens import create_api_token
 from workspace.models import Role, User
 

@@ -19,8 +19,8 @@ from planning.problem import Objective
 from planning.solver.solver import never
 from tests.inspection import ground
 from tests.missions import worlds
+from tests.missions.commands.outbox import claim
 from tests.missions.flights import carry, fleet
-from tests.missions.outbox import claim
 from workspace.jobs.services import start_job
 from workspace.models import Job, User
 

@@ -17,8 +17,8 @@ from missions.models import CommandKind, OfferState, ReplanOffer
 from missions.services.replanning import accept_offer, suggest, suggest_for_zones, zones_ahead
 from tests.accounts.users import client_of, somebody
 from tests.missions import worlds
+from tests.missions.commands.outbox import give
 from tests.missions.flights import carry, ground
-from tests.missions.outbox import give
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
 from workspace.models import Job
 

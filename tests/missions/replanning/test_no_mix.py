@@ -16,8 +16,8 @@ from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
 from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
 from tests.accounts.users import somebody
+from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import ground
-from tests.missions.outbox import claim, fence
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
 from workspace.models import Job, JobState
 

@@ -14,8 +14,8 @@ from missions.services.commands.steering import mission_in_hand
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
 from tests.accounts.users import somebody
+from tests.missions.commands.outbox import claim, fence, give
 from tests.missions.flights import carry, ground
-from tests.missions.outbox import claim, fence, give
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
 from workspace.models import Job
 

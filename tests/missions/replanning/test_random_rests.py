@@ -21,10 +21,10 @@ from tests.accounts.users import somebody
 from tests.cases import long
 from tests.inspection import ground as ground_rows
 from tests.missions.flights import fleet
+from tests.missions.oracles.zone_oracle import ZoneJudge, legs_of
 from tests.missions.plane import apart_m
-from tests.missions.random_flights import bring_in
+from tests.missions.property_tests.random_flights import bring_in
 from tests.missions.replanning.in_flight import Flight, started
-from tests.missions.zone_judge import ZoneJudge, legs_of
 
 pytestmark = pytest.mark.django_db
 UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from planning.rules import AT_ONCE, FlightRules, Manoeuvres
 from planning.trajectory.turns import turning_s
-from tests.missions.turn_judge import turns_s
+from tests.missions.oracles.turn_oracle import turns_s
 
 Leg = tuple[float, float, float]  # metres to east, north and up
 

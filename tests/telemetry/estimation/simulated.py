@@ -28,7 +28,7 @@ from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mode_numbers import usual_number
 from telemetry.estimation.knowledge import Knowledge
-from tests.simulation.planned_flights import planned_timing, usable_wh
+from tests.simulation.rehearsals.planned_flights import planned_timing, usable_wh
 from tests.telemetry.estimation.heard import reports_of
 from tests.telemetry.estimation.routes import drawn_route, route_on_line
 from tests.telemetry.estimation.scoring import BEGUN_S, INTERVALS_S, Score, score

@@ -14,7 +14,7 @@ from websocket import WebSocket
 from config.websocket_urls import websocket_urlpatterns
 from telemetry.services import store_records
 from tests.accounts.users import somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import record
 from tests.workspace.api.described_answers import openapi_document, validate
 from tests.workspace.live.proxied_site import Door, close_code

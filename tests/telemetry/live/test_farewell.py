@@ -19,7 +19,7 @@ from scripts.proxy_site import Site
 from scripts.system_packages import find_program
 from telemetry.services import store_records
 from tests.accounts.users import somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.program import free_port
 from tests.telemetry.live.page import HungUp, Page
 from tests.telemetry.records import record

@@ -27,8 +27,8 @@ from missions.services.fleet.credentials import make_credential
 from scripts.places import WEB_PROGRAMS
 from telemetry.models import TelemetryRecord
 from tests.accounts.users import client_of, somebody
+from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import carry, dispatched, fleet, ground
-from tests.missions.outbox import a_uav
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.live.installation import Installation, installation

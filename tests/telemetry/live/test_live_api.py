@@ -17,8 +17,8 @@ from telemetry.selectors.live import MAX_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
 from tests.accounts.users import client_of, somebody
+from tests.missions.commands.outbox import a_uav, give
 from tests.missions.flights import approved, carry, dispatched, fleet, ground
-from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import world
 from tests.telemetry.records import record
 from workspace.models import Organisation

@@ -4,7 +4,7 @@ import pytest
 
 from telemetry.services import store_records
 from tests.accounts.users import somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
 from tests.workspace.live.proxied_site import Door

@@ -15,7 +15,7 @@ from missions.models import Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.accounts.users import somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record

@@ -14,7 +14,7 @@ from config.websocket_urls import websocket_urlpatterns
 from missions.models import CredentialKind, Mission
 from missions.services.fleet.credentials import make_credential
 from tests.accounts.users import somebody
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.workspace.live.proxied_site import Door, close_code
 from workspace.api_tokens import create_api_token

@@ -8,8 +8,8 @@ from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import load_of
+from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended
 from tests.telemetry.gateway.station import wait_for
-from tests.telemetry.gateway.test_commands import begin, dispatch, ended
 from tests.telemetry.scenarios.vehicle import ScenarioVehicle
 
 FLIGHT_S = 400.0  # of patience, with a mission of some 250 s at five times its pace on a busy machine

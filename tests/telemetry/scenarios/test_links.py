@@ -12,9 +12,9 @@ from planning.clearance.lost_link import LostLink
 from telemetry.models import TelemetryRecord, TelemetryStream
 from tests.accounts.users import somebody
 from tests.missions.flights import planned
+from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended
 from tests.telemetry.gateway.program import free_port, gateway_program
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
-from tests.telemetry.gateway.test_commands import begin, dispatch, ended
 from tests.telemetry.scenarios.flights import FLIGHT_S, holds, lands, order, take_off, wait_until_ready
 from tests.telemetry.scenarios.vehicle import RALLY_AT
 

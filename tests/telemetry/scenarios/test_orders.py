@@ -5,8 +5,8 @@ import pytest
 from mavlink.autopilot_type import COPTER_MODES, Mode
 from missions.models import CommandKind, CommandState
 from telemetry.models import Alert
+from tests.telemetry.gateway.commands.test_commands import begin, ended
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
-from tests.telemetry.gateway.test_commands import begin, ended
 from tests.telemetry.scenarios.flights import bring, lands, order, take_off
 
 pytestmark = pytest.mark.django_db(transaction=True)

@@ -23,8 +23,8 @@ from tests.accounts.users import somebody
 from tests.missions import worlds
 from tests.missions.flights import approved
 from tests.missions.worlds import UAV_AT
+from tests.telemetry.gateway.commands.test_commands import ended
 from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav
-from tests.telemetry.gateway.test_commands import ended
 from tests.telemetry.scenarios.flights import FLIGHT_S, wait_until_ready
 from tests.telemetry.scenarios.vehicle import ScenarioVehicle
 from tests.telemetry.watch.program import watch_program

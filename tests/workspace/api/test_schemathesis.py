@@ -26,7 +26,7 @@ from schemathesis.specs.openapi.checks import (
 
 from tests.accounts.users import somebody
 from tests.inspection import ground
-from tests.missions.outbox import a_uav
+from tests.missions.commands.outbox import a_uav
 from tests.missions.worlds import world
 from workspace.api_tokens import create_api_token
 from workspace.models import Role

@@ -4,7 +4,7 @@ import pytest
 from shapely import Point
 
 from inspection.importers.osm.reader import read_osm
-from tests.inspection.osm_files import write_osm
+from tests.inspection.imports.osm_files import write_osm
 
 BRIDGE = {"highway": "primary", "bridge": "yes"}
 #    a rectangle of about 152 m by 22 m, and ways along it

@@ -10,7 +10,7 @@ from shapely import Point
 from inspection.geodesy.wgs84 import path_length_m
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
-from tests.inspection.osm_files import TOWER, osm_xml, small_line, write_osm
+from tests.inspection.imports.osm_files import TOWER, osm_xml, small_line, write_osm
 
 # Of the generated regions as drawn, counted without the reader; of the real files the table in the README of the shared data.
 # Kilometres to one decimal.

@@ -1,0 +1,173 @@
+"""Works out once more, for every UAV of a request, why a plan leaves a target out: by trying every order of the targets."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise, permutations, product
+from typing import Any
+
+from tests.missions.property_tests.test_random_missions import MissionModel
+
+from missions.services import LockRequest, PlanRequest
+from planning.problem import End
+
+METRES_OFF = 3.0  # what is kept in reserve of a range, and rounding
+GROUNDED, NO_SENSOR, NO_WAY, RANGE = "cannot take off", "without the sensor", "no permitted route", "range too short"
+BATTERY, NOTHING = "battery too small", "nothing"
+_BY_RANGE = re.compile(r"It is ([\d,.]+) (k?m) .*?, ([\d,.]+) (k?m) more than the range of (.+?)(?:: [\d.,]+ min of flight)?\.(?: |$)")
+_BY_BATTERY = re.compile(r"([\d,.]+) Wh more than the battery of (.+?) may give")
+_NO_ROUTE_FOR = re.compile(r"There is no permitted route for (.+?)\.")
+_OTHERS = re.compile(r"Other UAVs: (.+)\.$")
+
+
+class ReasonOracle:
+    """Of one request without wind. models: the mission on the preferred and on the shortest ways."""
+
+    def __init__(self, request: PlanRequest, models: Sequence[MissionModel]) -> None:
+        self.request, self.models = request, models
+
+    def untrue(self, plan: dict[str, Any]) -> Iterator[str]:
+        for item in plan["unassigned"]:
+            for fault in self._untrue(item):
+                yield f"target {item['target']}: {fault}: {item['reason']}, {item['message']}"
+
+    def _untrue(self, item: dict[str, Any]) -> Iterator[str]:
+        target, message = item["target"], item["message"]
+        bound = self._bound_to(target)
+        limits = {uav.name: self._limit(number, target) for number, uav in enumerate(self.request.uavs) if bound in (None, uav.name)}
+        if item["reason"] == "not_allowed":
+            yield from self._untrue_wish(item["target"], message, bound, limits)
+            return
+        if item["reason"] not in {"beyond_range", "beyond_energy", "no_path"} or "a base" in message or "as a whole." in message[:90]:
+            return
+        named: dict[str, str] = {}
+        if by_range := _BY_RANGE.search(message):
+            named[by_range[5]] = RANGE
+            yield from self._wrong_figures(item, by_range, limits)
+        elif by_battery := _BY_BATTERY.search(message):
+            named[by_battery[2]] = BATTERY
+        elif no_route := _NO_ROUTE_FOR.search(message):
+            named |= dict.fromkeys(no_route[1].split(", "), NO_WAY)
+        elif message.startswith("No UAV can get there"):
+            named |= dict.fromkeys(limits, NO_WAY)
+        elif "alone" in message:
+            if NOTHING not in limits.values():
+                yield f"nobody could do it alone, but {limits}"
+            return
+        else:
+            return
+        said = named | _others(message)
+        for name, limit in limits.items():
+            if limit == NOTHING and said.get(name) != BATTERY:
+                yield f"{name} has the range and a way, but is said to have {said.get(name)}"
+            elif limit not in (NOTHING, said.get(name)):
+                yield f"{name}: {limit}, but is said to have {said.get(name)}"
+        if BATTERY in said.values():
+            for name in (name for name, limit in said.items() if limit == BATTERY):
+                if next(uav for uav in self.request.uavs if uav.name == name).performance.battery_wh is None:
+                    yield f"{name} has no battery"
+
+    def _untrue_wish(self, target: int, message: str, bound: str | None, limits: dict[str, str]) -> Iterator[str]:
+        number = next((number for number, uav in enumerate(self.request.uavs) if uav.name == bound), None)
+        if number is not None and not self._has_sensor(number, target):
+            if f"tied to {bound}, which does not have the sensor" not in message:
+                yield f"it does not say that {bound} lacks the sensor"
+        elif bound is not None and limits[bound] == GROUNDED and not re.search(rf"{bound} stands inside .+ and cannot take off\.", message):
+            yield f"it does not say why {bound} cannot take off"
+        if NOTHING in limits.values() or RANGE in limits.values():
+            yield f"somebody may do it, {limits}"
+
+    def _wrong_figures(self, item: dict[str, Any], said: re.Match[str], limits: dict[str, str]) -> Iterator[str]:
+        needed_m, missing_m = _metres(said[1], said[2]), _metres(said[3], said[4])
+        lacks_m = {}
+        for number, uav in enumerate(self.request.uavs):
+            if limits.get(uav.name) == RANGE:
+                lacks_m[uav.name] = self._needed_m(number, item["target"]) - (uav.max_range_m or 0.0)
+        name = said[5]
+        if name not in lacks_m:
+            yield f"not the range is what keeps {name}"
+            return
+        if abs(item["missing_m"] - lacks_m[name]) > METRES_OFF:
+            yield f"{name} lacks {lacks_m[name]:.1f} m, not {item['missing_m']:.1f} m"
+        if lacks_m[name] > min(lacks_m.values()) + METRES_OFF:
+            yield f"{min(lacks_m, key=lambda one: lacks_m[one])} comes nearer"
+        range_m = next(uav.max_range_m for uav in self.request.uavs if uav.name == name) or 0.0
+        if abs(needed_m - missing_m - range_m) > 101.0 or abs(missing_m - item["missing_m"]) > 51.0:
+            yield "its figures do not add up"
+
+    def _bound_to(self, target: int) -> str | None:
+        lock = self._lock_of(target)
+        return lock.uav if lock else self.request.targets[target].uav or None
+
+    def _lock_of(self, target: int) -> LockRequest | None:
+        return next((lock for lock in self.request.locks if target in lock.targets), None)
+
+    def _limit(self, uav: int, target: int) -> str:
+        """Of a UAV with nothing else to do, its battery left aside."""
+        if uav not in self.models[0].uavs:
+            return GROUNDED
+        if not self._has_sensor(uav, target):
+            return NO_SENSOR
+        needed_m = self._needed_m(uav, target)
+        if math.isinf(needed_m):
+            return NO_WAY
+        return RANGE if needed_m > (self.request.uavs[uav].max_range_m or math.inf) else NOTHING
+
+    def _has_sensor(self, uav: int, target: int) -> bool:
+        wanted = self.request.targets[target].sensor
+        return not wanted or wanted in self.request.uavs[uav].sensors
+
+    def _needed_m(self, uav: int, target: int) -> float:
+        return min(self._least_m(model, uav, target) for model in self.models)
+
+    def _least_m(self, model: MissionModel, uav: int, target: int) -> float:
+        """Over every order of targets that this UAV may fly, in which locked runs are whole."""
+        start, least_m = model.uavs.index(uav), math.inf
+        own = next((number for number, place in enumerate(model.open) if place.target == target), None)
+        if own is None:
+            return math.inf
+        others = [number for number in range(len(model.open)) if number != own and self._may(uav, model.open[number].target)]
+        visits = model.problem.visits_of_target()
+        for count in range(len(others) + 1):
+            for chosen in permutations([own, *others], count + 1):
+                if own in chosen and self._keeps_runs([model.open[number].target for number in chosen], uav):
+                    for order in product(*(visits[number] for number in chosen)):
+                        least_m = min(least_m, _length_m(model, start, order))
+        return least_m
+
+    def _may(self, uav: int, target: int) -> bool:
+        return self._bound_to(target) in (None, self.request.uavs[uav].name) and self._has_sensor(uav, target)
+
+    def _keeps_runs(self, order: list[int], uav: int) -> bool:
+        for lock in self.request.locks:
+            flown = [target for target in order if target in lock.targets]
+            if not flown:
+                continue
+            begin = order.index(flown[0])
+            if lock.uav != self.request.uavs[uav].name or tuple(order[begin : begin + len(lock.targets)]) != lock.targets:
+                return False
+            if (lock.at_start and begin > 0) or (lock.at_end and begin + len(lock.targets) < len(order)):
+                return False
+        return True
+
+
+def _length_m(model: MissionModel, start: int, order: Sequence[int]) -> float:
+    ways, problem = model.ways, model.problem
+    metres = float(ways.from_start_m[start, order[0]]) + sum(problem.visits[visit].length_m for visit in order)
+    metres += sum(float(ways.between_m[left, right]) for left, right in pairwise(order))
+    end = problem.uavs[start].end
+    back = ways.to_start_m[order[-1], start] if end is End.RETURN else ways.to_base_m[order[-1]] if end is End.ANY_BASE else 0.0
+    return metres + float(back)
+
+
+def _others(message: str) -> dict[str, str]:
+    found = _OTHERS.search(message)
+    said = {}
+    for part in found[1].split("; ") if found else []:
+        limit, _, names = part.removesuffix(")").partition(" (")
+        said |= dict.fromkeys(names.split(", "), limit)
+    return said
+
+
+def _metres(amount: str, unit: str) -> float:
+    return float(amount.replace(",", "")) * (1_000.0 if unit == "km" else 1.0)
