@@ -196,10 +196,15 @@ def _link(link: UavLink, reported: Reported, now: datetime) -> Check:
     received = parse_datetime(reported["report"]["received_at"]) if "report" in reported else None
     heard = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
     if heard is None:
-        return Check("link", CheckState.FAILED, _("It was never heard. Switch it on, and check its connection."))
+        words = _("Never connected. Switch it on, and check its connection.")
+        if link.uav.is_simulated:
+            words = _("Not connected. It connects by itself once its simulation runs.")
+        return Check("link", CheckState.FAILED, words)
     age_s = max((now - heard).total_seconds(), 0.0)
     if age_s > HEARD_WITHIN.total_seconds():
-        words = _("It was last heard %(age)s ago. Switch it on, and check its connection.")
+        words = _("Last heard %(age)s ago. Switch it on, and check its connection.")
+        if link.uav.is_simulated:
+            words = _("Last heard %(age)s ago. It connects by itself once its simulation runs.")
         return Check("link", CheckState.FAILED, words % {"age": _duration(age_s)})
     return Check("link", CheckState.OK, _("Connected"))
 

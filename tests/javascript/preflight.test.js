@@ -59,7 +59,9 @@ test("the worst check of a UAV is what is said of it", () => {
   );
   assert.equal(summaryOf({ checks: [check("return", "warning"), failed, ok] }), "It would land with 5 %.");
   assert.equal(
-    summaryOf({ checks: [ok, ...["battery", "wind", "home", "home"].map((code) => check(code, "unknown"))] }),
+    summaryOf({
+      checks: [ok, ...["battery", "wind", "mission", "home", "home"].map((code) => check(code, "unknown"))],
+    }),
     "Not known: battery, wind, home position",
   );
 });

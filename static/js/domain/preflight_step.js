@@ -48,7 +48,8 @@ export function summaryOf({ checks }) {
   const said = checks.filter(({ state }) => state === worst);
   if (worst === "ok") return t("Ready");
   if (worst === "failed" || worst === "waiting") return said[0].message;
-  const names = namesOfChecks(said);
+  const names = namesOfChecks(said.filter(({ code }) => code !== "mission")); // that it was not uploaded is known
+  if (!names) return said[0].message;
   return worst === "warning" ? t("Warning: {names}", { names }) : t("Not known: {names}", { names });
 }
 

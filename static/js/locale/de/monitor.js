@@ -306,7 +306,7 @@ export default {
   "crash": "Absturz",
   "link": "Verbindung",
   "position": "Position",
-  "home position": "Home-Position",
+  "home position": "Heimatpunkt",
   "mission on board": "Mission an Bord",
   "fence": "Geofence",
   "return path": "Rückweg",

@@ -60,4 +60,5 @@ export default {
   "Choose first which UAV it is for.": "Wählen Sie zuerst, für welches UAV es gilt.",
   "Choose a UAV": "UAV wählen",
   "All UAVs of this mission": "Alle UAVs dieser Mission",
+  "For {names}.": "Für {names}.",
 };

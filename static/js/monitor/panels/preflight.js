@@ -110,7 +110,8 @@ function createPanel(place, on) {
   );
   const why = h("p", { class: "caption", id: "preflight-why", role: "status" });
   button.setAttribute("aria-describedby", "preflight-why");
-  place.append(h("h2", {}, t("Before start")), list, tick, heights, button, simulate, why);
+  const acts = h("div", { class: "preflight-acts" }, tick, heights, button, simulate, why);
+  place.append(h("h2", {}, t("Before start")), list, acts);
 
   return {
     /** What is to be set with the upload. */

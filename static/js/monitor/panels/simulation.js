@@ -252,7 +252,7 @@ class ChangesInFlight {
   #wished = ""; // who was chosen in the panel; see meantFor
   /** @type {number | null} */
   #selected = null; // UAV of the page
-  #nobody = h("p", { class: "caption", id: "simulation-nobody" }, t("Choose first which UAV it is for."));
+  #whom = h("p", { class: "caption", id: "simulation-whom" }); // it keeps its place, as what is below it does
   /** @type {HTMLButtonElement[]} */
   #ofSome = []; // buttons that need to know for whom
   #seconds = number("simulation-seconds", LASTS_S, 1, 3600);
@@ -269,7 +269,7 @@ class ChangesInFlight {
       this.#wished = this.#whose.value;
       this.#drawMeant();
     });
-    this.#whose.setAttribute("aria-describedby", this.#nobody.id);
+    this.#whose.setAttribute("aria-describedby", this.#whom.id);
     this.#seconds.setAttribute("aria-describedby", this.#lasts.id);
     this.#seconds.addEventListener("input", () => this.#drawLasts());
     const faults = [...FAULTS, WELL].map((fault) => this.#faultButton(fault));
@@ -282,7 +282,7 @@ class ChangesInFlight {
         field(t("Speed"), this.#speed),
         field(t("Wind and faults of"), this.#whose),
       ),
-      this.#nobody,
+      this.#whom,
       group(t("Wind"), "simulation-wind-title", this.#windForm()),
       group(
         t("Faults"),
@@ -320,10 +320,13 @@ class ChangesInFlight {
     ]);
     this.#whose.value = meantFor(this.#wished, this.#selected, vehicles);
     const isNobody = this.#whose.value === "";
-    this.#nobody.hidden = !isNobody;
+    const names = this.#meant().map(({ name }) => name);
+    this.#whom.textContent = isNobody
+      ? t("Choose first which UAV it is for.")
+      : t("For {names}.", { names: names.join(", ") });
     for (const button of this.#ofSome) {
       button.disabled = isNobody;
-      button.title = isNobody ? (this.#nobody.textContent ?? "") : "";
+      button.title = isNobody ? this.#whom.textContent : "";
     }
   }
 
