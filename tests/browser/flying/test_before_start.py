@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
-from tests.browser.flying.test_batch_commands import ends
-from tests.browser.flying.uav_over_http import Flyer
 
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.test_batch_commands import ends
+from tests.browser.flying.uav_over_http import Flyer
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
@@ -78,7 +78,7 @@ def test_four_clicks_lead_from_approved_to_the_start_of_all(visitor: Visitor, ap
     wait_for_map(page)
     panel = page.get_by_role("region", name="Before start")
     expect(panel.get_by_role("button", name="Fly in simulation")).to_be_enabled()  # whose simulated UAVs would connect by themselves
-    expect(panel).to_contain_text("It was never heard.")
+    expect(panel).to_contain_text("It connects by itself once its simulation runs.")
 
     uploads(page, standing, 2)  # 1
     for flyer, _at in standing:

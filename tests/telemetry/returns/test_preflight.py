@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 from django.utils import timezone
-from tests.missions.commands.outbox import claim, fence
 
 from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
 from missions.selectors.missions import mission_of_organisation
@@ -20,6 +19,7 @@ from telemetry.services.alerts.down_alerts import close_down_alert
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
+from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, fleet
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import heard
@@ -119,6 +119,15 @@ def test_a_uav_of_another_mission_is_not_started_with_these(two: tuple[Mission, 
     [other] = fleet("Crow")
     answer = begins(person, mission, tern, other)
     assert (answer.status_code, PlannedStarts.objects.count()) == (409, 0)
+
+
+def test_a_simulated_uav_is_not_to_be_switched_on(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    Uav.objects.filter(pk=tern.pk).update(is_simulated=True)
+    Uav.objects.filter(pk=kite.pk).update(is_simulated=False)
+    simulated, real = [row.checks[0].message for row in checks(mission).uavs]
+    assert simulated == "Not connected. It connects by itself once its simulation runs."
+    assert real == "Never connected. Switch it on, and check its connection."
 
 
 def test_a_uav_that_was_heard_long_ago_is_not_connected(two: tuple[Mission, Uav, Uav]) -> None:
