@@ -12,8 +12,6 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
-from tests.simulation.rehearsals.planned_flights import climbs, compared, holds
-from tests.simulation.rehearsals.planned_flights import square as square_route
 
 from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat
@@ -26,6 +24,8 @@ from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Weather
+from tests.simulation.rehearsals.planned_flights import climbs, compared, holds
+from tests.simulation.rehearsals.planned_flights import square as square_route
 
 MOST_CALM, MOST_WINDY = 0.10, 0.15
 MAX_SPEED_MPS = 12.9  # through the air, with the tilt limit of the simulated flights

@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_of, compared, mission, planned_timing
 
 from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat
 from planning.rules import AT_ONCE, FlightRules
 from simulation.flight.airframe import AIRFRAMES
+from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_of, compared, mission, planned_timing
 from tests.telemetry.estimation.routes import lines_of
 
 PROCESSES = 2

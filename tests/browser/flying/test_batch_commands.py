@@ -5,10 +5,10 @@ from collections.abc import Iterator
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.flying.uav_over_http import Flyer
 
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.uav_over_http import Flyer
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region

@@ -5,9 +5,9 @@ import time
 
 import pytest
 from playwright.sync_api import expect
-from tests.browser.flying.frozen_line import line_to
 
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.frozen_line import line_to
 
 pytestmark = pytest.mark.browser
 

@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.flying.frozen_line import line_to
 
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.frozen_line import line_to
 from tests.browser.operator_map import asks
 from tests.browser.regions import region
 from tests.browser.simulated_mission import (

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.flying.uav_by_mavlink import Autopilot
 
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.uav_by_mavlink import Autopilot
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region

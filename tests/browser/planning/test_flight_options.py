@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
-from tests.browser.planning.test_planning import opens_mission
-from tests.browser.planning.test_planning_options import PHONE, route
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.planning.test_planning import opens_mission
+from tests.browser.planning.test_planning_options import PHONE, route
 from tests.browser.regions import HELIPORT, region
 from tests.browser.test_accessibility import faults
 from tests.cases import long

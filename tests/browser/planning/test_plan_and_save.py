@@ -6,7 +6,6 @@ from uuid import uuid4
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.planning.test_planning import sends
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import (
@@ -20,6 +19,7 @@ from tests.browser.operator_map import (
     targets,
     wait_for_map,
 )
+from tests.browser.planning.test_planning import sends
 from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser

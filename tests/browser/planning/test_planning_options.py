@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
-from tests.browser.planning.test_planning import opens_mission, sends
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.planning.test_planning import opens_mission, sends
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.planning.test_planning import sends
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.planning.test_planning import sends
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 

@@ -5,10 +5,10 @@ from collections.abc import Callable
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.planning.test_unsaved_changes import forgives, opens_mission, picks_from_the_search, removes_first_target
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, at_zoom, stores_mission, targets, wait_for_map
+from tests.browser.planning.test_unsaved_changes import forgives, opens_mission, picks_from_the_search, removes_first_target
 from tests.browser.regions import region
 from tests.cases import long
 

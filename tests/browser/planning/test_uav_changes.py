@@ -4,12 +4,12 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.planning.test_planning import sends
-from tests.browser.planning.test_safe_routes import opens
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.planning.test_planning import sends
+from tests.browser.planning.test_safe_routes import opens
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 

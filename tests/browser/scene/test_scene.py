@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.flying.test_report import posts
 
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.test_report import posts
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import CANVAS_COLOURS, colours_of
 from tests.browser.regions import region

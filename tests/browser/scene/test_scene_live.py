@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 
 import pytest
 from playwright.sync_api import Locator, Page, WebSocketRoute, expect
-from tests.browser.flying.test_live import STEP_M, flies_until, flight
-from tests.browser.flying.uav_over_http import Flyer
-from tests.browser.scene.test_scene import TIMEOUT_MS
 
 from tests.browser.conftest import Visitor
+from tests.browser.flying.test_live import STEP_M, flies_until, flight
+from tests.browser.flying.uav_over_http import Flyer
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.scene.test_scene import TIMEOUT_MS
 from tests.browser.test_fleet import writes
 
 __all__ = ["flight"]

@@ -7,12 +7,12 @@ from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
-from tests.browser.flying.test_report import VIEWS, flown, posts
-from tests.browser.scene.test_scene import TIMEOUT_MS, seen
 
 from tests.browser.conftest import Site, Visitor
+from tests.browser.flying.test_report import VIEWS, flown, posts
 from tests.browser.operator_map import asks
 from tests.browser.regions import region
+from tests.browser.scene.test_scene import TIMEOUT_MS, seen
 from tests.browser.test_fleet import writes
 
 __all__ = ["flown"]

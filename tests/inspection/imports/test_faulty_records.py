@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.inspection.imports.zone_sets import zone_file
 
 from inspection.models import ImportProposal, NoFlyZone
 from inspection.services import import_zones
@@ -12,6 +11,7 @@ from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody
+from tests.inspection.imports.zone_sets import zone_file
 from workspace.models import Role, User
 
 pytestmark = pytest.mark.django_db

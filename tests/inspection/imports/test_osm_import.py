@@ -6,13 +6,13 @@ from io import StringIO
 import pytest
 from django.core.management import call_command
 from django.core.management.base import CommandError
-from tests.inspection.imports.osm_files import TOWER, small_line, write_osm
 
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
 from inspection.models import Asset, DataImport, Ground
 from inspection.services import import_osm
 from tests.cases import long
+from tests.inspection.imports.osm_files import TOWER, small_line, write_osm
 
 pytestmark = pytest.mark.django_db
 

@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.inspection.imports.osm_files import small_line, write_osm
 
 from inspection.models import Asset, DataImport, Ground
 from inspection.services import delete_asset, import_osm, save_asset
@@ -13,6 +12,7 @@ from inspection.services.imports.osm import difference_of_osm
 from inspection.services.proposals import osm
 from inspection.services.proposals.reading import Change, FileRefused, Provenance, Reading
 from tests.accounts.users import somebody
+from tests.inspection.imports.osm_files import small_line, write_osm
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -7,7 +7,6 @@ from typing import Any
 
 import pytest
 from django.db import connection, connections, transaction
-from tests.inspection.imports.zone_sets import zone_file
 
 from inspection.models import ImportProposal, NoFlyZone, ZoneSet
 from inspection.services import import_zones, save_zone
@@ -17,6 +16,7 @@ from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import somebody
+from tests.inspection.imports.zone_sets import zone_file
 from workspace.models import AuditEntry, Role, User
 
 pytestmark = pytest.mark.django_db

@@ -9,12 +9,12 @@ import pytest
 from django.core.management import call_command
 from django.test import Client
 from django.utils import timezone
-from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 
 from inspection.models import DataImport, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.selectors import ground_revision
 from inspection.services import save_zone
 from tests.accounts.users import client_of, somebody
+from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, serving
 from workspace.models import AuditEntry, Role, User
 

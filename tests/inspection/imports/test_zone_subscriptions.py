@@ -11,7 +11,6 @@ import pytest
 from django.db import connections
 from django.test import Client
 from django.utils import timezone
-from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 
 from inspection.models import ImportProposal, NoFlyZone, Upload, ZoneSet, ZoneSubscription
 from inspection.services import delete_zone
@@ -20,6 +19,7 @@ from inspection.services.imports.subscriptions import start_due_fetches
 from inspection.services.imports.uploads import upload_folder
 from inspection.tasks import fetch_due_subscriptions, fetch_subscription
 from tests.accounts.users import client_of, somebody
+from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, body, serving
 from workspace.http_client import Fetched, fetch
 from workspace.models import AuditEntry, Job, JobState, Role, User

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from tests.missions.commands.outbox import a_uav
 
 from missions.models import CommandKind, Mission, Uav, UavCommand
 from missions.services.approval.approval import approve_mission
@@ -17,6 +16,7 @@ from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import BELIEVED_FOR
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
+from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.worlds import World, world
 from workspace.models import Organisation, User

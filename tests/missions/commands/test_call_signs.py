@@ -12,7 +12,7 @@ from missions.services.commands.call_signs import ROUTE_COLOURS, colour_of, colo
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import world
 
-TOKENS = Path(__file__).resolve().parents[2] / "static/css/tokens.css"
+TOKENS = Path(__file__).resolve().parents[3] / "static/css/tokens.css"
 
 
 def own(*uavs: int) -> list[tuple[int, int | None]]:

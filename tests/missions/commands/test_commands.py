@@ -7,7 +7,6 @@ import psycopg
 import pytest
 from django.conf import settings
 from django.db import IntegrityError, connection, transaction
-from tests.missions.commands.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 
 from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
 from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
@@ -28,6 +27,7 @@ from missions.services.commands.commands import (
 from missions.services.commands.refused import Refused
 from missions.tasks import expire_commands
 from tests.accounts.users import somebody
+from tests.missions.commands.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 from workspace.models import AuditEntry
 
 pytestmark = pytest.mark.django_db

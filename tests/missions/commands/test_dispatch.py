@@ -4,7 +4,6 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 from django.utils import timezone
-from tests.missions.commands.outbox import claim, fence, now
 
 from mavlink.vehicle_plan import load_to_json
 from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
@@ -18,6 +17,7 @@ from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
 from missions.services.missions import MissionChange
 from tests.missions import worlds
+from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, planned
 from tests.missions.worlds import World, world
 from workspace.models import AuditEntry, User

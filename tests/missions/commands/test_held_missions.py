@@ -4,7 +4,6 @@ import threading
 
 import pytest
 from django.db import connection, connections
-from tests.missions.commands.outbox import a_uav
 
 from missions.models import CommandKind, MissionState
 from missions.services.approval import checks
@@ -12,6 +11,7 @@ from missions.services.approval.approval import held_mission
 from missions.services.commands import dispatch
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
+from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import world
 

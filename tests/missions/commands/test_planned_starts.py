@@ -4,7 +4,6 @@ from datetime import datetime, timedelta
 
 import pytest
 from django.utils import timezone
-from tests.missions.commands.outbox import claim, fence
 
 from missions.models import CommandKind, CommandState, Mission, MissionUav, PlannedStarts, UavCommand
 from missions.services.commands.commands import note_sent
@@ -15,6 +14,7 @@ from missions.services.commands.steering import command_uav
 from telemetry.models import UavLink, UavWatch
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
+from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
 from tests.missions.worlds import world
 from tests.telemetry.records import heard

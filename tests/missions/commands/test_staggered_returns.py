@@ -4,7 +4,6 @@ from datetime import timedelta
 
 import pytest
 from django.utils import timezone
-from tests.missions.commands.outbox import claim, fence, now
 
 from missions.models import CommandKind, CommandState, LinkKind, Uav, UavCommand
 from missions.services.commands.commands import claim_commands, note_failed, note_sent, queue_command
@@ -13,6 +12,7 @@ from missions.services.commands.rtl_check import note_own_return
 from missions.services.commands.staggered_returns import stuck_returns
 from missions.services.commands.steering import command_uav
 from tests.accounts.users import client_of
+from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, carry, fleet
 from workspace.models import User
 

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from tests.missions.commands.outbox import a_uav
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import Base, Mission, Uav, UavType
 from tests.accounts.users import client_of, somebody
+from tests.missions.commands.outbox import a_uav
 from tests.missions.worlds import world, zone_around
 from workspace.models import Organisation
 

@@ -5,12 +5,12 @@ from typing import Any
 import pytest
 from django.http import HttpResponse
 from django.test import Client
-from tests.missions.commands.outbox import a_uav, claim, fence
 
 from missions.models import Mission, Uav, UavCommand
 from missions.services.commands.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unheard
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
+from tests.missions.commands.outbox import a_uav, claim, fence
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.worlds import World, world
 from workspace.models import Organisation, Role, User

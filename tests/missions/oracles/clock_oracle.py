@@ -10,11 +10,10 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any
 
-from tests.missions.oracles.turn_oracle import turns_s
-
 from inspection.models import Asset
 from missions.services import PlanRequest
 from tests.missions.air import CLIMB_MPS, LIFTS_S, SETTLES_S, TOUCHES_S, brakes_s, density, speeds_mps, watts, wind_mps
+from tests.missions.oracles.turn_oracle import turns_s
 from tests.missions.plane import apart_m, east_north
 
 CLOCK_SHARE, CLOCK_S = 0.005, 2.0  # what times may differ by: another Earth, rounding to tenths

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
+from missions.services import PlanRequest
 from tests.missions.oracles.clock_oracle import stays_s, tower_top_m, wrong_clocks
 from tests.missions.oracles.refusal_oracle import RefusalJudge, course_of
 from tests.missions.oracles.return_oracle import ReturnJudge
@@ -15,8 +16,6 @@ from tests.missions.oracles.separation_oracle import too_near
 from tests.missions.oracles.terrain_oracle import Hills, TallThings, wrong_heights
 from tests.missions.oracles.wire_oracle import WireJudge
 from tests.missions.oracles.zone_oracle import ZoneJudge, legs_of
-
-from missions.services import PlanRequest
 from tests.missions.plane import apart_m
 
 

@@ -11,6 +11,12 @@ from typing import Any
 
 import numpy as np
 import shapely
+
+from inspection.geodesy import LonLat
+from inspection.models import Asset
+from missions.models import Mission
+from missions.services import HandPoint, InvalidRequest, PlanRequest, change_route, take_back_change
+from tests.missions.air import limit_mps, wind_mps
 from tests.missions.oracles.clock_oracle import clock_of
 from tests.missions.oracles.flight_oracle import Judge, flights_m
 from tests.missions.oracles.return_oracle import MORE
@@ -18,14 +24,8 @@ from tests.missions.oracles.separation_oracle import stored_route
 from tests.missions.oracles.terrain_oracle import CLEARANCE_M
 from tests.missions.oracles.wire_oracle import BESIDE_M
 from tests.missions.oracles.zone_oracle import legs_of
-from tests.missions.property_tests.random_flights import stored
-
-from inspection.geodesy import LonLat
-from inspection.models import Asset
-from missions.models import Mission
-from missions.services import HandPoint, InvalidRequest, PlanRequest, change_route, take_back_change
-from tests.missions.air import limit_mps, wind_mps
 from tests.missions.plane import apart_m, east_north
+from tests.missions.property_tests.random_flights import stored
 from workspace.models import User
 
 TRANSIT_M, MAX_HEIGHT_M = 60.0, 120.0

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, permutations, product
 from typing import Any
 
-from tests.missions.property_tests.test_random_missions import MissionModel
-
 from missions.services import LockRequest, PlanRequest
 from planning.problem import End
+from tests.missions.property_tests.test_random_missions import MissionModel
 
 METRES_OFF = 3.0  # what is kept in reserve of a range, and rounding
 GROUNDED, NO_SENSOR, NO_WAY, RANGE = "cannot take off", "without the sensor", "no permitted route", "range too short"

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 import shapely
 from django.contrib.gis.geos import GEOSGeometry, Polygon
-from tests.missions.oracles.terrain_oracle import TALLEST_M, TallThings
-from tests.missions.oracles.zone_oracle import WIDER, ZoneJudge
 
 from inspection.models import Asset
 from missions.services import PlanRequest
 from planning.problem import Priority
 from tests.missions.air import CLIMB_MPS, density, limit_mps, speeds_mps, watts, wind_mps
+from tests.missions.oracles.terrain_oracle import TALLEST_M, TallThings
+from tests.missions.oracles.zone_oracle import WIDER, ZoneJudge
 from tests.missions.plane import apart_m
 
 DIRECT_M = 4_900.0  # of the 5 km that a UAV may fly straight

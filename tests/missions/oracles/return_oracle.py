@@ -10,12 +10,12 @@ from datetime import timedelta
 from typing import Any
 
 import numpy as np
-from tests.missions.oracles.terrain_oracle import CLEARANCE_M, Hills, along
-from tests.missions.oracles.wire_oracle import WireJudge
-from tests.missions.oracles.zone_oracle import Leg, Margins, ZoneJudge
 
 from missions.services import PlanRequest
 from tests.missions.air import CLIMB_MPS, SETTLES_S, TOUCHES_S, brakes_s, density, speeds_mps, watts, wind_mps
+from tests.missions.oracles.terrain_oracle import CLEARANCE_M, Hills, along
+from tests.missions.oracles.wire_oracle import WireJudge
+from tests.missions.oracles.zone_oracle import Leg, Margins, ZoneJudge
 from tests.missions.plane import apart_m, east_north
 
 TRANSIT_M, MAX_HEIGHT_M = 60.0, 120.0

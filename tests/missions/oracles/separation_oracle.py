@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
-from tests.missions.oracles.clock_oracle import CLIMB_MPS, stays_s, tower_top_m
 
 from missions.models import Mission, Route
 from missions.services import PlanRequest
+from tests.missions.oracles.clock_oracle import CLIMB_MPS, stays_s, tower_top_m
 from tests.missions.plane import east_north
 
 LATERAL_M, VERTICAL_M, TIME_S = 28.0, 13.5, 57.0  # of 30 m, 15 m and 60 s, less what lies between samples

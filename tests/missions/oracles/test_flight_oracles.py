@@ -8,11 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.missions.oracles.flight_oracle import Judge
-from tests.missions.oracles.manual_edit_oracle import HandJudge
-from tests.missions.oracles.schedule_oracle import applies_at, sun
-from tests.missions.oracles.terrain_oracle import Hills
-from tests.missions.property_tests.random_flights import A_MONDAY, period, stored
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
@@ -25,6 +20,11 @@ from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, 
 from planning.problem import Objective
 from tests.accounts.users import somebody
 from tests.inspection import ground
+from tests.missions.oracles.flight_oracle import Judge
+from tests.missions.oracles.manual_edit_oracle import HandJudge
+from tests.missions.oracles.schedule_oracle import applies_at, sun
+from tests.missions.oracles.terrain_oracle import Hills
+from tests.missions.property_tests.random_flights import A_MONDAY, period, stored
 from tests.missions.worlds import power_line, rebuild, request, uav, world, zone_around
 
 pytestmark = pytest.mark.django_db

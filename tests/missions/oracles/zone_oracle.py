@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
-from tests.missions.oracles.schedule_oracle import applies_at
 
 from inspection.models import NoFlyZone
+from tests.missions.oracles.schedule_oracle import applies_at
 from tests.missions.plane import EARTH_M
 
 STEP_S = 30  # between the moments that are looked at

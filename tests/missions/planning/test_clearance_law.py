@@ -7,7 +7,6 @@ import pytest
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tests.missions.property_tests.random_missions import AMPLE
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import EndAction
@@ -15,6 +14,7 @@ from missions.services import TargetRequest, make_plan
 from missions.services.planning.requests import NO_BATTERY
 from planning.problem import Objective
 from tests.exact_geometry import segment_meets_polygon
+from tests.missions.property_tests.random_missions import AMPLE
 from tests.missions.worlds import rebuild, request, uav, world
 
 pytestmark = pytest.mark.django_db

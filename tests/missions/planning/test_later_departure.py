@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from tests.missions.planning.test_timed_zones import MONDAY_NOON, timed_zone
 
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
@@ -13,6 +12,7 @@ from missions.services.planning.later_departure import better_departure
 from planning.problem import Objective
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import plan_body, post
+from tests.missions.planning.test_timed_zones import MONDAY_NOON, timed_zone
 from tests.missions.worlds import request, world, zone_around
 from workspace.models import Role
 

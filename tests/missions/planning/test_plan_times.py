@@ -9,7 +9,6 @@ from typing import Any
 from unittest import mock
 
 import pytest
-from tests.missions.oracles.clock_oracle import clock_of
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset
@@ -17,6 +16,7 @@ from missions.models import EndAction
 from missions.services import BaseRequest, TargetRequest, make_plan
 from missions.services.planning.candidate_plans import solve_assignment
 from planning.problem import Objective
+from tests.missions.oracles.clock_oracle import clock_of
 from tests.missions.worlds import World, request, uav, world
 
 pytestmark = pytest.mark.django_db

@@ -9,11 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.missions.oracles.terrain_oracle import Hills
-from tests.missions.oracles.wire_oracle import WireJudge
-from tests.missions.property_tests.random_flights import ASSETS, HILLY, cut_out
-from tests.missions.property_tests.random_missions import Region, put_random_zones
-from tests.missions.property_tests.test_random_flights import REAL_REGIONS
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
@@ -25,6 +20,11 @@ from planning.energy.performance import Performance
 from tests.cases import long
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff
+from tests.missions.oracles.terrain_oracle import Hills
+from tests.missions.oracles.wire_oracle import WireJudge
+from tests.missions.property_tests.random_flights import ASSETS, HILLY, cut_out
+from tests.missions.property_tests.random_missions import Region, put_random_zones
+from tests.missions.property_tests.test_random_flights import REAL_REGIONS
 from tests.missions.worlds import power_line, rebuild, request, uav, world
 
 pytestmark = pytest.mark.django_db

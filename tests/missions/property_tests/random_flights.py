@@ -8,8 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tests.missions.oracles.terrain_oracle import Hills
-from tests.missions.property_tests.random_missions import Region, put_random_zones
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -22,6 +20,8 @@ from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Objective
+from tests.missions.oracles.terrain_oracle import Hills
+from tests.missions.property_tests.random_missions import Region, put_random_zones
 from workspace.models import User
 
 # With hills; elsewhere limits above sea level cannot be compared.

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from tests.missions.property_tests.random_missions import AMPLE
-from tests.missions.property_tests.test_random_missions import is_on_shortest_ways
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
@@ -22,6 +20,8 @@ from missions.services.targets.places import places_of
 from planning.connection_points import Terminal, ways_between
 from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 from tests.exact_geometry import segment_meets_polygon
+from tests.missions.property_tests.random_missions import AMPLE
+from tests.missions.property_tests.test_random_missions import is_on_shortest_ways
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, World, island, world, zone_around
 from tests.planning.solver.random_problems import every_plan
 

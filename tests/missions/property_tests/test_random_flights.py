@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+from missions.services import PlanRequest, make_plan
+from tests.accounts.users import somebody
 from tests.missions.oracles.flight_oracle import Judge
 from tests.missions.oracles.manual_edit_oracle import HandJudge
 from tests.missions.oracles.refusal_oracle import first_of_all, missing
 from tests.missions.property_tests.random_flights import HILLY, airs, approve_some, bring_in, departures, flight, put_zones
 from tests.missions.property_tests.random_missions import Region
-
-from missions.services import PlanRequest, make_plan
-from tests.accounts.users import somebody
 
 pytestmark = pytest.mark.django_db
 

@@ -11,7 +11,6 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from tests.missions.property_tests.random_missions import Region, put_random_zones
 
 from inspection.geodesy import distance_m, path_length_m
 from inspection.network.inspection_graph import InspectionGraph
@@ -27,6 +26,7 @@ from planning.connection_points import Terminal, Ways, access_legs, attachments,
 from planning.problem import Objective, Problem, UavStart, Visit
 from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
+from tests.missions.property_tests.random_missions import Region, put_random_zones
 from tests.planning.solver.random_problems import best_merit
 
 pytestmark = pytest.mark.django_db

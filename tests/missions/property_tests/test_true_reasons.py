@@ -6,9 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from tests.missions.oracles.reason_oracle import ReasonOracle
-from tests.missions.property_tests.random_missions import Region, put_random_zones
-from tests.missions.property_tests.test_random_missions import MissionModel
 
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
@@ -18,6 +15,9 @@ from missions.services.planning.map_data import current_scene, scene_on
 from planning.energy.performance import Performance
 from planning.problem import Objective
 from tests.cases import long
+from tests.missions.oracles.reason_oracle import ReasonOracle
+from tests.missions.property_tests.random_missions import Region, put_random_zones
+from tests.missions.property_tests.test_random_missions import MissionModel
 from tests.missions.worlds import World, island, request, uav, world, zone_around
 
 pytestmark = pytest.mark.django_db

@@ -15,15 +15,15 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import pytest
-from tests.scripts.proxy.test_over_http import TIMEOUT_S, free_port
 
 from scripts.commands import web
 from scripts.inner_tls import CERTIFICATE, KEY, InnerCertificate, inner_certificate
 from scripts.proxy import site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
+from tests.scripts.proxy.test_over_http import TIMEOUT_S, free_port
 
-PROJECT_DIR = Path(__file__).resolve().parents[2]
+PROJECT_DIR = Path(__file__).resolve().parents[3]
 
 
 class Authority:

@@ -48,7 +48,7 @@ def test_tile_servers_that_the_settings_name_are_allowed_and_no_others() -> None
 def test_the_base_map_is_the_one_that_pages_ask_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SPANWISE_BASE_MAP_TILES", raising=False)
     origin = "https://tile.openstreetmap.org"
-    assert BASE_MAP_TILES in (Path(__file__).parents[2] / "config" / "settings.py").read_text()
+    assert BASE_MAP_TILES in (Path(__file__).parents[3] / "config" / "settings.py").read_text()
     assert f"connect-src 'self' {origin};" in configuration(Places(tmp_path), tmp_path, 8000)
     monkeypatch.setenv("SPANWISE_BASE_MAP_TILES", "")
     assert "connect-src 'self';" in configuration(Places(tmp_path), tmp_path, 8000)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from tests.scripts.proxy.served_site import ANSWER, application_at, fetch, served_site
 
 from scripts.places import WEB_PROGRAMS
+from tests.scripts.proxy.served_site import ANSWER, application_at, fetch, served_site
 
 
 @pytest.fixture(scope="module")

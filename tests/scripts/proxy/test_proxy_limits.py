@@ -6,10 +6,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from tests.scripts.proxy.served_site import application_at, fetch, served_site
 
 from scripts.places import WEB_PROGRAMS, CannotStart, Places
 from scripts.proxy import configuration
+from tests.scripts.proxy.served_site import application_at, fetch, served_site
 
 MISSION = "/api/v1/missions/0b0c6f6c-7a53-4d0e-a6a6-0a4c3d6b0c11"
 COSTLY = ["/api/schema", "/api/v1/tiles/10/530/340", "/api/v1/scene?bbox=7,50,7.1,50.1", f"{MISSION}/record.zip",

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
-from tests.simulation.rehearsals.rehearsed import loaded, skies
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
@@ -22,6 +21,7 @@ from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
+from tests.simulation.rehearsals.rehearsed import loaded, skies
 from workspace.models import User
 
 INSPECTOR = Performance(battery_wh=263.2, mass_kg=3.77, max_airspeed_mps=19.0, rotor_disk_m2=0.5188, hover_power_w=430.0)

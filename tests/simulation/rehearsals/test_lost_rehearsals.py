@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 from django.utils import timezone
-from tests.simulation.rehearsals.rehearsed import asked
 
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.test_lost_planners import kill, own_queue, wait_until, worker
 from tests.missions.worlds import world
+from tests.simulation.rehearsals.rehearsed import asked
 from workspace import tasks
 from workspace.jobs.services import LEASE_S
 from workspace.models import Job, JobState

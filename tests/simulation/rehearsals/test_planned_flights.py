@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_of, climbs, compared, holds, mission, square, zigzag
 
 from mavlink.approved_route import FrozenRoute
+from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_of, climbs, compared, holds, mission, square, zigzag
 from tests.telemetry.estimation.routes import lines_of
 
 MOST_TIME, MOST_ENERGY = 0.15, 0.15  # of a flight, either way

@@ -4,9 +4,9 @@ import random
 from pathlib import Path
 
 import pytest
-from tests.simulation.rehearsals.random_rehearsals import Rehearsed, bring_in_demo_region, random_request, rehearse
 
 from tests.missions.flights import an_operator
+from tests.simulation.rehearsals.random_rehearsals import Rehearsed, bring_in_demo_region, random_request, rehearse
 
 pytestmark = pytest.mark.django_db
 

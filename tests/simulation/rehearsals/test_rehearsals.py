@@ -7,7 +7,6 @@ from unittest import mock
 
 import pytest
 from django.utils import timezone
-from tests.simulation.rehearsals.rehearsed import asked, loaded, rehearsed
 
 from inspection.selectors.planning import planning_read
 from inspection.services import build_graph
@@ -28,6 +27,7 @@ from tests.inspection.ground import tower
 from tests.missions import worlds
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import World, world, zone_around
+from tests.simulation.rehearsals.rehearsed import asked, loaded, rehearsed
 from workspace.models import AuditEntry, JobState, User
 
 pytestmark = pytest.mark.django_db

@@ -4,7 +4,6 @@ from pathlib import Path
 from unittest import mock
 
 import pytest
-from tests.simulation.rehearsals.rehearsed import asked, rehearsed
 
 from missions.models import Mission, UavType
 from simulation.models import Rehearsal, RehearsalRule
@@ -12,6 +11,7 @@ from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import world
+from tests.simulation.rehearsals.rehearsed import asked, rehearsed
 from workspace.models import AuditEntry, JobState, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db

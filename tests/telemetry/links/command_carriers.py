@@ -114,7 +114,7 @@ def nursery(slots: Sequence[Sequence[int]], link: Link) -> Iterator[Nursery]:
     port = f":{facts['PORT']}" if facts["PORT"] else ""
     password = f":{quote(facts['PASSWORD'], safe='')}" if facts["PASSWORD"] else ""
     address = f"postgres://{facts['USER']}{password}@{quote(facts['HOST'], safe='')}{port}/{facts['NAME']}"
-    root = Path(__file__).resolve().parents[2]
+    root = Path(__file__).resolve().parents[3]
     environment = os.environ | {"DATABASE_URL": address, "DJANGO_SETTINGS_MODULE": "config.settings", "PYTHONPATH": str(root)}
     told = json.dumps([list(slot) for slot in slots]), str(link.port), str(link.loss)
     process = subprocess.Popen(  # noqa: S603

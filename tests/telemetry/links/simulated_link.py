@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from django.test import Client
-from tests.telemetry.links.uav_clients import LINK, UavClient
 
 from examples.companion.client import Companion
 from examples.companion.journal import Journal
@@ -18,6 +17,7 @@ from missions.models import Approval, CommandKind, Mission, Uav
 from missions.services.commands.outbox import queue_command
 from telemetry.models import TelemetryRecord
 from tests.missions.worlds import UAV_AT
+from tests.telemetry.links.uav_clients import LINK, UavClient
 
 LONG_AGO_S = 3_600.0  # simulated time begins so long before now, so that nothing comes from the future
 

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
-from tests.telemetry.links.command_carriers import Link, nursery
 
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from missions.services.commands.refused import Refused
 from tests.accounts.users import somebody
+from tests.telemetry.links.command_carriers import Link, nursery
 
 pytestmark = pytest.mark.django_db(transaction=True)
 

@@ -9,8 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.telemetry.links.simulated_link import Flight, nothing_lost_or_doubled
-from tests.telemetry.links.uav_clients import UavClient, linked_uav
 
 from examples.companion.client import Companion
 from examples.companion.journal import Journal
@@ -22,6 +20,8 @@ from telemetry.models import InspectionResult, TelemetryRecord, UavLink
 from telemetry.views.uav_authentication import UavRate
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.worlds import UAV_AT, World, world
+from tests.telemetry.links.simulated_link import Flight, nothing_lost_or_doubled
+from tests.telemetry.links.uav_clients import UavClient, linked_uav
 
 pytestmark = pytest.mark.django_db
 

@@ -5,13 +5,13 @@ from datetime import timedelta
 import pytest
 from django.test import Client
 from django.utils import timezone
-from tests.telemetry.links.uav_clients import linked_uav, report
 
 from missions.models import CommandKind, Uav, UavCredential
 from missions.services.commands.commands import queue_command
 from missions.services.fleet.credentials import note_mavlink_key_use
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
+from tests.telemetry.links.uav_clients import linked_uav, report
 from workspace.api_tokens import create_api_token
 from workspace.door_models import BrowserSession
 from workspace.models import AuditEntry, Role

@@ -5,13 +5,13 @@ from datetime import timedelta
 import pytest
 from django.test import Client
 from django.utils import timezone
-from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 
 from missions.models import CredentialKind, UavCredential, UavState
 from missions.services import make_credential, revoke_credential
 from telemetry.models import TelemetryRecord, UavLink
 from telemetry.views import uav_authentication
 from tests.accounts.users import client_of, somebody
+from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 from workspace.api_tokens import create_api_token
 from workspace.models import Role
 

@@ -3,7 +3,6 @@
 from typing import Any
 
 import pytest
-from tests.telemetry.links.uav_clients import UavClient, linked_uav, report, seconds_ago
 
 from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
 from missions.services.approval.approval import revoke_approval
@@ -12,6 +11,7 @@ from telemetry.models import InspectionResult, UavLink
 from telemetry.selectors.watched import watched_flights
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.worlds import World, world
+from tests.telemetry.links.uav_clients import UavClient, linked_uav, report, seconds_ago
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db

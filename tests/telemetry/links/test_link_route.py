@@ -8,8 +8,6 @@ from typing import Any
 import pytest
 from django.db import connection
 from django.test.utils import CaptureQueriesContext
-from tests.missions.commands.outbox import lose
-from tests.telemetry.links.uav_clients import UavClient, linked_uav
 
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.services.approval.approval import revoke_approval
@@ -17,8 +15,10 @@ from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from missions.services.commands.outbox import queue_command
 from missions.services.missions import MissionChange, MissionFrozen, change_mission
 from telemetry.models import Alert
+from tests.missions.commands.outbox import lose
 from tests.missions.flights import an_operator, approved, dispatched
 from tests.missions.worlds import World, world
+from tests.telemetry.links.uav_clients import UavClient, linked_uav
 from workspace import prepared_statements
 from workspace.models import User
 

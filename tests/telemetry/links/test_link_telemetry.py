@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 from django.utils import timezone
-from tests.telemetry.links.uav_clients import UavClient, linked_uav, report, seconds_ago
 
 from missions.models import LinkKind, Mission, Uav
 from telemetry.models import TelemetryRecord
 from tests.telemetry.flown_missions import flies_route
+from tests.telemetry.links.uav_clients import UavClient, linked_uav, report, seconds_ago
 
 pytestmark = pytest.mark.django_db
 

@@ -7,11 +7,11 @@ from collections.abc import Callable
 import pytest
 from django.contrib.gis.geos import Point
 from django.db import connection, connections, transaction
-from tests.missions.commands.outbox import a_uav
 
 from missions.models import Uav
 from missions.services.fleet.uavs import change_uav
 from tests.accounts.users import somebody
+from tests.missions.commands.outbox import a_uav
 
 pytestmark = pytest.mark.django_db(transaction=True)
 TIMEOUT_S = 60.0

@@ -7,14 +7,14 @@ from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
-from tests.telemetry.links.uav_clients import linked_uav
 
 from examples.companion.autopilot import Refused
 from examples.companion.content import content_sha256
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.worlds import UAV_AT, world
+from tests.telemetry.links.uav_clients import linked_uav
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "uav-link.md"
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "uav-link.md"
 FLY_TO, RETURN, TAKE_OFF = 16, 20, 22
 GLOBAL, RELATIVE = 0, 3
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from tests.telemetry.links.uav_clients import UavClient, linked_uav, report
 
 from scripts.places import WEB_PROGRAMS, Places
 from scripts.programs import web_programs
 from telemetry.models import TelemetryRecord
+from tests.telemetry.links.uav_clients import UavClient, linked_uav, report
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
 
 pytestmark = pytest.mark.django_db(transaction=True)

@@ -4,13 +4,13 @@ import pytest
 from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
-from tests.missions.commands.outbox import a_uav
 
 from missions.models import CommandKind, Uav
 from missions.services.commands.commands import queue_command
 from telemetry.models import UavLink
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch
+from tests.missions.commands.outbox import a_uav
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db

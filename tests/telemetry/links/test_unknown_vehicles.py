@@ -7,15 +7,15 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.test import Client
 from django.utils import timezone
-from tests.missions.commands.outbox import a_uav
-from tests.telemetry.links.uav_clients import linked_uav, report, seconds_ago
 
 from missions.models import TargetState, Uav, UavType
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import post
+from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import an_operator, dispatched
 from tests.missions.worlds import world
+from tests.telemetry.links.uav_clients import linked_uav, report, seconds_ago
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db

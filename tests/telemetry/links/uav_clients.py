@@ -6,11 +6,11 @@ from typing import Any
 
 from django.http import HttpResponse
 from django.test import Client
-from tests.missions.commands.outbox import a_uav
 
 from missions.models import CredentialKind, LinkKind, Uav
 from missions.services import make_credential
 from tests.accounts.users import somebody
+from tests.missions.commands.outbox import a_uav
 from workspace.models import Organisation
 
 LINK = "/api/v1/uav-link"

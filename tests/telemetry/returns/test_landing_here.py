@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.telemetry.returns.test_present_returns import EAST, HOME, estimated, flies
 
 from inspection.services import import_terrain
 from missions.models import Uav
@@ -12,6 +11,7 @@ from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.flights import an_operator, fleet, ground
 from tests.missions.worlds import world, zone_around
+from tests.telemetry.returns.test_present_returns import EAST, HOME, estimated, flies
 from workspace.models import Organisation, User
 
 pytestmark = pytest.mark.django_db

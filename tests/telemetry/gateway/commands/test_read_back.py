@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer
 
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
@@ -18,6 +17,7 @@ from telemetry.services.links.onboard_lists import Doubt
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
+from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.vehicles.px4 import Px4

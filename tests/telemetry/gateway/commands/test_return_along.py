@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, begin, dispatch, ended, flyer
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
@@ -17,6 +16,7 @@ from telemetry.services.alerts.command_alerts import settle_command_alerts
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
+from tests.telemetry.gateway.commands.test_commands import FLAVOURS, begin, dispatch, ended, flyer
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)

@@ -1,7 +1,6 @@
 """The parameters of a vehicle's own return are read when it is heard, and once more before its mission is sent."""
 
 import pytest
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, dispatch, ended, flyer
 
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, Uav
@@ -10,6 +9,7 @@ from missions.services.commands.steering import command_uav
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
+from tests.telemetry.gateway.commands.test_commands import FLAVOURS, dispatch, ended, flyer
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)

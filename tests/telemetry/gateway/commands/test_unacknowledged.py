@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, ended
 
 from mavlink.autopilot_type import Flavour
 from mavlink.frames import frames_of_datagram
@@ -19,6 +18,7 @@ from telemetry.gateway.leasing import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session
 from telemetry.models import UavLink
 from telemetry.services.links.links import Lease
+from tests.telemetry.gateway.commands.test_commands import FLAVOURS, ended
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, wait_for
 from tests.telemetry.gateway.test_outages import database_away

@@ -1,7 +1,6 @@
 """What a vehicle would not fly by its own parameters is told before anything is sent to it."""
 
 import pytest
-from tests.telemetry.gateway.commands.test_commands import dispatch, ended, flyer, holds
 
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
@@ -16,6 +15,7 @@ from telemetry.models import UavLink
 from tests.accounts.users import somebody
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world
+from tests.telemetry.gateway.commands.test_commands import dispatch, ended, flyer, holds
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.vehicles.px4 import Px4
 

@@ -3,7 +3,6 @@
 import time
 
 import pytest
-from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer, holds
 
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState
@@ -15,6 +14,7 @@ from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import client_of, somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
+from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer, holds
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 
