@@ -260,6 +260,6 @@ export function uavFields(uav, context) {
  */
 function idField(name, label, value, rows) {
   /** @type {[string | number, string][]} */
-  const choices = [["", t("none")], ...rows.map((row) => /** @type {[number, string]} */ ([row.id, row.name]))];
+  const choices = [["", t("not stated")], ...rows.map((row) => /** @type {[number, string]} */ ([row.id, row.name]))];
   return /** @type {Field<number | null>} */ (choiceField(name, label, value, choices, { isNumber: true }));
 }
