@@ -437,15 +437,3 @@ class RefusedMissionSerializer(serializers.Serializer):
 class MissionsDoneSerializer(serializers.Serializer):
     done = serializers.ListField(child=serializers.UUIDField())
     refused = RefusedMissionSerializer(many=True)
-
-
-class PresentSerializer(serializers.Serializer):
-    name = serializers.CharField()
-    is_me = serializers.BooleanField(help_text="oneself, in another window")
-    is_planning = serializers.BooleanField(help_text="their page has a plan of the mission made at present")
-
-
-class PresenceSerializer(serializers.Serializer):
-    others = PresentSerializer(many=True)
-    ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
-    uav_changes = UavChangeSerializer(many=True)

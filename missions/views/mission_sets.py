@@ -5,6 +5,7 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import extend_schema
+from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -16,6 +17,7 @@ from missions.selectors import missions
 from missions.selectors.mission_list import choices_of_filters
 from missions.selectors.uav_changes import uav_change_json, uav_changes
 from missions.serializers import inputs, shapes
+from missions.serializers.changes import UavChangeSerializer
 from missions.services.mission_copies import draft_follow_up
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404
@@ -24,6 +26,18 @@ from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import Role
+
+
+class PresentSerializer(serializers.Serializer):
+    name = serializers.CharField()
+    is_me = serializers.BooleanField(help_text="oneself, in another window")
+    is_planning = serializers.BooleanField(help_text="their page has a plan of the mission made at present")
+
+
+class PresenceSerializer(serializers.Serializer):
+    others = PresentSerializer(many=True)
+    ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
+    uav_changes = UavChangeSerializer(many=True)
 
 
 class MissionFilterChoices(APIView):
@@ -118,7 +132,7 @@ class MissionPresence(APIView):
         operation_id="report_presence",
         summary="Say that a page has the mission open, and hear who else has",
         request=inputs.PresenceInputSerializer,
-        responses=shapes.PresenceSerializer,
+        responses=PresenceSerializer,
     )
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         user = request.user

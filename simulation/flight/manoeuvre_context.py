@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from simulation.flight.airframe import Airframe
+from simulation.flight.camera import Camera
 from simulation.flight.course import Vector, Via, course
 from simulation.flight.events import Event, Said
 from simulation.flight.faults import Faults
 from simulation.flight.guidance import Gate, Guidance
-from simulation.flight.mission import Camera
 from simulation.flight.orders import Above, Place
 from simulation.flight.plant import Ground
 from simulation.flight.settings import Settings

@@ -8,12 +8,13 @@ from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import Airframe
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body
+from simulation.flight.camera import Camera
 from simulation.flight.events import Event
 from simulation.flight.faults import Faults, Weather
 from simulation.flight.guidance import Guidance
 from simulation.flight.manoeuvre_context import Cockpit
 from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOff
-from simulation.flight.mission import Camera, Mission, first_to_fly
+from simulation.flight.mission import Mission, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
 from simulation.flight.plant import FlatGround, Ground
 from simulation.flight.settings import Settings

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from mavlink.frames import Frame
-from missions.models import CredentialKind, LinkKind, Uav, UavCredential
-from missions.services.fleet.credentials import mavlink_signing_key
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
@@ -22,41 +20,6 @@ LEASES_INTERVAL_S = 1.0
 RETRY_S = 0.5
 GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
 WAITED_TOO_LONG_S = 15.0
-
-
-@dataclass(frozen=True)
-class KnownUav:
-    """Another value means that something about it was changed. Earlier keys count until the newest one was used."""
-
-    uav_id: int
-    organisation_id: int
-    name: str
-    system: int
-    allows_unsigned: bool
-    credential_id: int | None
-    key: bytes | None = field(repr=False)
-    earlier_keys: tuple[tuple[int, bytes], ...] = field(default=(), repr=False)
-
-    @property
-    def keys(self) -> tuple[tuple[int, bytes], ...]:
-        """In force, by credential, the newest first."""
-        newest = () if self.credential_id is None or self.key is None else ((self.credential_id, self.key),)
-        return newest + self.earlier_keys
-
-
-def known_uavs() -> dict[int, KnownUav]:
-    """By system id. A UAV whose link is not MAVLink is not a gateway's."""
-    keys: dict[int, list[tuple[int, bytes]]] = {}
-    for credential in UavCredential.objects.filter(kind=CredentialKind.MAVLINK_KEY, revoked_at=None).order_by("-pk"):
-        keys.setdefault(credential.uav_id, []).append((credential.pk, mavlink_signing_key(credential=credential)))
-    uavs = Uav.objects.filter(mavlink_system_id__isnull=False, link=LinkKind.MAVLINK)
-    fields = ("pk", "organisation_id", "name", "mavlink_system_id", "allows_unsigned")
-    known = {}
-    for uav_id, organisation_id, name, system, allows_unsigned in uavs.values_list(*fields):
-        own = keys.get(uav_id, [])
-        credential_id, key = own[0] if own else (None, None)
-        known[system] = KnownUav(uav_id, organisation_id, name, system, allows_unsigned, credential_id, key, tuple(own[1:]))
-    return known
 
 
 def served_until_s(asked_s: float, lease_s: float) -> float:

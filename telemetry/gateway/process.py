@@ -23,8 +23,9 @@ from missions.services.commands.commands import CHANNEL
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.dispatcher import Desk
+from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
-from telemetry.gateway.leasing import KnownUav, Leasing, known_uavs
+from telemetry.gateway.leasing import Leasing
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.reporter import Telling

@@ -15,8 +15,8 @@ from mavlink.frames import Frame, Message, message_of
 from mavlink.signing import FrameWriter, Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
 from mavlink.vehicle_class import type_name
 from telemetry.gateway.addresses import Addresses
+from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.heartbeat import position_request
-from telemetry.gateway.leasing import KnownUav
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.services.links.sightings import Sighting

@@ -25,7 +25,7 @@ from mavlink.vehicle_state import VehicleState
 from missions.models import LinkKind
 from telemetry.gateway import heartbeat
 from telemetry.gateway.addresses import MAX_ADDRESSES
-from telemetry.gateway.leasing import KnownUav
+from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.message_requests import Questions
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer

@@ -15,7 +15,7 @@ from telemetry.models import UavWatch
 from telemetry.services import store_records
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at, record
-from workspace.live.changes import changes
+from workspace.live import changes
 from workspace.models import Organisation
 
 NOWHERE = {"longitude_deg": None, "latitude_deg": None}

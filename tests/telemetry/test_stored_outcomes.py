@@ -10,13 +10,12 @@ from django.utils.translation import override
 from mavlink.commands.actions import Order
 from missions.outcome_messages import PARTS, SENTENCES, is_foreseen, outcome_in_words
 
-ROOT = Path(__file__).resolve().parents[2] / "telemetry"
+ROOT = Path(__file__).resolve().parents[2]
 MAKERS = [
-    *(ROOT / "gateway" / f"{name}.py" for name in ("carriage", "preparation", "reading", "vehicle_limits")),
-    *(
-        ROOT / "ground_station" / f"{name}.py"
-        for name in ("command", "command_keeper", "limits", "mission_keeper", "orders", "parameters", "vehicle_class")
-    ),
+    *(ROOT / "telemetry" / "gateway" / f"{name}.py" for name in ("delivery", "preparation", "protocol_driver")),
+    *(ROOT / "mavlink" / "commands" / f"{name}.py" for name in ("actions", "command", "driver")),
+    *(ROOT / "mavlink" / "mission_sync" / f"{name}.py" for name in ("compare", "limits", "sync")),
+    *(ROOT / "mavlink" / f"{name}.py" for name in ("parameters", "vehicle_class")),
 ]
 # Of these a part that is put in makes another sentence; each is looked at below as it comes out.
 VARIANTS = {"The {} {} m from", "The {} {} m {} the", "The UAV is {} m {} the", "The {} has {} items; {} {} {}."}

@@ -27,7 +27,7 @@ from missions.services.commands.commands import claim_commands, queue_command, r
 from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.delivery import Carriage
 from telemetry.gateway.dispatcher import MAX_UPLOADS, Desk
-from telemetry.gateway.leasing import KnownUav
+from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session

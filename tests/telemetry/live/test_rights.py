@@ -19,7 +19,7 @@ from tests.telemetry.live.page import Page
 from tests.workspace.live.proxied_site import Door, close_code
 from workspace.api_tokens import create_api_token
 from workspace.jobs.services import create_job
-from workspace.live.changes import sockets
+from workspace.live import sockets
 from workspace.models import ApiToken, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db(transaction=True)

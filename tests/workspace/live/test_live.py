@@ -23,7 +23,7 @@ from tests.workspace.live.proxied_site import TIMEOUT_S, Door, close_code, front
 from workspace.api_tokens import create_api_token
 from workspace.jobs.consumers import ENDED, JobConsumer
 from workspace.jobs.services import cancel_job, create_job, finish_job, report_progress, start_job
-from workspace.live.changes import changes as words
+from workspace.live import changes as words
 from workspace.models import ApiToken, BrowserSession, Job, Organisation, User
 from workspace.sessions.browser_sessions import end_session
 

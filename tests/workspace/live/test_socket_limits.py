@@ -13,7 +13,7 @@ from websocket import WebSocket, create_connection
 
 from tests.accounts.users import client_of, somebody
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
-from workspace.live.changes import socket_places
+from workspace.live import socket_places
 from workspace.live.socket_places import SocketPlaces
 from workspace.models import User
 

@@ -14,7 +14,7 @@ from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, CommandState, UavCommand
 from missions.services.commands.commands import queue_command
 from telemetry.gateway import delivery, dispatcher
-from telemetry.gateway.leasing import KnownUav
+from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session
 from telemetry.models import UavLink
 from telemetry.services.links.links import Lease
