@@ -20,7 +20,7 @@ from operation.log_context import ABOUT_REQUEST, FIELDS, facts
 from operation.redaction import without_secrets
 
 IN_ONE_LINE = {code: f"\\x{code:02x}" for code in (*range(32), 127, 0x85, 0x2028, 0x2029)} | {9: "\\t", 10: "\\n", 13: "\\r"}
-LONGEST = 100_000  # signs; a line without an end is cut
+MAX_LINE_LENGTH = 100_000  # signs; a line without an end is cut
 
 
 class LineFormatter(logging.Formatter):
@@ -124,7 +124,7 @@ class JsonLines(io.TextIOBase):
     def write(self, text: str) -> int:
         with self._lock:
             *lines, self._begun = (self._begun + text).split("\n")
-            if len(self._begun) > LONGEST:
+            if len(self._begun) > MAX_LINE_LENGTH:
                 lines, self._begun = [*lines, self._begun], ""
             if told := "".join(self._line(line) + "\n" for line in lines if line.strip()):
                 self._stream.write(told)

@@ -13,7 +13,7 @@ from mavlink.frames import Message
 PIECE = 50  # characters of a whole piece; a shorter one is the last
 TIMEOUT_S = 3.0
 MAX_OPEN = 8
-LONGEST = 500
+MAX_TEXT_LENGTH = 500
 KEPT_S = 10.0  # a value that was not told for so long is not known any more
 E7 = 1e7
 UNKNOWN_U16 = 65_535
@@ -72,7 +72,7 @@ class TextCollector:
 
 
 def _closed(collected: _Open) -> StatusText:
-    return StatusText(collected.severity, collected.text[:LONGEST], collected.received_s)
+    return StatusText(collected.severity, collected.text[:MAX_TEXT_LENGTH], collected.received_s)
 
 
 def _clean(text: str | bytes) -> str:

@@ -31,7 +31,7 @@ from workspace.api.whole_numbers import WholeNumber
 MIN_DURATION_S, MAX_DURATION_S = 1e-3, 366 * 86_400.0  # between chosen rows
 USUAL_SPAN = timedelta(days=1)
 UAV = WholeNumber("uav", "id of a UAV")
-MOST = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
+MAX_RECORDS = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
 TIMES = [
     OpenApiParameter("from", TIME, description="measured at or after this time, with its zone"),
     OpenApiParameter("to", TIME, description="measured before this time, with its zone"),
@@ -42,7 +42,7 @@ THINNED = [
         {"type": "number", "minimum": MIN_DURATION_S, "maximum": MAX_DURATION_S},
         description="of each UAV the first record in so many seconds, and none from the future",
     ),
-    MOST.documented,
+    MAX_RECORDS.documented,
 ]
 FILTERS = [
     *TIMES,
@@ -101,7 +101,7 @@ def sampled(
     request: Request, rows: QuerySet[Any], *, of: Callable[[QuerySet[Any]], QuerySet[Any]] = lambda rows: rows, time: str = "measured_at"
 ) -> Sampled:
     """All rows where no thinning is asked for, else those chosen from `of` them. Raises ApiProblem 400."""
-    every_s, most = request.query_params.get("every_s", ""), MOST.asked(request)
+    every_s, most = request.query_params.get("every_s", ""), MAX_RECORDS.asked(request)
     if every_s and most:
         raise invalid("most", "Either every_s or most.")
     if not every_s and not most:

@@ -29,7 +29,7 @@ BY_HAND_INTERVAL_S, BY_HAND_FOR_S = 900, 12
 PER_DEGREE = 1e7
 M_PER_DEG = 111_195.0
 ARMED_IN_AUTO = 209  # base mode
-LARGEST = 2_048
+MAX_DATAGRAM_BYTES = 2_048
 
 
 class Flying:
@@ -124,7 +124,7 @@ def _send(sender: socket.socket, frame: bytes) -> None:
 def _answer_all(sender: socket.socket, hears: mavlink.MAVLink, by_system: dict[int, Flying]) -> None:
     while True:
         try:
-            heard = sender.recv(LARGEST)
+            heard = sender.recv(MAX_DATAGRAM_BYTES)
         except OSError:
             return
         for message in hears.parse_buffer(heard) or ():

@@ -8,7 +8,7 @@ from missions.models import Approval
 from missions.services.approval.document import content_sha256
 
 STUCK_AFTER_S = 90.0  # the sweep comes each second or so, leases are 15 to 30 s, and a new try may need a worker that starts
-MOST = 20  # violations of one kind that are told
+MAX_VIOLATIONS = 20  # violations of one kind that are told
 MAX_APPROVALS = 2_000
 
 Check = Callable[[], list[str]]
@@ -17,7 +17,7 @@ Check = Callable[[], list[str]]
 def _told(sql: str, words: str, values: dict[str, Any] | None = None) -> list[str]:
     """Each row put into the words by its place."""
     found = rows(sql, values)
-    return [words.format(*row) for row in found[:MOST]] + ([f"and {len(found) - MOST} more"] if len(found) > MOST else [])
+    return [words.format(*row) for row in found[:MAX_VIOLATIONS]] + ([f"and {len(found) - MAX_VIOLATIONS} more"] if len(found) > MAX_VIOLATIONS else [])
 
 
 def no_orphans() -> list[str]:

@@ -40,7 +40,7 @@ from workspace.jobs.planning_lock import end_turn, in_turn
 
 SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
-LARGEST = "201-"
+ABOVE_ALL_SIZES = "201-"
 P = ParamSpec("P")
 MAX_GROUNDS = 5  # that may follow one another while one plan is made
 MAX_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
@@ -107,7 +107,7 @@ def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_b
 
 
 def size_of(targets: int) -> str:
-    return next((name for most, name in SIZES if targets <= most), LARGEST)
+    return next((name for most, name in SIZES if targets <= most), ABOVE_ALL_SIZES)
 
 
 def counted(make: Callable[P, dict[str, Any]]) -> Callable[P, dict[str, Any]]:

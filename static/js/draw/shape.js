@@ -16,14 +16,14 @@ import { beside, distance_m, towards } from "../domain/geodesy.js";
  */
 
 /** @type {Record<ShapeKind, number>} */
-const LEAST = { point: 1, line: 2, area: 3, circle: 1 };
+const MIN_POINTS = { point: 1, line: 2, area: 3, circle: 1 };
 
 /** @param {ShapeKind} kind @returns {Shape} */
 export const empty = (kind) => ({ kind, parts: [[[]]], radius_m: kind === "circle" ? 0 : null });
 /** @param {Shape} shape */
 export const isEmpty = (shape) => shape.parts.every((part) => part.every((ring) => ring.length === 0));
 /** @param {ShapeKind} kind */
-export const leastOf = (kind) => LEAST[kind];
+export const leastOf = (kind) => MIN_POINTS[kind];
 
 /** @param {number[][]} ring */
 const open = (ring) => (ring.length > 1 && same(ring[0], ring[ring.length - 1]) ? ring.slice(0, -1) : ring);
@@ -53,8 +53,8 @@ export function shapeOf(geometry, circle = null) {
 export function geometryOf(shape) {
   if (shape.kind === "circle") return null;
   const parts = shape.parts
-    .map((rings) => rings.filter((ring, index) => index === 0 || ring.length >= LEAST.area))
-    .filter((rings) => rings[0].length >= LEAST[shape.kind]);
+    .map((rings) => rings.filter((ring, index) => index === 0 || ring.length >= MIN_POINTS.area))
+    .filter((rings) => rings[0].length >= MIN_POINTS[shape.kind]);
   if (!parts.length) return null;
   if (shape.kind === "point") return { type: "Point", coordinates: parts[0][0][0] };
   if (shape.kind === "line") return { type: "LineString", coordinates: parts[0][0] };
@@ -125,7 +125,7 @@ export const dropLast = (shape, at) => withRing(shape, at, (ring) => ring.slice(
  * @param {VertexPath} at
  */
 export function removeVertex(shape, at) {
-  if (ringAt(shape, at).length > LEAST[shape.kind])
+  if (ringAt(shape, at).length > MIN_POINTS[shape.kind])
     return withRing(shape, at, (old) => old.filter((_, index) => index !== at[2]));
   return removeRing(shape, at);
 }
@@ -158,7 +158,7 @@ export const addPart = (shape) => ({ ...shape, parts: [...shape.parts, [[]]] });
 export function stubOf(shape) {
   if (shape.kind === "circle") return shape.parts[0][0].length && shape.radius_m ? null : [0, 0];
   for (const [p, part] of shape.parts.entries())
-    for (const [r, ring] of part.entries()) if (ring.length < LEAST[shape.kind]) return [p, r];
+    for (const [r, ring] of part.entries()) if (ring.length < MIN_POINTS[shape.kind]) return [p, r];
   return null;
 }
 
@@ -166,8 +166,8 @@ export function stubOf(shape) {
 export function withoutStubs(shape) {
   if (shape.kind !== "area") return shape;
   const parts = shape.parts
-    .map((part) => part.filter((ring, index) => index === 0 || ring.length >= LEAST.area))
-    .filter((part) => part[0].length >= LEAST.area);
+    .map((part) => part.filter((ring, index) => index === 0 || ring.length >= MIN_POINTS.area))
+    .filter((part) => part[0].length >= MIN_POINTS.area);
   return { ...shape, parts: parts.length ? parts : [[[]]] };
 }
 

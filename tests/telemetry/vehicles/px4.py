@@ -11,7 +11,7 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle, item_int, item_of
 
 RETRY_S, GIVE_UP_S = 0.25, 5.0
-MOST = {0: 2_000, 1: 64, 2: 32}
+MAX_ITEMS = {0: 2_000, 1: 64, 2: 32}
 PLACED = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_INT,
                     mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})  # fmt: skip
 PLACED_COMMANDS = frozenset({16, 17, 19, 21, 22, 31, 195, 5000, 5001, 5002, 5003, 5004, 5100})
@@ -39,7 +39,7 @@ class Px4(Vehicle):
         if self.state == GETTING and self._at > 0:
             return [self._ack(mavlink.MAV_MISSION_ERROR, self._kind)]
         if self.state == IDLE:
-            if message.count > MOST.get(message.mission_type, 0):
+            if message.count > MAX_ITEMS.get(message.mission_type, 0):
                 return [self._ack(mavlink.MAV_MISSION_NO_SPACE, message.mission_type)]
             self._kind = MissionType(message.mission_type)
             self._at, self._count, self._new = 0, message.count, []

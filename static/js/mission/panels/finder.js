@@ -25,7 +25,7 @@ import { detailOf, MAX_TARGETS } from "../selection.js";
 /** @typedef {{ words: string, detail: string, icon: string, end: string, act: () => void }} Result */
 
 const WAIT_MS = 180;
-const MOST = 12;
+const MAX_RESULTS = 12;
 const KINDS = [
   { kind: "tower", words: () => t("Towers") },
   { kind: "line", words: () => t("Lines") },
@@ -192,7 +192,7 @@ class Finder {
     const asked = this.#question();
     try {
       const [answer, places] = await Promise.all([
-        get(`/assets?${asked}&limit=${MOST}&total=true`, { signal }),
+        get(`/assets?${asked}&limit=${MAX_RESULTS}&total=true`, { signal }),
         text && !this.#filters.kinds.size ? placesFound(text, { signal, things: things() }) : [],
       ]);
       const { data } = /** @type {Answer<AssetCollection>} */ (answer);
@@ -324,7 +324,7 @@ class Finder {
 /** @param {URLSearchParams} asked @param {number} total */
 function headOf(asked, total) {
   const count = tn(total, "{count} asset", "{count} assets");
-  return asked.has("bbox") ? t("{count} in view", { count }) : total > MOST ? count : "";
+  return asked.has("bbox") ? t("{count} in view", { count }) : total > MAX_RESULTS ? count : "";
 }
 
 /** @param {FinderHow} how */

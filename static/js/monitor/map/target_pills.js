@@ -14,7 +14,7 @@ import { STATES } from "../board.js";
 
 /** @typedef {Omit<Pill, "x" | "y"> & { position: number[], state: TargetState, colour: number | null }} TargetPill */
 
-const MOST = 200;
+const MAX_PILLS = 200;
 /** @param {TargetPill[]} members @returns {TargetState} */
 const stateOf = (members) => (members.every(({ state }) => state === members[0].state) ? members[0].state : "pending");
 
@@ -27,7 +27,7 @@ export function createTargetPills(map) {
   let drawn = "";
 
   function draw() {
-    const placed = pills.slice(0, MOST).map((pill) => {
+    const placed = pills.slice(0, MAX_PILLS).map((pill) => {
       const [longitude, latitude] = pill.position;
       const { x, y } = map.project([longitude, latitude]);
       return { ...pill, x, y };
