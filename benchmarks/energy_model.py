@@ -27,7 +27,7 @@ from simulation.flight.faults import Weather
 from tests.simulation.rehearsals.planned_flights import climbs, compared, holds
 from tests.simulation.rehearsals.planned_flights import square as square_route
 
-MOST_CALM, MOST_WINDY = 0.10, 0.15
+MAX_CALM_ERROR, MAX_WINDY_ERROR = 0.10, 0.15
 MAX_SPEED_MPS = 12.9  # through the air, with the tilt limit of the simulated flights
 
 
@@ -44,7 +44,7 @@ class Flight:
 
     @property
     def most(self) -> float:
-        return MOST_CALM if self.wind_mps == 0.0 else MOST_WINDY
+        return MAX_CALM_ERROR if self.wind_mps == 0.0 else MAX_WINDY_ERROR
 
 
 FLIGHTS = (
@@ -97,7 +97,7 @@ def own_rows() -> tuple[list[list[str]], list[str]]:
         ]
         for name, route, weather in flights:
             found = compared(route, code, weather, seed=1)
-            if abs(found.energy_ratio - 1.0) > MOST_WINDY:
+            if abs(found.energy_ratio - 1.0) > MAX_WINDY_ERROR:
                 missed.append(f"{code}, {name}")
             figures = [f"{found.flown_s:.0f} s", f"{found.flown_wh:.1f} Wh", f"{found.planned_s:.0f} s", f"{found.planned_wh:.1f} Wh"]
             rows.append([
@@ -123,7 +123,7 @@ def main() -> None:
         watts = power_w(Performance(), airspeed_mps=airspeed_mps)
         name = f"power at {airspeed_mps:.0f} m/s through the air"
         rows.append([name, "", f"{measured_w:.0f} W", "", f"{watts:.0f} W", "", f"{watts / measured_w:.3f}"])
-        if abs(watts / measured_w - 1.0) > MOST_CALM:
+        if abs(watts / measured_w - 1.0) > MAX_CALM_ERROR:
             missed.append(name)
     own, own_missed = own_rows()
     missed += own_missed
@@ -133,7 +133,7 @@ def main() -> None:
         "`python -m benchmarks.energy_model`: no figure of power was fitted to these flights. Turns count as in plans, and of gusts the "
         f"mean wind alone. {machine('numba', 'numpy')}\n\n{table(head, rows)}\n\nThe same model as plans have it, with the speeds up and "
         f"down of its rules, beside flights of both airframes of this program ([flight-simulation.md](flight-simulation.md)); the bar is "
-        f"{100 * MOST_WINDY:.0f} % of energy. The simulated battery knows no inflow: level flight takes it as much as a hover, and a climb "
+        f"{100 * MAX_WINDY_ERROR:.0f} % of energy. The simulated battery knows no inflow: level flight takes it as much as a hover, and a climb "
         "no more, where the model has less and more. Where the wind would ask for more than the airspeed that a UAV states, plans slow "
         "down and the simulated autopilot does not yet: an Iris at 5 m/s in 8 m/s of wind is planned 10 % longer and with 17 % more energy "
         f"than it takes.\n\n{table(own_head, own)}"

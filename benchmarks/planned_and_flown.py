@@ -26,7 +26,7 @@ from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_
 from tests.telemetry.estimation.routes import lines_of
 
 PROCESSES = 2
-MOST_MEAN, MIN_SHARE = 0.10, 0.90
+MAX_MEAN_ERROR, MIN_SHARE = 0.10, 0.90
 
 
 class Found(NamedTuple):
@@ -72,7 +72,7 @@ def main() -> None:
             columns = [[getattr(one, name) for one in own] for name in ("time", "energy", "time_before", "energy_before")]
             rows.append([f"{AIRFRAMES[code].name}, {air}", str(len(own)), *map(spread, columns)])
             for ratios in columns[:2]:
-                if abs(float(np.mean(ratios)) - 1.0) > MOST_MEAN or float(np.quantile(ratios, 0.05)) < MIN_SHARE:
+                if abs(float(np.mean(ratios)) - 1.0) > MAX_MEAN_ERROR or float(np.quantile(ratios, 0.05)) < MIN_SHARE:
                     missed.append(rows[-1][0])
     head = ["planned for flown, mean (5 to 95 %)", "missions", "time", "energy", "time, without manoeuvres", "energy, without"]
     where = f"along {len(lines):,} real power lines" if lines else "along drawn lines"

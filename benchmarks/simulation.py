@@ -29,7 +29,7 @@ from simulation.flight.uav import SimulatedUav
 
 HOME = LonLat(9.0, 47.0)
 SIDE_M, HEIGHT_M = 500.0, 30.0
-LEAST_TIMES_REAL = 200.0
+MIN_TIMES_REAL = 200.0
 MAX_TOUCH_DOWN_M = 1.0
 UAVS = 100
 PAGE_BYTES = 4096
@@ -115,8 +115,8 @@ def misses(case: Case, runs: list[Run]) -> list[str]:
             found.append(f"{case.name}: touch-down")
         if one.flight.reasons:
             found.append(f"{case.name}: {one.flight.reasons[0]}")
-    if max(one.times_real for one in runs) < LEAST_TIMES_REAL:
-        found.append(f"{case.name}: slower than {LEAST_TIMES_REAL:.0f} times real time")
+    if max(one.times_real for one in runs) < MIN_TIMES_REAL:
+        found.append(f"{case.name}: slower than {MIN_TIMES_REAL:.0f} times real time")
     return found
 
 

@@ -10,7 +10,7 @@ from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset
 from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.inspection_graph import NodeKind
-from inspection.scene.sag import CATENARY_M, EARTH_SHARE, MOST_OF_HEIGHT
+from inspection.scene.sag import CATENARY_M, EARTH_SHARE, MAX_SAG_SHARE
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
 from inspection.selectors.scene import Scene, SceneBridge, SceneZone
@@ -178,7 +178,7 @@ def scene_json(scene: Scene) -> dict[str, Any]:
         "zones": [_zone_json(zone) for zone in scene.zones],
         "rules": {
             "catenary_m": CATENARY_M,
-            "most_sag_share": MOST_OF_HEIGHT,
+            "most_sag_share": MAX_SAG_SHARE,
             "earth_sag_share": EARTH_SHARE,
             "open_top_agl_m": OPEN_TOP_AGL_M,
             "rail_wire_agl_m": UNTAGGED_HEIGHT_M[NodeKind.RAILWAY],

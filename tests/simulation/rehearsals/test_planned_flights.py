@@ -9,8 +9,8 @@ from mavlink.approved_route import FrozenRoute
 from tests.simulation.rehearsals.planned_flights import CALM, ROUGH, WINDY, air_of, climbs, compared, holds, mission, square, zigzag
 from tests.telemetry.estimation.routes import lines_of
 
-MOST_TIME, MOST_ENERGY = 0.15, 0.15  # of a flight, either way
-MOST_MEAN = 0.10
+MAX_TIME_ERROR, MAX_ENERGY_ERROR = 0.15, 0.15  # of a flight, either way
+MAX_MEAN_ERROR = 0.10
 MIN_BY_TURNS, MAX_BY_TURNS = 0.95, 1.10
 SPEEDS_MPS = {"iris": 5.0, "inspector": 10.0}
 
@@ -23,8 +23,8 @@ SPEEDS_MPS = {"iris": 5.0, "inspector": 10.0}
 )
 def test_a_flight_takes_what_was_planned(route: Callable[[float], FrozenRoute], air: str, code: str) -> None:
     found = compared(route(SPEEDS_MPS[code]), code, air_of(1, code, air), 1, physics_hz=100)
-    assert abs(found.time_ratio - 1.0) <= MOST_TIME
-    assert abs(found.energy_ratio - 1.0) <= MOST_ENERGY
+    assert abs(found.time_ratio - 1.0) <= MAX_TIME_ERROR
+    assert abs(found.energy_ratio - 1.0) <= MAX_ENERGY_ERROR
 
 
 @pytest.mark.parametrize(("code", "speed_mps", "leg_m"), [("inspector", 14.0, 150.0), ("inspector", 14.0, 30.0), ("iris", 6.0, 60.0)])
@@ -37,8 +37,8 @@ def test_sharp_turns_take_what_was_planned(code: str, speed_mps: float, leg_m: f
 
 def test_climbs_take_what_was_planned() -> None:
     found = compared(climbs(3, 5.0), "iris", air_of(1, "iris", CALM), 1, physics_hz=100)
-    assert abs(found.time_ratio - 1.0) <= MOST_TIME
-    assert abs(found.energy_ratio - 1.0) <= MOST_ENERGY
+    assert abs(found.time_ratio - 1.0) <= MAX_TIME_ERROR
+    assert abs(found.energy_ratio - 1.0) <= MAX_ENERGY_ERROR
 
 
 @pytest.mark.long
@@ -57,5 +57,5 @@ def test_20_missions_along_lines_of_a_region_take_what_was_planned(names: list[s
         route, code = mission(seed, lines)
         found.append(compared(route, code, air_of(seed, code, air), seed))
     for ratios in ([one.time_ratio for one in found], [one.energy_ratio for one in found]):
-        assert abs(float(np.mean(ratios)) - 1.0) <= MOST_MEAN, ratios
+        assert abs(float(np.mean(ratios)) - 1.0) <= MAX_MEAN_ERROR, ratios
         assert float(np.quantile(ratios, 0.05)) >= 0.90, ratios  # too little is what a battery cannot do with

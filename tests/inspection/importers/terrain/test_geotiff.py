@@ -146,14 +146,14 @@ def tiff_of(data: bytes, *, width: int, height: int, rows_per_strip: int, strips
 
 
 ZEROS = zlib.compress(bytes(4_000_000), 9)  # 1000 : 1
-MOST_OF_IT = zlib.compress(np.full(10_000, 300, dtype="<f4").tobytes(), 9)[:-8]
+CUT_OFF_BLOCK = zlib.compress(np.full(10_000, 300, dtype="<f4").tobytes(), 9)[:-8]
 
 HOSTILE = [
     (tiff_of(ZEROS, width=40_000, height=4_000, rows_per_strip=4_000), f"at most {MAX_PART_BYTES // MIB} MiB"),
     (tiff_of(ZEROS, width=2_000_000, height=2_000_000, rows_per_strip=1), "at most 200000000"),
     (tiff_of(ZEROS, width=10_000, height=10_000, rows_per_strip=1), "lists 1"),
     (tiff_of(ZEROS, width=3, height=60_000_000, rows_per_strip=1), "at most 1000000"),
-    (tiff_of(MOST_OF_IT, width=100, height=100, rows_per_strip=100), "damaged or cut off"),
+    (tiff_of(CUT_OFF_BLOCK, width=100, height=100, rows_per_strip=100), "damaged or cut off"),
     (tiff_of(b"not packed at all", width=100, height=100, rows_per_strip=100), "damaged or cut off"),
     (tiff_of(b"\xff" * 500, width=100, height=100, rows_per_strip=100, compression=LZW), "damaged or cut off"),
     (tiff_of(b"", width=100, height=100, rows_per_strip=100, compression=34887), "LERC"),

@@ -14,7 +14,7 @@ import { refreshRow, uavRow } from "./row.js";
 
 /** @typedef {{ base: string, sensor: string, type: string }} Asked what the list is narrowed to */
 
-const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
+const MIN_UAVS_TO_FILTER = 4; // a fleet of fewer is seen at a glance
 const SHOWN_FIRST = 30;
 
 /**
@@ -86,7 +86,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     more.textContent = tn(uavs.length - visible.length, "Show {count} more", "Show {count} more");
     const free = uavs.filter(isFree);
     const all = byId("choose-uavs");
-    all.hidden = state.fleet.length < LEAST_TO_NARROW || free.length === 0;
+    all.hidden = state.fleet.length < MIN_UAVS_TO_FILTER || free.length === 0;
     all.textContent = tn(free.length, "Select {count} more", "Select the remaining {count}");
     byId("no-uav-found").hidden = visible.length > 0 || state.fleet.length === 0;
   }
@@ -166,7 +166,7 @@ function createFilters(onChange) {
     },
     /** @param {FleetUav[]} fleet */
     draw(fleet) {
-      const isSmall = fleet.length < LEAST_TO_NARROW;
+      const isSmall = fleet.length < MIN_UAVS_TO_FILTER;
       const choices = choicesOf(fleet);
       const key = JSON.stringify([choices, isSmall]);
       if (key === narrowedBy) return;
