@@ -133,7 +133,7 @@ def main() -> None:
         "`python -m benchmarks.energy_model`: no figure of power was fitted to these flights. Turns count as in plans, and of gusts the "
         f"mean wind alone. {machine('numba', 'numpy')}\n\n{table(head, rows)}\n\nThe same model as plans have it, with the speeds up and "
         f"down of its rules, beside flights of both airframes of this program ([flight-simulation.md](flight-simulation.md)); the bar is "
-        f"{100 * MAX_WINDY_ERROR:.0f} % of energy. The simulated battery knows no inflow: level flight takes it as much as a hover, and a climb "
+        f"{100 * MAX_WINDY_ERROR:.0f} % of energy. The simulated battery knows no inflow: level flight takes as much as a hover, a climb "
         "no more, where the model has less and more. Where the wind would ask for more than the airspeed that a UAV states, plans slow "
         "down and the simulated autopilot does not yet: an Iris at 5 m/s in 8 m/s of wind is planned 10 % longer and with 17 % more energy "
         f"than it takes.\n\n{table(own_head, own)}"

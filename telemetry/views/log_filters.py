@@ -31,7 +31,9 @@ from workspace.api.whole_numbers import WholeNumber
 MIN_DURATION_S, MAX_DURATION_S = 1e-3, 366 * 86_400.0  # between chosen rows
 USUAL_SPAN = timedelta(days=1)
 UAV = WholeNumber("uav", "id of a UAV")
-MAX_RECORDS = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
+MAX_RECORDS = WholeNumber(
+    "most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000
+)
 TIMES = [
     OpenApiParameter("from", TIME, description="measured at or after this time, with its zone"),
     OpenApiParameter("to", TIME, description="measured before this time, with its zone"),

@@ -17,7 +17,8 @@ Check = Callable[[], list[str]]
 def _told(sql: str, words: str, values: dict[str, Any] | None = None) -> list[str]:
     """Each row put into the words by its place."""
     found = rows(sql, values)
-    return [words.format(*row) for row in found[:MAX_VIOLATIONS]] + ([f"and {len(found) - MAX_VIOLATIONS} more"] if len(found) > MAX_VIOLATIONS else [])
+    more = len(found) - MAX_VIOLATIONS
+    return [words.format(*row) for row in found[:MAX_VIOLATIONS]] + ([f"and {more} more"] if more > 0 else [])
 
 
 def no_orphans() -> list[str]:
