@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import build_asset_places
-from inspection.network.paths.contracted_graph import CondensedGraph, NumberArray, condense
+from inspection.network.paths.contracted_graph import ContractedGraph, NumberArray, condense
 from inspection.network.paths.hub_labels import HubLabels, label
 from inspection.network.paths.node_tree import build_node_tree
 
@@ -18,7 +18,7 @@ from inspection.network.paths.node_tree import build_node_tree
 class RouteIndex:
     """Read-only arrays that threads and, memory-mapped, processes share."""
 
-    condensed: CondensedGraph
+    condensed: ContractedGraph
     labels: HubLabels
 
     @cached_property

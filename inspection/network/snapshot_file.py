@@ -16,7 +16,7 @@ from inspection.network.build.network import Network
 from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import AssetPlaces
-from inspection.network.paths.contracted_graph import CondensedGraph
+from inspection.network.paths.contracted_graph import ContractedGraph
 from inspection.network.paths.hub_labels import HubLabels
 from inspection.network.paths.node_tree import NodeTree
 from inspection.network.route_index import RouteIndex, asset_places, node_tree, route_index
@@ -29,7 +29,7 @@ NETWORKS, CLEARED = "networks", "cleared"
 KEPT_NETWORKS, KEPT_CLEARED = 3, 8
 NETWORK_FIELDS = [field.name for field in fields(Network)]  # which are also an inspection graph's
 
-Part = TypeVar("Part", CondensedGraph, HubLabels, NodeTree, AssetPlaces)
+Part = TypeVar("Part", ContractedGraph, HubLabels, NodeTree, AssetPlaces)
 
 
 class CorruptSnapshot(Exception):
@@ -129,12 +129,12 @@ def _index_arrays(graph: InspectionGraph) -> Arrays:
 
 
 def _remember_index(graph: InspectionGraph, arrays: Arrays) -> None:
-    route_index.remember(graph, RouteIndex(_part(CondensedGraph, arrays, "condensed"), _part(HubLabels, arrays, "labels")))
+    route_index.remember(graph, RouteIndex(_part(ContractedGraph, arrays, "condensed"), _part(HubLabels, arrays, "labels")))
     node_tree.remember(graph, _part(NodeTree, arrays, "tree"))
     asset_places.remember(graph, _part(AssetPlaces, arrays, "flyable_places"))
 
 
-def _arrays_of(name: str, part: CondensedGraph | HubLabels | NodeTree | AssetPlaces) -> Arrays:
+def _arrays_of(name: str, part: ContractedGraph | HubLabels | NodeTree | AssetPlaces) -> Arrays:
     return {f"{name}.{field.name}": getattr(part, field.name) for field in fields(part)}
 
 

@@ -12,7 +12,7 @@ from mavlink.vehicle_state import VehicleState
 UNDONE_ROUNDS = 3
 
 
-class CommandKeeper:
+class CommandDriver:
     """Drives an order to its goal. `state` is to have taken each message before the keeper gets it.
 
     Where the vehicle is already so, it ends as applied, and nothing is sent. That is told by a heartbeat that came after the order was

@@ -8,7 +8,7 @@ from mavlink.mission_sync.compare import Difference
 from mavlink.vehicle_plan import MissionType
 
 
-class KeeperState(StrEnum):
+class SyncState(StrEnum):
     READY = "ready"  # it holds what was approved
     INTACT = "intact"  # it failed, and all lists are as they were before
     CLEARED = "cleared"  # it failed, and the mission was taken off
@@ -25,7 +25,7 @@ class Mix:
 
 
 @dataclass(frozen=True)
-class KeeperOutcome:
+class SyncOutcome:
     """`code` names why it failed; `sha256` is of the load that the vehicle holds, empty unless it is ready.
 
     `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
@@ -33,7 +33,7 @@ class KeeperOutcome:
     lists, by kind (see wire.held_sha256).
     """
 
-    state: KeeperState
+    state: SyncState
     code: str
     words: str
     sha256: str = ""

@@ -8,7 +8,7 @@ from mavlink.autopilot_type import Flavour, Mode
 from mavlink.mission_sync.compare import Difference, Found, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
-from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState, Mix, Progress
+from mavlink.mission_sync.outcome import Mix, Progress, SyncOutcome, SyncState
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
 from mavlink.mission_sync.upload import REQUESTS, Clear, TransferOutcome, TransferState, Upload
 from mavlink.mission_sync.wire import Held, has_home, held_list, held_sha256, sent_list
@@ -22,7 +22,7 @@ ORDER = (MissionType.FENCE, MissionType.MISSION, MissionType.RALLY)  # never a n
 SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "restoring"
 
 
-class MissionKeeper:
+class MissionSync:
     """Reads what the vehicle holds, sends what differs, reads it back, and compares; what fails is put back or taken off, and read again.
 
     Ready means: all three lists were read back and are the approved ones. A vehicle that is armed is only sent anything while it is held
@@ -61,7 +61,7 @@ class MissionKeeper:
         self._steps = Steps(self._course())
 
     @property
-    def outcome(self) -> KeeperOutcome | None:
+    def outcome(self) -> SyncOutcome | None:
         return self._steps.outcome
 
     @property
@@ -115,14 +115,14 @@ class MissionKeeper:
 
     # the course of events
 
-    def _course(self) -> Course[KeeperOutcome]:
+    def _course(self) -> Course[SyncOutcome]:
         refused = self._cannot_begin()
         if refused is not None:
             return refused
         for kind in ORDER:
             read = yield from self._read(kind)
             if read is None:
-                return KeeperOutcome(KeeperState.INTACT, self._reason, "Nothing was sent: what the vehicle holds could not be read.")
+                return SyncOutcome(SyncState.INTACT, self._reason, "Nothing was sent: what the vehicle holds could not be read.")
             self.before[kind] = read
             known = [load.of(kind) for load in self._known]
             self.found_before[kind] = found(read, self.load.of(kind), known, self._flavour)
@@ -135,9 +135,9 @@ class MissionKeeper:
         words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
         lists = {kind: held_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
         sha256, mixes = self.load.content_sha256, tuple(self.mixes)
-        return KeeperOutcome(KeeperState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
+        return SyncOutcome(SyncState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
 
-    def _cannot_begin(self) -> KeeperOutcome | None:
+    def _cannot_begin(self) -> SyncOutcome | None:
         state = self._state
         code = words = ""
         if state.flavour is None:
@@ -156,7 +156,7 @@ class MissionKeeper:
             elif unknown:
                 autopilot, first = firmware_words(state.flavour, state.firmware), unknown[0]
                 code, words = "unknown-command", f"Not known to {autopilot}: item {first.place}, {command_words(first.item.command)}."
-        return KeeperOutcome(KeeperState.INTACT, code, f"Nothing was sent. {words}") if code else None
+        return SyncOutcome(SyncState.INTACT, code, f"Nothing was sent. {words}") if code else None
 
     @property
     def _flavour(self) -> Flavour:
@@ -260,7 +260,7 @@ class MissionKeeper:
 
     # after a failure
 
-    def _give_up(self) -> Course[KeeperOutcome]:
+    def _give_up(self) -> Course[SyncOutcome]:
         self._is_restoring = True
         self._sent.clear()
         unread = []
@@ -284,7 +284,7 @@ class MissionKeeper:
                 break
         return held
 
-    def _verdict(self, unread: Sequence[MissionType]) -> KeeperOutcome:
+    def _verdict(self, unread: Sequence[MissionType]) -> SyncOutcome:
         kept = [kind for kind in self._touched if kind not in unread and are_identical(self._now[kind] or (), self.before[kind])]
         mixed = [
             kind
@@ -296,16 +296,16 @@ class MissionKeeper:
             words = " ".join(self._left_in_words(kind, self._now[kind] or ()) for kind in mixed)
             lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
             shown = self._differences(mixed[0])
-            return KeeperOutcome(KeeperState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
+            return SyncOutcome(SyncState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
         if unread:
             is_critical = self._flavour is Flavour.ARDUPILOT
             may = "part of the new one and part of the old" if is_critical else "the old one or the new one, whole"
             words = f"The vehicle fell silent while its {_name(unread[0])} was sent: it may hold {may}. Read it back before any flight."
-            return KeeperOutcome(KeeperState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
+            return SyncOutcome(SyncState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
         if MissionType.MISSION in self._touched and MissionType.MISSION not in kept:
             words = "The mission could not be sent whole, and what was there of it was taken off: the vehicle holds none."
-            return KeeperOutcome(KeeperState.CLEARED, reason, self._with_why(words), mixes=mixes)
-        return KeeperOutcome(KeeperState.INTACT, reason, self._with_why("The vehicle holds what it held before."), mixes=mixes)
+            return SyncOutcome(SyncState.CLEARED, reason, self._with_why(words), mixes=mixes)
+        return SyncOutcome(SyncState.INTACT, reason, self._with_why("The vehicle holds what it held before."), mixes=mixes)
 
     def _with_why(self, words: str) -> str:
         return f"{self._why} {words}".strip()

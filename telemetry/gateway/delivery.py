@@ -18,10 +18,10 @@ from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
 from mavlink.commands.actions import Order, blind_message, pause_s
 from mavlink.commands.command import CommandEnd, CommandOutcome
-from mavlink.commands.driver import CommandKeeper
+from mavlink.commands.driver import CommandDriver
 from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
-from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncOutcome, SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.parameters import ParameterReading, ParameterSetting
 from mavlink.rtl import fence_off_by, return_height_parameter
 from mavlink.vehicle_plan import FlightLoad, MissionType
@@ -47,7 +47,7 @@ from telemetry.gateway.preparation import (
     return_by_list,
     task_of,
 )
-from telemetry.gateway.protocol_driver import OTHER_LIST_READ, Conversation, ask_for_the_present, read_aboard
+from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.services.alerts.mission_alerts import tell_of_mission, tell_of_other_list
 from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
@@ -87,7 +87,7 @@ async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: C
 
 async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], bool]) -> None:
     reading = ParameterReading(names, session.state, Ends(session.uav.system), replace(settings.TRANSFER_RULES, retries=RETRIES))
-    await Conversation(session, reading, is_wanted).run(on_change=lambda: None)
+    await ProtocolDriver(session, reading, is_wanted).run(on_change=lambda: None)
 
 
 def warnings_of(load: FlightLoad, session: Session) -> str:
@@ -125,7 +125,7 @@ async def send_blind(order: Order, session: Session, may_send: Callable[[], bool
 
 
 @dataclass
-class Carriage:
+class Delivery:
     """`is_dropped`: the row is not ours any more, or is to be given back; `is_closing`: the latter. `is_blind`: nothing is heard."""
 
     command: UavCommand
@@ -221,7 +221,7 @@ class Carriage:
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
             return
-        keeper = CommandKeeper(
+        keeper = CommandDriver(
             order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
             parameters=parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
         )  # fmt: skip
@@ -235,7 +235,7 @@ class Carriage:
                 self._note(note_acknowledged, self.command.pk, **self._fence)
 
         self.session.commanded_s = time.monotonic()
-        outcome = await Conversation(self.session, keeper, lambda: self.is_ours).run(on_change=change)
+        outcome = await ProtocolDriver(self.session, keeper, lambda: self.is_ours).run(on_change=change)
         if isinstance(outcome, CommandOutcome):
             await self._tell_order(outcome)
         else:
@@ -252,7 +252,7 @@ class Carriage:
             await self._end(note_released)
             return
         setting = ParameterSetting(*wanted, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES)
-        outcome = await Conversation(self.session, setting, lambda: self.is_ours).run(on_change=lambda: None)
+        outcome = await ProtocolDriver(self.session, setting, lambda: self.is_ours).run(on_change=lambda: None)
         if isinstance(outcome, CommandOutcome):
             await self._tell_order(outcome)
         else:
@@ -304,7 +304,7 @@ class Carriage:
         if not await self._surely(begin_loading, self.carried):
             await self._end(note_released)
             return
-        keeper = MissionKeeper(task.load, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
+        keeper = MissionSync(task.load, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
         noted_s, mixes = 0.0, 0
 
         def change() -> None:
@@ -320,19 +320,19 @@ class Carriage:
                 progress = keeper.progress
                 self._note(note_progress, self.command.pk, done=progress.done, total=progress.total, **self._fence)
 
-        outcome = await Conversation(self.session, keeper, lambda: self.session.is_held).run(on_change=change)
+        outcome = await ProtocolDriver(self.session, keeper, lambda: self.session.is_held).run(on_change=change)
         await asyncio.gather(*self._notes, return_exceptions=True)
         if outcome is None:
             await self._end(note_released)
         else:
             await self._tell_load(task, outcome)
 
-    async def _tell_load(self, task: Task, outcome: KeeperOutcome) -> None:
+    async def _tell_load(self, task: Task, outcome: SyncOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
-        still_mixed = outcome.state is KeeperState.MIXED or (outcome.state is KeeperState.UNREAD and outcome.is_critical)
+        still_mixed = outcome.state is SyncState.MIXED or (outcome.state is SyncState.UNREAD and outcome.is_critical)
         await self._surely(tell_of_mission, self.command, is_mixed=still_mixed, words=outcome.words)
-        before = task.before if outcome.state is KeeperState.INTACT else None
-        if outcome.state is KeeperState.READY:
+        before = task.before if outcome.state is SyncState.INTACT else None
+        if outcome.state is SyncState.READY:
             await self._surely(tell_of_other_list, self.command)
             warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
             told = " ".join(filter(None, [outcome.left_alone, warnings]))

@@ -17,7 +17,7 @@ from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.delivery import Carriage
+from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from workspace.live.lease_times import held_until_s
@@ -33,13 +33,13 @@ NOTES_AT_ONCE = 4  # the end of a command may have to wait for its mission; the 
 
 
 @dataclass
-class Desk:
+class Dispatcher:
     holder: str
     lease_s: float
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-commands"))
     notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # of what is carried
-    _carriages: dict[UUID, Carriage] = field(default_factory=dict)
+    _deliveries: dict[UUID, Delivery] = field(default_factory=dict)
     _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
     _hint: asyncio.Event = field(default_factory=asyncio.Event)
 
@@ -58,14 +58,14 @@ class Desk:
     async def look(self) -> None:
         """Drops what is not ours any more, takes what waits, begins what can begin."""
         self._forget_ended()
-        if self._carriages:
+        if self._deliveries:
             asked_s = time.monotonic()
             held = await self.database.run(renew_claims, holder=self.holder, lease_s=self.lease_s)
-            for command_id, carriage in self._carriages.items():
-                if held.get(command_id) != carriage.carried.attempt:
-                    carriage.is_dropped = True
+            for command_id, delivery in self._deliveries.items():
+                if held.get(command_id) != delivery.carried.attempt:
+                    delivery.is_dropped = True
                 else:
-                    carriage.held_until_s = held_until_s(asked_s, self.lease_s)
+                    delivery.held_until_s = held_until_s(asked_s, self.lease_s)
         now_s = time.time()
         served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
         unheard = {session.uav.uav_id: session for session in self.sessions() if session.may_hear(now_s)}
@@ -75,7 +75,7 @@ class Desk:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MAX_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
             for axis in (CommandAxis.SPEED, CommandAxis.PARAMETER):
-                await self._claim(served, axis, settings.GATEWAY_MAX_COMMANDS - len(self._carriages))
+                await self._claim(served, axis, settings.GATEWAY_MAX_COMMANDS - len(self._deliveries))
         if unheard:
             await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
         self._begin()
@@ -98,36 +98,36 @@ class Desk:
         )  # fmt: skip
         for command in claimed:
             session, until_s = sessions[command.uav_id], held_until_s(asked_s, self.lease_s)
-            self._carriages[command.pk] = Carriage(command, session, self.notes, until_s, is_blind=is_blind)
+            self._deliveries[command.pk] = Delivery(command, session, self.notes, until_s, is_blind=is_blind)
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""
-        for carriage in self._carriages.values():
-            carriage.is_dropped = carriage.is_closing = True
+        for delivery in self._deliveries.values():
+            delivery.is_dropped = delivery.is_closing = True
         if self._tasks:
             await asyncio.wait(self._tasks.values(), timeout=END_WITHIN_S)
-        for command_id, carriage in self._carriages.items():
-            if not carriage.has_ended:
-                await self.database.run(note_released, command_id, attempt=carriage.carried.attempt, holder=self.holder)
+        for command_id, delivery in self._deliveries.items():
+            if not delivery.has_ended:
+                await self.database.run(note_released, command_id, attempt=delivery.carried.attempt, holder=self.holder)
         for task in self._tasks.values():
             task.cancel()
 
     def _commands(self) -> list[UavCommand]:
-        return [carriage.command for carriage in self._carriages.values()]
+        return [delivery.command for delivery in self._deliveries.values()]
 
     def _begin(self) -> None:
-        waiting = [carriage for command_id, carriage in self._carriages.items() if command_id not in self._tasks]
-        for carriage in sorted(waiting, key=lambda carriage: (carriage.command.priority, carriage.command.created_at)):
-            if carriage.is_dropped:
-                carriage.has_ended = True
-            elif self._may_begin(carriage.command):
-                command_id, carriage.has_begun = carriage.command.pk, True
-                task = self._tasks[command_id] = asyncio.create_task(carriage.run(), name=f"command {command_id}")
+        waiting = [delivery for command_id, delivery in self._deliveries.items() if command_id not in self._tasks]
+        for delivery in sorted(waiting, key=lambda delivery: (delivery.command.priority, delivery.command.created_at)):
+            if delivery.is_dropped:
+                delivery.has_ended = True
+            elif self._may_begin(delivery.command):
+                command_id, delivery.has_begun = delivery.command.pk, True
+                task = self._tasks[command_id] = asyncio.create_task(delivery.run(), name=f"command {command_id}")
                 task.add_done_callback(self._ended)
         self._forget_ended()
 
     def _may_begin(self, command: UavCommand) -> bool:
-        under_way = [self._carriages[command_id].command for command_id in self._tasks]
+        under_way = [self._deliveries[command_id].command for command_id in self._tasks]
         own = [other for other in under_way if other.uav_id == command.uav_id]
         if any(other.axis == command.axis for other in own):
             return False
@@ -145,7 +145,7 @@ class Desk:
     def _forget_ended(self) -> None:
         for command_id in [key for key, task in self._tasks.items() if task.done()]:
             del self._tasks[command_id]
-            if command_id in self._carriages and self._carriages[command_id].has_begun:  # else it was given back, and taken anew
-                del self._carriages[command_id]
-        for command_id in [key for key, carriage in self._carriages.items() if carriage.has_ended and key not in self._tasks]:
-            del self._carriages[command_id]
+            if command_id in self._deliveries and self._deliveries[command_id].has_begun:  # else it was given back, and taken anew
+                del self._deliveries[command_id]
+        for command_id in [key for key, delivery in self._deliveries.items() if delivery.has_ended and key not in self._tasks]:
+            del self._deliveries[command_id]

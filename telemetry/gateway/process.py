@@ -22,7 +22,7 @@ from mavlink.frames import Frame, message_of
 from missions.services.commands.commands import CHANNEL
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.dispatcher import Desk
+from telemetry.gateway.dispatcher import Dispatcher
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
 from telemetry.gateway.leasing import Leasing
@@ -83,7 +83,7 @@ class Gateway:
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.unknown = UnknownSenders(self.store.note_sighting)
         self.flights = Flights(self.options)
-        self.desk = Desk(self.options.holder, self.options.lease_s, self._all)
+        self.desk = Dispatcher(self.options.holder, self.options.lease_s, self._all)
         self.leasing = Leasing(self.options, self.database, self._all, self._receive_known, self.flights.end)
         self.listeners = Listeners(self.receive)
         self._stop = asyncio.Event()

@@ -44,7 +44,7 @@ class Keeper(Protocol):
 
 
 @dataclass
-class Conversation:
+class ProtocolDriver:
     session: Session
     keeper: Keeper
     is_wanted: Callable[[], bool]
@@ -121,7 +121,7 @@ async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -
         session.state.parameters.pop(RESTARTS, None)
         asked.append(ParameterReading((RESTARTS,), session.state, ends, rules))
     for keeper in asked:
-        await Conversation(session, keeper, is_wanted).run(on_change=lambda: None)
+        await ProtocolDriver(session, keeper, is_wanted).run(on_change=lambda: None)
 
 
 async def _read(
@@ -134,7 +134,7 @@ async def _read(
 ) -> Reading | None:
     download = Download(kind, Ends(session.uav.system), settings.TRANSFER_RULES)
     most = len(load.of(kind))
-    outcome = await Conversation(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
+    outcome = await ProtocolDriver(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
     if outcome is None:
         return None
     name = kind.name.lower()

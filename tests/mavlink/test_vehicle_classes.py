@@ -6,8 +6,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.autopilot_type import Mode
 from mavlink.commands.actions import STOPS, Order
 from mavlink.commands.command import CommandEnd
-from mavlink.mission_sync.outcome import KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_class import VehicleClass, class_of
 from tests.mavlink.commands.orders_given import told
@@ -79,7 +79,7 @@ def test_px4_of_another_kind_is_held_brought_back_and_landed_and_nothing_else(or
 @pytest.mark.parametrize("vehicle_type", OTHERS)
 def test_no_mission_is_sent_to_another_kind(flavour, vehicle_type):
     vehicle = FLAVOURS[flavour](vehicle_type=vehicle_type)
-    channel = Channel(MissionKeeper(load(7), known(vehicle), ENDS, TransferRules()), vehicle)
+    channel = Channel(MissionSync(load(7), known(vehicle), ENDS, TransferRules()), vehicle)
     outcome = channel.run()
-    assert (outcome.state, outcome.code, channel.to_vehicle) == (KeeperState.INTACT, "vehicle-class", [])
+    assert (outcome.state, outcome.code, channel.to_vehicle) == (SyncState.INTACT, "vehicle-class", [])
     assert outcome.words.startswith("Nothing was sent. The vehicle is a ")

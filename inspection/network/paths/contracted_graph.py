@@ -18,7 +18,7 @@ CORE = -1  # in place of a chain's number, for a node of the core
 
 
 @dataclass(frozen=True, eq=False)
-class CondensedGraph:
+class ContractedGraph:
     """k core nodes and c chains; p places on chains, both ends of each included; n nodes.
 
     core_node     int32 (k,)      the graph's number of each core node
@@ -56,7 +56,7 @@ class CondensedGraph:
         return length_m
 
 
-def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, length_m: FloatArray) -> CondensedGraph:
+def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, length_m: FloatArray) -> ContractedGraph:
     """Chains and core of an undirected graph with edges (m, 2); several between two nodes are allowed, loops at a node are left out.
 
     The core is every node that has not exactly two edges, and of a ring that meets no such node the one with the lowest number.
@@ -66,7 +66,7 @@ def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, lengt
 
 def condense_columns(
     node_count: int, tail: NDArray[np.integer], head: NDArray[np.integer], cost: FloatArray, length_m: FloatArray
-) -> CondensedGraph:
+) -> ContractedGraph:
     """The same with the edges' ends in columns. Where the cost is the length, one array serves as both."""
     is_cost_length = cost is length_m
     cost = _column(cost, np.float64)
@@ -74,7 +74,7 @@ def condense_columns(
     arrays = _condense(node_count, _column(tail, np.int32), _column(head, np.int32), cost, length_m, is_cost_length)
     for array in arrays:
         array.setflags(write=False)
-    condensed = CondensedGraph(*arrays)
+    condensed = ContractedGraph(*arrays)
     return replace(condensed, place_m=condensed.place_cost) if is_cost_length else condensed
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
+from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray
 
 SAMPLED_TREES = 48
 MAX_SAMPLED_NODES = 4_000_000  # in all trees together
@@ -44,7 +44,7 @@ class HubLabels:
     component: NumberArray
 
 
-def label(condensed: CondensedGraph) -> HubLabels:
+def label(condensed: ContractedGraph) -> HubLabels:
     """Labels of the core's nodes by the cost of the chains."""
     tail, head, cost, length_m = condensed.chain_tail, condensed.chain_head, condensed.chain_cost, condensed.chain_m
     first, chain_at = _chains_of_nodes(condensed.core_count, tail, head)

@@ -8,7 +8,7 @@ from numba import njit
 
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachments
-from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
+from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray
 from inspection.network.route_index import route_index
 
 
@@ -34,7 +34,7 @@ class Crossroads:
     chain: NumberArray
 
 
-def crossroads(condensed: CondensedGraph) -> Crossroads:
+def crossroads(condensed: ContractedGraph) -> Crossroads:
     chains = np.arange(len(condensed.chain_tail), dtype=np.int32)
     core = np.concatenate([condensed.chain_tail, condensed.chain_head])
     order = np.argsort(core, kind="stable")

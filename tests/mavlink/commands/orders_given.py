@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd, CommandOutcome
-from mavlink.commands.driver import CommandKeeper
+from mavlink.commands.driver import CommandDriver
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
 from tests.telemetry.vehicles import px4
@@ -47,7 +47,7 @@ def told(
     home = mavlink.MAVLink_home_position_message(554000000, 98000000, 20000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
     for message in [*vehicle.reports(), home]:
         state.receive(mavlink.MAVLink(None).parse_char(message.pack(frames)), 0.0)
-    keeper = CommandKeeper(order, state, ENDS, RULES, parameters=parameters, **more)
+    keeper = CommandDriver(order, state, ENDS, RULES, parameters=parameters, **more)
     channel = Channel(keeper, vehicle, link or Link(), seed, listeners=[state])
     return channel.run(), channel
 

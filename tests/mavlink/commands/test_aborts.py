@@ -9,7 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
-from mavlink.commands.driver import CommandKeeper
+from mavlink.commands.driver import CommandDriver
 from mavlink.vehicle_state import VehicleState
 from tests.mavlink.commands.orders_given import (
     APPLIED,
@@ -89,7 +89,7 @@ def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str)
     vehicle.is_in_air = True
     beat = heard(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
     state.receive(beat, RULES.fresh_s + 0.5)
-    keeper = CommandKeeper(Order.ABORT, state, ENDS, RULES)
+    keeper = CommandDriver(Order.ABORT, state, ENDS, RULES)
     assert [message.command for message in keeper.start(RULES.fresh_s + 0.6)] == [SET_MODE]
 
 
@@ -109,7 +109,7 @@ def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(flavour: st
     """It was sent before, and a radio held it back."""
     vehicle, state = vehicle_of(flavour, mode="mission", in_air=True), VehicleState(7)
     flying = vehicle.custom_mode
-    keeper = CommandKeeper(order, state, ENDS, RULES, unsettled_until_s=2.0)
+    keeper = CommandDriver(order, state, ENDS, RULES, unsettled_until_s=2.0)
     frames = mavlink.MAVLink(None, srcSystem=vehicle.system, srcComponent=1)
     now_s, sent = 0.0, 0
 

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.autopilot_type import Flavour
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
-from mavlink.commands.driver import CommandKeeper
+from mavlink.commands.driver import CommandDriver
 from mavlink.vehicle_state import VehicleState
 from tests.mavlink.commands.orders_given import (
     APPLIED,
@@ -98,7 +98,7 @@ def test_uav_that_does_not_tell_whether_it_flies_is_not_set_in_motion(order: Ord
     keeper, state = fresh()
     state.receive(heard(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), RULES.fresh_s + 0.1)
-    keeper = CommandKeeper(order, state, ENDS, RULES)
+    keeper = CommandDriver(order, state, ENDS, RULES)
     assert keeper.start(RULES.fresh_s + 0.2) == []
     assert keeper.outcome is not None and keeper.outcome.code == "not-told"
 
@@ -260,15 +260,15 @@ def test_orders_in_the_air_get_through_a_bad_link(flavour: str, order: Order, se
     assert mode_of(vehicle) in (MODES[flavour]["hold"], MODES[flavour]["return"], MODES[flavour]["land"])
 
 
-def fresh(order: Order = Order.ARM) -> tuple[CommandKeeper, VehicleState]:
+def fresh(order: Order = Order.ARM) -> tuple[CommandDriver, VehicleState]:
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), 0.0)
-    keeper = CommandKeeper(order, state, ENDS, RULES, parameters=PARAMETERS)
+    keeper = CommandDriver(order, state, ENDS, RULES, parameters=PARAMETERS)
     assert len(keeper.start(0.0)) == 1
     return keeper, state
 
 
-def answer(keeper: CommandKeeper, result: int, at_s: float, command: int = ARM, to: tuple[int, int] = GROUND) -> None:
+def answer(keeper: CommandDriver, result: int, at_s: float, command: int = ARM, to: tuple[int, int] = GROUND) -> None:
     keeper.receive(heard(mavlink.MAVLink_command_ack_message(command, result, 0, 0, *to)), at_s)
 
 
@@ -310,7 +310,7 @@ def test_vehicle_at_work_is_waited_for_and_not_asked_again():
 def test_old_heartbeat_is_no_proof_of_being_so_already():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandKeeper(Order.ARM, state, ENDS, RULES)
+    keeper = CommandDriver(Order.ARM, state, ENDS, RULES)
     assert len(keeper.start(RULES.fresh_s + 0.1)) == 1
 
 
@@ -318,7 +318,7 @@ def test_heartbeat_of_before_the_order_is_no_proof_of_being_so_already():
     """It held, and was told otherwise by somebody else before it could report again."""
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
-    keeper = CommandKeeper(Order.HOLD, state, ENDS, RULES)
+    keeper = CommandDriver(Order.HOLD, state, ENDS, RULES)
     assert keeper.start(0.5) == []
     assert keeper.outcome is None
     flies = heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 4 << 24)
@@ -329,7 +329,7 @@ def test_heartbeat_of_before_the_order_is_no_proof_of_being_so_already():
 def test_order_is_sent_where_no_heartbeat_shows_that_it_is_needless():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
-    keeper = CommandKeeper(Order.HOLD, state, ENDS, RULES)
+    keeper = CommandDriver(Order.HOLD, state, ENDS, RULES)
     assert keeper.start(0.5) == []
     assert [message.command for message in keeper.tick(0.5 + RULES.fresh_s)] == [SET_MODE]
 
@@ -347,7 +347,7 @@ def test_order_is_sent_where_no_heartbeat_shows_that_it_is_needless():
 def test_order_that_says_too_little_is_refused(order: Order, parameters: dict[str, float], code: str):
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), 0.0)
-    keeper = CommandKeeper(order, state, ENDS, RULES, parameters=parameters)
+    keeper = CommandDriver(order, state, ENDS, RULES, parameters=parameters)
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert (keeper.outcome.state, keeper.outcome.code) == (CommandEnd.FAILED, code)
@@ -362,7 +362,7 @@ def test_resuming_on_the_ground_is_refused():
 def test_other_autopilot_is_told_nothing(order: Order):
     state = VehicleState(7)
     state.flavour = Flavour.OTHER
-    keeper = CommandKeeper(order, state, ENDS, RULES, parameters=PARAMETERS)
+    keeper = CommandDriver(order, state, ENDS, RULES, parameters=PARAMETERS)
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert keeper.outcome.code == "autopilot"
@@ -371,7 +371,7 @@ def test_other_autopilot_is_told_nothing(order: Order):
 def test_effect_that_was_reported_before_the_command_is_no_effect():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandKeeper(Order.ARM, state, ENDS, RULES, unsettled_until_s=1.0)
+    keeper = CommandDriver(Order.ARM, state, ENDS, RULES, unsettled_until_s=1.0)
     assert len(keeper.start(0.5)) == 1
     answer(keeper, mavlink.MAV_RESULT_ACCEPTED, 0.6)
     assert keeper.outcome is None
@@ -384,7 +384,7 @@ def test_effect_that_was_reported_before_the_command_is_no_effect():
 def test_the_late_answer_to_an_earlier_speed_is_no_answer_to_a_later_one():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandKeeper(Order.CHANGE_SPEED, state, ENDS, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
+    keeper = CommandDriver(Order.CHANGE_SPEED, state, ENDS, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
     assert keeper.start(0.5) == []
     message = heard(mavlink.MAVLink_command_ack_message(SPEED, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GROUND))
     assert keeper.receive(message, 1.0) == [] and keeper.outcome is None

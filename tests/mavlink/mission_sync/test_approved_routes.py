@@ -7,8 +7,8 @@ from mavlink.approved_route import END_ACTIONS
 from mavlink.fence import fence_of, rally_items
 from mavlink.intermediate_waypoints import with_points_between
 from mavlink.mission_items import flight_loads
-from mavlink.mission_sync.outcome import KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
@@ -32,5 +32,5 @@ def test_approved_route_is_held_by_its_hash(flavour: str, end_action: str):
     (load,) = flight_loads(route, fence=fence.items, rally=rally)
     load = with_points_between(load, 50.0)
     vehicle = FLAVOURS[flavour]()
-    outcome = Channel(MissionKeeper(load, known(vehicle), ENDS, TransferRules()), vehicle).run()
-    assert (outcome.state, outcome.sha256) == (KeeperState.READY, load.content_sha256), outcome.differences
+    outcome = Channel(MissionSync(load, known(vehicle), ENDS, TransferRules()), vehicle).run()
+    assert (outcome.state, outcome.sha256) == (SyncState.READY, load.content_sha256), outcome.differences

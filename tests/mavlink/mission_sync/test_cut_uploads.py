@@ -4,8 +4,8 @@ import pytest
 
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import Found, differences
-from mavlink.mission_sync.outcome import KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
@@ -25,14 +25,14 @@ def vehicle_with_old(flavour: str) -> Vehicle:
     return vehicle
 
 
-def keeper_for(vehicle: Vehicle) -> MissionKeeper:
-    return MissionKeeper(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+def keeper_for(vehicle: Vehicle) -> MissionSync:
+    return MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
 
 
 def messages_in_all(flavour: str) -> int:
     vehicle = vehicle_with_old(flavour)
     channel = Channel(keeper_for(vehicle), vehicle)
-    assert channel.run().state is KeeperState.READY
+    assert channel.run().state is SyncState.READY
     return len(channel.to_vehicle)
 
 
@@ -64,7 +64,7 @@ def test_ground_station_dies_at_each_message(flavour: str):
         assert {kind: next_one.found_before[kind] for kind in (MissionType.MISSION, MissionType.FENCE)} == {
             kind: found[kind] for kind in (MissionType.MISSION, MissionType.FENCE)
         }, sent
-        assert outcome.state is KeeperState.READY
+        assert outcome.state is SyncState.READY
         mixes += len(mixed)
     assert mixes > 0 if flavour == "ardupilot" else mixes == 0
 
@@ -77,14 +77,14 @@ def test_vehicle_dies_at_each_message(flavour: str):
         vehicle = vehicle_with_old(flavour)
         outcome = Channel(keeper_for(vehicle), vehicle, vehicle_dies_after=heard).run()
         states.add(outcome.state)
-        if outcome.state is KeeperState.READY:
+        if outcome.state is SyncState.READY:
             continue  # only the last acknowledgement, of what was read, was lost
         if flavour == "px4":
             assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), heard
         assert said_what_is_there(outcome, vehicle, NEW, OLD), (heard, outcome)
         vehicle.restart()
-        assert Channel(keeper_for(vehicle), vehicle).run().state is KeeperState.READY
-    assert states == {KeeperState.INTACT, KeeperState.UNREAD, KeeperState.READY}
+        assert Channel(keeper_for(vehicle), vehicle).run().state is SyncState.READY
+    assert states == {SyncState.INTACT, SyncState.UNREAD, SyncState.READY}
 
 
 @pytest.mark.parametrize("number", range(1, 12))
@@ -93,12 +93,12 @@ def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(flavour: s
     vehicle = vehicle_with_old(flavour)
     on_the_wire = number + 1 if flavour == "ardupilot" else number
     vehicle.refuses = {on_the_wire: 3}  # type: ignore[attr-defined]
-    keeper = MissionKeeper(load(12), known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(load(12), known(vehicle), ENDS, TransferRules(), known=[OLD])
     outcome = Channel(keeper, vehicle).run()
     assert outcome.code == "unsupported"
     if flavour == "px4":
-        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (KeeperState.INTACT, Found.KNOWN)
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.INTACT, Found.KNOWN)
     else:
-        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (KeeperState.CLEARED, Found.NOTHING)
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.CLEARED, Found.NOTHING)
         assert "are new" in outcome.mixes[-1].words or "is new" in outcome.mixes[-1].words
     assert contents(vehicle, MissionType.FENCE) is Found.KNOWN

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import pytest
 
 from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncOutcome, SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
@@ -24,7 +24,7 @@ SEEDS = [*range(8), *long(*range(8, 100))]
 
 @dataclass(frozen=True)
 class Run:
-    outcome: KeeperOutcome
+    outcome: SyncOutcome
     vehicle: Vehicle
     seconds: float
 
@@ -38,7 +38,7 @@ def with_old(flavour: str) -> Vehicle:
 
 def run(flavour: str, loss: float, seed: int) -> Run:
     vehicle = with_old(flavour)
-    keeper = MissionKeeper(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, Link(loss, duplicates=0.1, reordered=0.1), seed)
     return Run(channel.run(until_s=7_200.0), vehicle, channel.now_s)
 
@@ -61,7 +61,7 @@ def on_the_wire(items: list[MissionItem] | tuple[MissionItem, ...]) -> list[byte
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_upload_over_a_bad_link_arrives_byte_for_byte_and_is_the_only_one(flavour: str, loss: float, seed: int):
     ran = run(flavour, loss, seed)
-    assert (ran.outcome.state, ran.outcome.sha256) == (KeeperState.READY, NEW.content_sha256), ran.outcome
+    assert (ran.outcome.state, ran.outcome.sha256) == (SyncState.READY, NEW.content_sha256), ran.outcome
     for kind in MissionType:
         assert on_the_wire(stored(ran.vehicle, kind)) == on_the_wire(NEW.of(kind))
 
@@ -73,21 +73,21 @@ def test_upload_over_half_a_link_arrives_or_fails_and_says_what_is_there(flavour
     assert said_what_is_there(ran.outcome, ran.vehicle, NEW, OLD), ran.outcome
 
 
-def said_what_is_there(outcome: KeeperOutcome, vehicle: Vehicle, new: FlightLoad, old: FlightLoad) -> bool:
+def said_what_is_there(outcome: SyncOutcome, vehicle: Vehicle, new: FlightLoad, old: FlightLoad) -> bool:
     """The outcome against the vehicle's memory: never ready with a list that is not whole, never called whole where it is mixed."""
     state = known(vehicle)
     assert state.flavour is not None
     lists = {kind: held_list(tuple(vehicle.held(kind)), kind, state.flavour) for kind in MissionType}
     is_new = {kind: not differences(new.of(kind), held, state.flavour) for kind, held in lists.items()}
     is_old = {kind: not differences(old.of(kind), held, state.flavour) for kind, held in lists.items()}
-    if outcome.state is KeeperState.READY:
+    if outcome.state is SyncState.READY:
         return all(is_new.values()) and outcome.sha256 == new.content_sha256
     assert outcome.sha256 == "" and outcome.code and outcome.words
-    if outcome.state is KeeperState.INTACT:
+    if outcome.state is SyncState.INTACT:
         return all(is_old.values())
-    if outcome.state is KeeperState.CLEARED:
+    if outcome.state is SyncState.CLEARED:
         return not lists[MissionType.MISSION]
-    if outcome.state is KeeperState.MIXED:
+    if outcome.state is SyncState.MIXED:
         return outcome.is_critical and bool(outcome.differences)
     is_whole = all(is_new[kind] or is_old[kind] or not lists[kind] for kind in MissionType)
     return is_whole or outcome.is_critical

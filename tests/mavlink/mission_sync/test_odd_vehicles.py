@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.commands.actions import Order
-from mavlink.commands.driver import CommandKeeper
-from mavlink.mission_sync.outcome import KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.commands.driver import CommandDriver
+from mavlink.mission_sync.outcome import SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import CommandRules, TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
@@ -39,7 +39,7 @@ def test_whatever_goes_wrong_the_outcome_says_what_is_on_the_vehicle(
     for kind in MissionType:
         vehicle.lists[kind] += OLD.of(kind)
     vehicle.refuses = refuses  # type: ignore[attr-defined]
-    keeper = MissionKeeper(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
     link = Link(loss, duplicates=0.1, reordered=0.1)
     outcome = Channel(keeper, vehicle, link, seed, vehicle_dies_after=dies_after).run(until_s=7_200.0)
     assert said_what_is_there(outcome, vehicle, NEW, OLD), outcome
@@ -77,10 +77,10 @@ class Babbling(Vehicle):
 @pytest.mark.parametrize("seed", range(30))
 def test_babbling_vehicle_is_never_ready_and_does_not_hold_the_ground_station_up(seed: int):
     vehicle = Babbling(seed)
-    keeper = MissionKeeper(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, seed=seed)
     outcome = channel.run(until_s=7_200.0)
-    assert outcome.state is not KeeperState.READY
+    assert outcome.state is not SyncState.READY
     assert len(channel.to_vehicle) < 50_000
 
 
@@ -88,5 +88,5 @@ def test_babbling_vehicle_is_never_ready_and_does_not_hold_the_ground_station_up
 def test_order_to_a_babbling_vehicle_comes_to_an_end(seed: int):
     vehicle = Babbling(seed)
     state = known(vehicle)
-    channel = Channel(CommandKeeper(Order.START, state, ENDS, CommandRules()), vehicle, seed=seed, listeners=[state])
+    channel = Channel(CommandDriver(Order.START, state, ENDS, CommandRules()), vehicle, seed=seed, listeners=[state])
     assert channel.run(until_s=600.0) is not None

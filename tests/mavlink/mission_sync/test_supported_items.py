@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
+from mavlink.mission_sync.outcome import SyncOutcome, SyncState
 from mavlink.mission_sync.supported_items import version_of
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot
@@ -24,10 +24,10 @@ TAKE_OFF = MissionItem(mavlink.MAV_CMD_NAV_TAKEOFF, RELATIVE, (0.0, 0.0, 0.0, ma
 LOOKING = FlightLoad((TAKE_OFF, waypoint(0), LOOK_AT, waypoint(1, hold_s=9.0), LOOK_AHEAD, waypoint(2)))
 
 
-def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | None = None) -> tuple[KeeperOutcome, Channel]:
+def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | None = None) -> tuple[SyncOutcome, Channel]:
     state = known(vehicle)
     state.firmware = firmware
-    channel = Channel(MissionKeeper(new, state, ENDS, TransferRules()), vehicle)
+    channel = Channel(MissionSync(new, state, ENDS, TransferRules()), vehicle)
     return channel.run(), channel
 
 
@@ -43,7 +43,7 @@ def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | No
 def test_a_look_is_sent_to_ardupilot_by_what_its_firmware_knows(firmware, told, commands):
     vehicle = ArduPilot(firmware=firmware)
     outcome, _ = bring(vehicle, LOOKING, told)
-    assert (outcome.state, outcome.sha256) == (KeeperState.READY, LOOKING.content_sha256), outcome.words
+    assert (outcome.state, outcome.sha256) == (SyncState.READY, LOOKING.content_sha256), outcome.words
     held = vehicle.lists[MissionType.MISSION][1:]
     assert [held[2].command, held[4].command] == commands
     assert (held[2].longitude_e7, held[2].latitude_e7) == (LOOK_AT.longitude_e7, LOOK_AT.latitude_e7)
@@ -61,21 +61,21 @@ def test_a_look_at_another_place_by_the_old_command_is_a_difference():
 
 def test_px4_is_sent_the_new_commands():
     vehicle = Px4()
-    assert bring(vehicle, LOOKING, (1, 14, 0))[0].state is KeeperState.READY
+    assert bring(vehicle, LOOKING, (1, 14, 0))[0].state is SyncState.READY
     assert [item.command for item in vehicle.lists[MissionType.MISSION] if 190 < item.command < 202] == [195, 197]
 
 
 def test_what_the_firmware_is_known_to_refuse_is_not_sent():
     vehicle = ArduPilot(firmware=(4, 3, 2))
     outcome, channel = bring(vehicle, FlightLoad((TAKE_OFF, waypoint(0), PHOTO, waypoint(1))), (4, 3, 2))
-    assert (outcome.state, outcome.code, channel.to_vehicle) == (KeeperState.INTACT, "unknown-command", [])
+    assert (outcome.state, outcome.code, channel.to_vehicle) == (SyncState.INTACT, "unknown-command", [])
     assert outcome.words == "Nothing was sent. Not known to ArduPilot 4.3.2: item 2, IMAGE_START_CAPTURE (2000)."
 
 
 def test_a_refused_item_is_named_with_its_command_and_the_version():
     vehicle = ArduPilot(firmware=(4, 3, 2))
     outcome, _ = bring(vehicle, FlightLoad((TAKE_OFF, waypoint(0), PHOTO, waypoint(1))))
-    assert (outcome.state, outcome.code) == (KeeperState.INTACT, "unsupported")
+    assert (outcome.state, outcome.code) == (SyncState.INTACT, "unsupported")
     assert "item 2 of the mission, IMAGE_START_CAPTURE (2000) (unsupported)" in outcome.words
     vehicle = ArduPilot(refuses={3: mavlink.MAV_MISSION_INVALID_PARAM7})
     assert bring(vehicle, load(7), (4, 6, 0))[0].words.startswith("Refused by ArduPilot 4.6.0: item 2 of the mission, NAV_WAYPOINT (16)")

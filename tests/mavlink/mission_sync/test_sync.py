@@ -7,8 +7,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import PX4_AUTO, Flavour
 from mavlink.mission_sync.compare import Found, differences
-from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncOutcome, SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
@@ -31,11 +31,11 @@ def holding(flavour: str, load: FlightLoad) -> Vehicle:
     return vehicle
 
 
-def keeper_for(vehicle: Vehicle, new: FlightLoad = NEW, *, known_loads: tuple[FlightLoad, ...] = (OLD,)) -> MissionKeeper:
-    return MissionKeeper(new, known(vehicle), ENDS, TransferRules(), known=known_loads)
+def keeper_for(vehicle: Vehicle, new: FlightLoad = NEW, *, known_loads: tuple[FlightLoad, ...] = (OLD,)) -> MissionSync:
+    return MissionSync(new, known(vehicle), ENDS, TransferRules(), known=known_loads)
 
 
-def bring(vehicle: Vehicle, new: FlightLoad = NEW) -> tuple[KeeperOutcome, Channel]:
+def bring(vehicle: Vehicle, new: FlightLoad = NEW) -> tuple[SyncOutcome, Channel]:
     channel = Channel(keeper_for(vehicle, new), vehicle)
     return channel.run(), channel
 
@@ -57,7 +57,7 @@ def holds_no_mission(vehicle: Vehicle) -> bool:
 def test_vehicle_is_ready_by_the_hash_of_what_it_holds(flavour: str):
     vehicle = holding(flavour, OLD)
     outcome, _ = bring(vehicle)
-    assert (outcome.state, outcome.sha256) == (KeeperState.READY, NEW.content_sha256)
+    assert (outcome.state, outcome.sha256) == (SyncState.READY, NEW.content_sha256)
     assert holds(vehicle, NEW)
 
 
@@ -71,7 +71,7 @@ def test_fence_is_sent_before_the_mission_and_rally_points_last(flavour: str):
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_nothing_is_sent_to_a_vehicle_that_holds_it_already(flavour: str):
     outcome, channel = bring(holding(flavour, NEW))
-    assert outcome.state is KeeperState.READY
+    assert outcome.state is SyncState.READY
     assert not WRITES & set(sent(channel))
 
 
@@ -79,35 +79,35 @@ def test_nothing_is_sent_to_a_vehicle_that_holds_it_already(flavour: str):
 def test_empty_load_takes_everything_off(flavour: str):
     vehicle = holding(flavour, OLD)
     outcome, _ = bring(vehicle, FlightLoad(()))
-    assert outcome.state is KeeperState.READY
+    assert outcome.state is SyncState.READY
     assert holds(vehicle, FlightLoad(()))
 
 
 def test_vehicle_without_fence_gets_a_mission_without_one():
     vehicle = ArduPilot(has_fence=False)
     outcome, channel = bring(vehicle, load(12))
-    assert outcome.state is KeeperState.READY
+    assert outcome.state is SyncState.READY
     assert {message.mission_type for message in channel.to_vehicle if message.get_type() in WRITES} == {MissionType.MISSION}
 
 
 def test_vehicle_without_fence_is_not_ready_for_a_mission_with_one():
     vehicle = ArduPilot(has_fence=False)
     outcome, channel = bring(vehicle, load(12, fence=polygon(0)))
-    assert (outcome.state, outcome.code) == (KeeperState.INTACT, "unsupported")
+    assert (outcome.state, outcome.code) == (SyncState.INTACT, "unsupported")
     assert MissionType.MISSION not in {message.mission_type for message in channel.to_vehicle if message.get_type() in WRITES}
 
 
 def test_other_autopilot_is_refused():
     state = VehicleState(7)
     state.flavour = Flavour.OTHER
-    keeper = MissionKeeper(NEW, state, ENDS, TransferRules())
+    keeper = MissionSync(NEW, state, ENDS, TransferRules())
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
-    assert (keeper.outcome.state, keeper.outcome.code) == (KeeperState.INTACT, "autopilot")
+    assert (keeper.outcome.state, keeper.outcome.code) == (SyncState.INTACT, "autopilot")
 
 
 def test_vehicle_that_has_not_spoken_is_refused():
-    keeper = MissionKeeper(NEW, VehicleState(7), ENDS, TransferRules())
+    keeper = MissionSync(NEW, VehicleState(7), ENDS, TransferRules())
     keeper.start(0.0)
     assert keeper.outcome is not None
     assert keeper.outcome.code == "not-heard"
@@ -125,7 +125,7 @@ def test_nothing_is_sent_to_a_vehicle_in_its_mission(flavour: str, mode: int):
 def test_held_vehicle_in_the_air_gets_its_mission(flavour: str, mode: int):
     vehicle = holding(flavour, OLD)
     vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, mode
-    assert bring(vehicle)[0].state is KeeperState.READY
+    assert bring(vehicle)[0].state is SyncState.READY
 
 
 def test_list_that_is_too_long_is_not_begun():
@@ -137,7 +137,7 @@ def test_list_that_is_too_long_is_not_begun():
 def test_count_that_the_vehicle_refuses_leaves_the_old_mission():
     vehicle = holding("px4", OLD)
     outcome, _ = bring(vehicle, load(12, fence=polygon(0, 70)))
-    assert (outcome.state, outcome.code) == (KeeperState.INTACT, "no-space")
+    assert (outcome.state, outcome.code) == (SyncState.INTACT, "no-space")
     assert holds(vehicle, OLD)
 
 
@@ -146,8 +146,8 @@ def test_silent_vehicle_is_not_blamed_for_a_mix(flavour: str):
     vehicle = holding(flavour, OLD)
     vehicle.is_alive = False
     state = known(vehicle)
-    outcome = Channel(MissionKeeper(NEW, state, ENDS, TransferRules()), vehicle).run()
-    assert (outcome.state, outcome.code, outcome.is_critical) == (KeeperState.INTACT, "silent", False)
+    outcome = Channel(MissionSync(NEW, state, ENDS, TransferRules()), vehicle).run()
+    assert (outcome.state, outcome.code, outcome.is_critical) == (SyncState.INTACT, "silent", False)
 
 
 def test_mix_that_cannot_be_taken_off_is_critical_and_named_by_items():
@@ -158,7 +158,7 @@ def test_mix_that_cannot_be_taken_off_is_critical_and_named_by_items():
     keeper = keeper_for(vehicle, load(12))
     vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, AUTO
     outcome = Channel(keeper, vehicle).run()
-    assert (outcome.state, outcome.code, outcome.is_critical, outcome.sha256) == (KeeperState.MIXED, "invalid-param7", True, "")
+    assert (outcome.state, outcome.code, outcome.is_critical, outcome.sha256) == (SyncState.MIXED, "invalid-param7", True, "")
     assert "0-2 are new" in outcome.words and "3-8 are of the list before" in outcome.words
     assert outcome.differences[0].item == 3
     assert [mix.kind for mix in outcome.mixes] == [MissionType.MISSION]
@@ -177,7 +177,7 @@ def test_mix_is_told_while_it_is_being_put_right():
             told.append(bool(keeper.mixes) and keeper.outcome is None and "MISSION_CLEAR_ALL" in sent(channel))
 
     channel.listeners.append(Watch())
-    assert channel.run().state is KeeperState.CLEARED
+    assert channel.run().state is SyncState.CLEARED
     assert any(told)
 
 
@@ -194,7 +194,7 @@ def test_mix_of_an_earlier_ground_station_is_named_from_the_beginning():
     keeper = keeper_for(vehicle)
     outcome = Channel(keeper, vehicle).run()
     assert keeper.found_before[MissionType.MISSION] is Found.MIXED
-    assert (outcome.state, len(outcome.mixes)) == (KeeperState.READY, 1)
+    assert (outcome.state, len(outcome.mixes)) == (SyncState.READY, 1)
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -210,12 +210,12 @@ def test_cancelling_at_any_message_leaves_the_old_mission_or_none(flavour: str):
         channel.ground_dies_after = None
         channel.send(keeper.cancel(channel.now_s))
         outcome = channel.go_on()
-        if outcome.state is KeeperState.READY:
+        if outcome.state is SyncState.READY:
             assert holds(vehicle, NEW)
             continue
         assert outcome.code == "cancelled"
-        assert outcome.state in (KeeperState.INTACT, KeeperState.CLEARED)
-        assert holds(vehicle, OLD) if outcome.state is KeeperState.INTACT else holds_no_mission(vehicle)
+        assert outcome.state in (SyncState.INTACT, SyncState.CLEARED)
+        assert holds(vehicle, OLD) if outcome.state is SyncState.INTACT else holds_no_mission(vehicle)
 
 
 def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
@@ -228,7 +228,7 @@ def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
     channel.ground_dies_after = None
     items = sent(channel).count("MISSION_ITEM_INT")
     channel.send(keeper.cancel(channel.now_s))
-    assert channel.go_on().state is KeeperState.CLEARED
+    assert channel.go_on().state is SyncState.CLEARED
     assert sent(channel).count("MISSION_ITEM_INT") == items > 0
 
 
@@ -237,7 +237,7 @@ def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
 def test_a_vehicle_that_begins_to_fly_its_list_gets_none_or_a_whole_one(flavour: str, mode: int, is_sending: bool):
     vehicle = holding(flavour, OLD)
     state = known(vehicle)
-    keeper = MissionKeeper(load(12, fence=OLD.fence), state, ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(load(12, fence=OLD.fence), state, ENDS, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, ground_dies_after=26 if is_sending else 4)
     channel.run()
     assert (keeper.progress.stage == "sending") == is_sending and not keeper.is_endangered
@@ -248,9 +248,9 @@ def test_a_vehicle_that_begins_to_fly_its_list_gets_none_or_a_whole_one(flavour:
     if keeper.is_endangered:
         channel.send(keeper.cancel(channel.now_s))
         outcome = channel.go_on()
-        assert (outcome.state, outcome.code) == (KeeperState.INTACT, "left-hold") and holds(vehicle, OLD)
+        assert (outcome.state, outcome.code) == (SyncState.INTACT, "left-hold") and holds(vehicle, OLD)
     else:
-        assert channel.go_on().state is KeeperState.READY
+        assert channel.go_on().state is SyncState.READY
 
 
 def test_cancelling_after_the_end_changes_nothing():
@@ -293,7 +293,7 @@ def test_reading_back_that_shows_something_else_twice_is_sent_again(flavour: str
                 del vehicle.lists[MissionType.MISSION][5]
 
     outcome = Channel(keeper, vehicle, listeners=[Fault()]).run()
-    assert outcome.state is KeeperState.READY
+    assert outcome.state is SyncState.READY
     assert len(outcome.mixes) == 1
     assert holds(vehicle, NEW)
 
@@ -308,7 +308,7 @@ def test_two_ground_stations_after_one_another_do_not_confuse_each_other(flavour
         )
         first.run()
         first.ground, first.ground_dies_after = keeper_for(vehicle), None
-        assert first.run().state is KeeperState.READY
+        assert first.run().state is SyncState.READY
         assert holds(vehicle, NEW)
 
 
@@ -330,7 +330,7 @@ def test_vehicle_that_keeps_something_else_is_not_ready_and_loses_the_mission():
     vehicle = Forgetful()
     vehicle.lists[MissionType.MISSION] += OLD.mission
     outcome, channel = bring(vehicle)
-    assert (outcome.state, outcome.code, outcome.sha256) == (KeeperState.CLEARED, "differs", "")
+    assert (outcome.state, outcome.code, outcome.sha256) == (SyncState.CLEARED, "differs", "")
     assert outcome.mixes[0].words == "12 items where 12 are approved: 0-2 are new, 3 is of neither list, 4-11 are new"
     assert [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"].count(MissionType.MISSION) == 3
     assert vehicle.lists[MissionType.MISSION] == []
@@ -340,7 +340,7 @@ def test_one_wrong_reading_is_read_again_before_anything_is_said():
     vehicle = Forgetful()
     vehicle.for_ever = False
     outcome, channel = bring(vehicle)
-    assert (outcome.state, outcome.mixes, vehicle.reads_wrong) == (KeeperState.READY, (), 1)
+    assert (outcome.state, outcome.mixes, vehicle.reads_wrong) == (SyncState.READY, (), 1)
     assert [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"].count(MissionType.MISSION) == 1
 
 
@@ -359,7 +359,7 @@ def test_announcement_that_comes_twice_is_served_again_and_does_not_hold_up_the_
                 channel.send([count for count in channel.to_vehicle if count.get_type() == "MISSION_COUNT"][-1:])
 
     channel.listeners.append(Doubled())
-    assert channel.run().state is KeeperState.READY
+    assert channel.run().state is SyncState.READY
     assert holds(vehicle, load(12, fence=OLD.fence))
     assert [count.get_type() for count in channel.to_vehicle].count("MISSION_COUNT") == 2
     assert channel.now_s < 6.0
@@ -384,7 +384,7 @@ def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kep
     with pytest.raises(AssertionError, match="nothing more happens"):
         channel.run(until_s=115.0)
     vehicle.restart()
-    assert channel.go_on().state is KeeperState.READY
+    assert channel.go_on().state is SyncState.READY
     assert holds(vehicle, load(12, fence=OLD.fence))
 
 
@@ -392,7 +392,7 @@ def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kep
 def test_a_fence_and_rally_points_of_somebody_else_are_left(flavour):
     vehicle = holding(flavour, FlightLoad(mission(5), fence=polygon(50_000), rally=rally()))
     outcome, _ = bring(vehicle, load(12))
-    assert outcome.state is KeeperState.READY and outcome.mixes == ()
+    assert outcome.state is SyncState.READY and outcome.mixes == ()
     assert (len(vehicle.lists[MissionType.FENCE]), len(vehicle.lists[MissionType.RALLY])) == (4, 2)
     assert "own fence 4 items" in outcome.left_alone and "own rally points 2 items" in outcome.left_alone
 
@@ -403,5 +403,5 @@ def test_a_fence_and_rally_points_of_an_earlier_mission_are_taken_off(flavour, w
     earlier = FlightLoad(mission(5), fence=polygon(9_000), rally=rally())
     vehicle = holding(flavour, earlier)
     outcome = Channel(keeper_for(vehicle, wanted, known_loads=(earlier,)), vehicle).run()
-    assert outcome.state is KeeperState.READY and not outcome.left_alone
+    assert outcome.state is SyncState.READY and not outcome.left_alone
     assert not vehicle.lists[MissionType.FENCE] and not vehicle.lists[MissionType.RALLY]

@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from mavlink.mission_sync.outcome import KeeperState
-from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.outcome import SyncState
+from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
@@ -73,9 +73,9 @@ def told(vehicle: OnChannel) -> VehicleState:
 @pytest.mark.parametrize("flavour", Flavour)
 def test_a_load_arrives_over_a_bad_link_and_is_read_back(flavour, loss, seed):
     vehicle = OnChannel(flavour)
-    keeper = MissionKeeper(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
     outcome = Channel(keeper, vehicle, Link(loss, duplicates=0.1, reordered=0.1), seed).run(until_s=7_200.0)
-    assert (outcome.state, outcome.sha256, outcome.mixes) == (KeeperState.READY, NEW.content_sha256, ()), outcome
+    assert (outcome.state, outcome.sha256, outcome.mixes) == (SyncState.READY, NEW.content_sha256, ()), outcome
     for kind in MissionType:
         assert vehicle.held(kind) == figures(tuple(as_kept(item, kind, flavour) for item in NEW.of(kind)))
 
@@ -84,7 +84,7 @@ def test_a_load_arrives_over_a_bad_link_and_is_read_back(flavour, loss, seed):
 @pytest.mark.parametrize("flavour", Flavour)
 def test_a_station_that_dies_leaves_each_list_old_or_new(flavour, dies_after):
     vehicle = OnChannel(flavour)
-    keeper = MissionKeeper(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, Link(0.1), seed=dies_after, ground_dies_after=dies_after)
     channel.run(until_s=7_200.0)
     channel.let_pass(30.0)

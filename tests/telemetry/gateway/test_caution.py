@@ -25,8 +25,8 @@ from mavlink.vehicle_state import MAX_PARAMETERS, VehicleState
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.database import DatabaseAway
-from telemetry.gateway.delivery import Carriage
-from telemetry.gateway.dispatcher import MAX_UPLOADS, Desk
+from telemetry.gateway.delivery import Delivery
+from telemetry.gateway.dispatcher import MAX_UPLOADS, Dispatcher
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
@@ -70,8 +70,8 @@ def a_command(kind: CommandKind, uav_id: int = 1, *, priority: int = 2) -> Simpl
     )
 
 
-def a_desk(database: Database, *sessions, lease_s: float = 10.0) -> Desk:
-    desk = Desk("one", lease_s, lambda: list(sessions))
+def a_desk(database: Database, *sessions, lease_s: float = 10.0) -> Dispatcher:
+    desk = Dispatcher("one", lease_s, lambda: list(sessions))
     desk.database.close()
     desk.database = database
     return desk
@@ -96,7 +96,7 @@ def test_nothing_is_sent_on_a_lease_that_may_be_over(settings):
     database = Database(task_of=Task(order=Order.ARM), renew_claims=lambda: {command.pk: 1}, claim_commands=list)
     desk = a_desk(database, lease_s=0.5)
     began_s = time.monotonic()
-    carried = desk._carriages[command.pk] = Carriage(command, session, database, began_s + 0.4)
+    carried = desk._deliveries[command.pk] = Delivery(command, session, database, began_s + 0.4)
 
     async def run() -> None:
         desk._begin()
@@ -116,11 +116,11 @@ def test_nothing_is_sent_on_a_lease_that_may_be_over(settings):
 def test_nothing_is_set_in_motion_while_it_is_loaded(kind, loading):
     desk, upload, motion = a_desk(Database()), a_command(loading), a_command(kind, priority=1)
     for under_way, waiting in ((upload, motion), (motion, upload)):
-        desk._carriages = {under_way.pk: Carriage(under_way, None, None)}
+        desk._deliveries = {under_way.pk: Delivery(under_way, None, None)}
         desk._tasks = {under_way.pk: object()}
         assert not desk._may_begin(waiting)
         assert desk._may_begin(a_command(kind, uav_id=2)), "another UAV"
-    desk._carriages, desk._tasks = {upload.pk: Carriage(upload, None, None)}, {upload.pk: object()}
+    desk._deliveries, desk._tasks = {upload.pk: Delivery(upload, None, None)}, {upload.pk: object()}
     assert desk._may_begin(a_command(CommandKind.HOLD, priority=0))
 
 
@@ -129,14 +129,14 @@ def test_an_abort_is_claimed_however_many_uploads_there_are():
     uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MAX_UPLOADS)]
     database = Database(renew_claims=lambda: {upload.pk: 1 for upload in uploads}, claim_commands=list)
     desk = a_desk(database, session)
-    desk._carriages = {upload.pk: Carriage(upload, None, None) for upload in uploads}
+    desk._deliveries = {upload.pk: Delivery(upload, None, None) for upload in uploads}
     desk._tasks = {upload.pk: SimpleNamespace(done=lambda: False) for upload in uploads}
     asyncio.run(desk.look())
     claims = [named for do, named in database.asked if do is claim_commands]
     others = [[CommandAxis.FLIGHT], [CommandAxis.SPEED], [CommandAxis.PARAMETER]]
     assert [claim["axes"] for claim in claims] == others, "and no upload more than may begin"
 
-    del desk._carriages[uploads[0].pk], desk._tasks[uploads[0].pk]
+    del desk._deliveries[uploads[0].pk], desk._tasks[uploads[0].pk]
     database.asked.clear()
     asyncio.run(desk.look())
     claims = [named for do, named in database.asked if do is claim_commands]
@@ -145,10 +145,10 @@ def test_an_abort_is_claimed_however_many_uploads_there_are():
 
 def test_what_was_given_back_and_claimed_anew_is_carried_on():
     desk, command = a_desk(Database()), a_command(CommandKind.ABORT)
-    desk._carriages = {command.pk: Carriage(command, None, None)}
+    desk._deliveries = {command.pk: Delivery(command, None, None)}
     desk._tasks = {command.pk: SimpleNamespace(done=lambda: True)}  # of the attempt before
     desk._forget_ended()
-    assert list(desk._carriages) == [command.pk] and not desk._tasks
+    assert list(desk._deliveries) == [command.pk] and not desk._tasks
 
 
 @pytest.mark.parametrize(
