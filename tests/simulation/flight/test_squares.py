@@ -9,7 +9,7 @@ from simulation.flight.flown import Ending
 from simulation.flight.route_file import RouteFile
 from simulation.flight.route_flight import RouteFlight, fly_route
 from tests.simulation.flight.lists import HOME, off_m, place, wind
-from tests.simulation.flight.track_judge import beside_m
+from tests.simulation.flight.track_oracle import beside_m
 
 
 def square(side_m: float) -> RouteFile:
