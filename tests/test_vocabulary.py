@@ -46,7 +46,7 @@ def rejected(names: Iterator[str], patterns: dict[str, str]) -> set[str]:
 def test_the_table_is_read() -> None:
     patterns = rejected_patterns()
     assert patterns["MOST_*"] == "`MAX_*`"
-    assert patterns["delivery"] == "`delivery`, `Delivery`"
+    assert patterns["carriage"] == "`delivery`, `Delivery`"
     assert rejected(python_names("MOST_ITEMS = 3"), patterns) == {"MOST_ITEMS: write `MAX_*`"}
     assert rejected(javascript_names("const LEAST_M = 3; // MOST_OF_IT"), patterns) == {"LEAST_M: write `MIN_*`"}
 

@@ -27,7 +27,7 @@ OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not 
 READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
 
 
-class Keeper(Protocol):
+class StateMachine(Protocol):
     """A state machine of mavlink. Times are monotonic seconds."""
 
     @property
@@ -46,7 +46,7 @@ class Keeper(Protocol):
 @dataclass
 class ProtocolDriver:
     session: Session
-    keeper: Keeper
+    keeper: StateMachine
     is_wanted: Callable[[], bool]
     _heard: asyncio.Event = field(default_factory=asyncio.Event)
 
@@ -116,7 +116,7 @@ async def read_aboard(
 async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
     """Its state then has its home, and of an ArduPilot in the air how it would go on; what it does not tell is as old as it was."""
     ends, rules = Ends(session.uav.system), settings.TRANSFER_RULES
-    asked: list[Keeper] = [HomeReading(session.state, ends, rules)]
+    asked: list[StateMachine] = [HomeReading(session.state, ends, rules)]
     if session.flavour is Flavour.ARDUPILOT and session.state.is_in_air:
         session.state.parameters.pop(RESTARTS, None)
         asked.append(ParameterReading((RESTARTS,), session.state, ends, rules))
