@@ -119,6 +119,12 @@ def test_every_pure_folder_is_under_the_strict_type_check() -> None:
         "watch",
         "live",
         "vehicle_endpoint",
+        "admin_pages",
+        "api",
+        "hooks",
+        "jobs",
+        "pages",
+        "sessions",
         "simulator",
     }
     folders = {

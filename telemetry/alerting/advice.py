@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from telemetry.alerting.finding import LAND, RETURN
-from telemetry.alerting.modes import ModeKind
+from telemetry.alerting.modes import LEADS_TO, ModeKind
 from telemetry.alerting.surroundings import Order
 
 ADVICE, OWN_ACT = "advice", "own_act"  # in the details of an alert
@@ -41,7 +41,6 @@ FAILSAFE_UNKNOWN = "A failsafe set on the UAV comes first."
 FAILSAFES = {"ardupilot": FAILSAFE_ARDUPILOT, "px4": FAILSAFE_PX4}
 
 _COMES_DOWN_BY = {ModeKind.RETURN: RETURN, ModeKind.LAND: LAND}
-_COMMANDS = {"return", "land", "abort"}
 
 
 def advice(template: str, **values: object) -> dict[str, Any]:
@@ -58,10 +57,17 @@ def own_act(mode: ModeKind | None, since_s: float | None, order: Order | None) -
     if kind is None:
         return {}
     since = None if since_s is None else datetime.fromtimestamp(since_s, UTC).isoformat(timespec="seconds")
-    return {OWN_ACT: {"kind": kind, "since": since, "is_commanded": order is not None and order.kind in _COMMANDS}}
+    is_commanded = order is not None and order.done_s is not None and mode in LEADS_TO.get(order.kind, ())
+    return {OWN_ACT: {"kind": kind, "since": since, "is_commanded": is_commanded}}
 
 
 def answer_of(details: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return what of an alert's details an operator acts by, without figures that change each second."""
     said = details.get(ADVICE) or {}
     return details.get("acts"), details.get(OWN_ACT), said.get("message")
+
+
+def figures_of(details: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the figures of an alert's advice; empty where it has none."""
+    values: Mapping[str, Any] = (details.get(ADVICE) or {}).get("values") or {}
+    return values

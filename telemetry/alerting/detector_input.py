@@ -6,7 +6,7 @@ from uuid import UUID
 
 from telemetry.alerting.detector_state import Memory
 from telemetry.alerting.limits import Limits
-from telemetry.alerting.modes import ModeKind, mode_kind
+from telemetry.alerting.modes import AT_THE_END, FLY_LIST, ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.said import Said
 from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
@@ -16,6 +16,7 @@ from telemetry.estimation.report import Report
 Key = tuple[str, str]  # code and subject
 FRESH_S, FRESH_INTERVALS = 5.0, 2.5
 AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
+AT_END_M = 40.0
 AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
 
 
@@ -98,6 +99,13 @@ class Situation:
     def flies_mission(self) -> bool:
         """As far as is known: a mode that nobody tells or knows is taken for it."""
         return self.mode in (ModeKind.MISSION, None)
+
+    @property
+    def ends_as_planned(self) -> bool:
+        """Whether it is at the end of its line, in a mode that its list leads to there."""
+        place, model = self.memory.place, self.model
+        is_at_end = place is not None and model is not None and model.line.length_m - place.along_m <= AT_END_M
+        return is_at_end and self.mode in AT_THE_END and (self.order is None or self.order.kind in FLY_LIST)
 
     @property
     def is_in_flight(self) -> bool:

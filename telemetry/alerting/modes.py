@@ -50,4 +50,5 @@ LEADS_TO: dict[str, frozenset[ModeKind]] = {
     "abort": frozenset({ModeKind.RETURN, ModeKind.LAND}),
 }
 WITHOUT_ORDER = frozenset({ModeKind.MISSION, ModeKind.TAKE_OFF})
+FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})  # commands after which it flies its list
 AT_THE_END = frozenset({ModeKind.MISSION, ModeKind.HOLD, ModeKind.LAND, ModeKind.RETURN})

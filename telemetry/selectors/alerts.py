@@ -2,14 +2,14 @@
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, TypedDict
 from uuid import UUID
 
 from django.db.models import Count, Q, QuerySet
 
-from telemetry.alerting.advice import answer_of
+from telemetry.alerting.advice import answer_of, figures_of
 from telemetry.models import Alert, AlertLevel
 from workspace.models import Organisation
 
@@ -30,15 +30,16 @@ class OpenRow:
     message: str
     values: Mapping[str, Any]
     written_at: datetime
-    worst: Mapping[str, Any] | None = None  # alert_rows.py
+    worst: Mapping[str, Any] | None = None  # services/alerts/rows.py
     answer: tuple[Any, ...] = (None, None, None)  # as answer_of has it
+    figures: Mapping[str, Any] = field(default_factory=dict)  # as figures_of has them
 
 
 def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int, list[OpenRow]]:
     found: dict[int, list[OpenRow]] = defaultdict(list)
     rows = Alert.objects.filter(uav__in=uav_ids, code__in=codes, closed_at=None)
     for row in rows.values_list("pk", "uav_id", "code", "subject", "level", "message", "values", "written_at", "details"):
-        found[row[1]].append(OpenRow(*row[:8], worst=row[8].get(WORST), answer=answer_of(row[8])))
+        found[row[1]].append(OpenRow(*row[:8], worst=row[8].get(WORST), answer=answer_of(row[8]), figures=figures_of(row[8])))
     return found
 
 

@@ -25,7 +25,7 @@ from tests.browser.test_fleet import writes
 
 pytestmark = pytest.mark.browser
 
-NAME = "Heron"
+NAME = "Nightjar"
 TWIN = f"{NAME} (simulated)"
 
 

@@ -45,7 +45,7 @@ RELIABILITY = (
             Tests(
                 "1,300 commands to 40 UAVs by MAVLink, 30 % lost each way, the gateway killed 5 times; overload with and without kills",
                 "0 lost, 0 out of order; p99 wait of the top priority at most 10 % of the lowest's",
-                (f"{GATEWAY}/test_command_storm.py",), "{passed} of {all} tests",
+                (f"{GATEWAY}/commands/test_command_storm.py",), "{passed} of {all} tests",
             ),
         ),
     ),
@@ -214,8 +214,8 @@ SECURITY = (
         (
             Tests(
                 "every address of the API by every role, with rows of another organisation; UAVs as other UAVs", "0 wrongly allowed",
-                (f"{WORKSPACE}/test_foreign_rows.py", f"{WORKSPACE}/test_roles.py", "tests/telemetry/links/test_link_authentication.py",
-                 "tests/telemetry/links/test_link_route.py", f"{LIVE}/test_rights.py"),
+                (f"{WORKSPACE}/test_foreign_rows.py", f"{WORKSPACE}/sessions/test_roles.py",
+                 "tests/telemetry/links/test_link_authentication.py", "tests/telemetry/links/test_link_route.py", f"{LIVE}/test_rights.py"),
                 "{passed} of {all} tests",
             ),
         ),
@@ -226,7 +226,7 @@ SECURITY = (
             Tests(
                 "foreign and absent Origin, no session, session and role that end meanwhile, large and unknown words",
                 "all refused; hung up on within 5 s",
-                (f"{LIVE}/test_rights.py", f"{WORKSPACE}/test_live.py"), "{passed} of {all} tests",
+                (f"{LIVE}/test_rights.py", f"{WORKSPACE}/live/test_live.py"), "{passed} of {all} tests",
             ),
         ),
     ),
@@ -262,7 +262,7 @@ SECURITY = (
             Experiment("one user floods plans and lists", "request_flood", "429 before work; p95 of others changes by less than 20 %"),
             Tests(
                 "passwords and tokens are guessed, names are hammered", "429 before work, nobody is kept out of their own account",
-                (f"{WORKSPACE}/test_sign_in_limits.py", f"{WORKSPACE}/test_throttling.py"), "{passed} of {all} tests",
+                (f"{WORKSPACE}/sessions/test_sign_in_limits.py", f"{WORKSPACE}/api/test_throttling.py"), "{passed} of {all} tests",
             ),
         ),
     ),
@@ -271,7 +271,7 @@ SECURITY = (
         (
             Tests(
                 "private addresses in every spelling, redirects, rebinding, drips, a gigabyte", "refused, time and size capped",
-                (f"{WORKSPACE}/test_outgoing.py",), "{passed} of {all} tests",
+                (f"{WORKSPACE}/test_http_client.py",), "{passed} of {all} tests",
             ),
         ),
     ),
@@ -296,7 +296,7 @@ SECURITY = (
         (
             Tests(
                 "20,000 requests made from the OpenAPI document, a fixed seed", "0 answers 5xx, 0 statuses that are not described",
-                (f"{WORKSPACE}/test_any_request.py",), "{passed} of {all} tests",
+                (f"{WORKSPACE}/api/test_any_request.py",), "{passed} of {all} tests",
             ),
         ),
     ),

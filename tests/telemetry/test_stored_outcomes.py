@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MAKERS = [
     *(ROOT / "telemetry" / "gateway" / f"{name}.py" for name in ("delivery", "preparation", "protocol_driver")),
     *(ROOT / "mavlink" / "commands" / f"{name}.py" for name in ("actions", "command", "driver")),
-    *(ROOT / "mavlink" / "mission_sync" / f"{name}.py" for name in ("compare", "limits", "sync")),
+    *(ROOT / "mavlink" / "mission_sync" / f"{name}.py" for name in ("limits", "sync")),
     *(ROOT / "mavlink" / f"{name}.py" for name in ("parameters", "vehicle_class")),
 ]
 # Of these a part that is put in makes another sentence; each is looked at below as it comes out.

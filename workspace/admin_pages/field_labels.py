@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from django.db.models import Field, Model
+from django.utils.functional import Promise
 
 UNITS = {
     "m": "m", "m2": "m²", "mps": "m/s", "s": "s", "h": "h", "deg": "°", "percent": "%", "wh": "Wh", "w": "W", "kg": "kg", "v": "V",
@@ -27,5 +28,7 @@ def label(models: Iterable[type[Model]]) -> None:
         options = model._meta
         options.verbose_name, options.verbose_name_plural = label_of(str(options.verbose_name)), label_of(str(options.verbose_name_plural))
         for field in options.get_fields():
-            if isinstance(field, Field) and field.verbose_name == field.name.replace("_", " "):
+            if not isinstance(field, Field) or isinstance(field.verbose_name, Promise):  # a lazy text has its translation
+                continue
+            if field.verbose_name == field.name.replace("_", " "):
                 field.verbose_name = label_of(str(field.verbose_name))

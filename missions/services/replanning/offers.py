@@ -45,8 +45,8 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
         if held is None:
             return None
         named = {"code": code, **{name: cause[name] for name in ("uav", "zone") if cause.get(name) is not None}}
-        known = held.replan_offers.filter(code=code, cause__contains=named).exclude(state=OfferState.OUTDATED)
-        if known.exists():
+        of_cause = held.replan_offers.filter(code=code, cause__contains=named)
+        if of_cause.exclude(state=OfferState.OUTDATED).exists() or of_cause.count() >= MAX_OFFERS_OF_CAUSE:
             return None
         _set_aside(held, "Something else has happened since.")
         offer, _job = _begin(held, code, {**cause, **named}, None)

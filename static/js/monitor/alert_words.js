@@ -1,5 +1,6 @@
 /** What an alert says on a live page: words that move with the time, what is said beside them, and acts that still make sense. */
 
+import { inAir } from "../domain/in_air.js";
 import { isOpenAlert } from "../domain/order.js";
 import { t } from "../text.js";
 import { exactClockText } from "../units.js";
@@ -100,6 +101,7 @@ export function overtakenWords(kind, uav) {
   const { name } = uav;
   if (kind === "return" && isReturning(uav)) return t("{name} is already returning.", { name });
   if ((kind === "return" || kind === "land") && isLanding(uav)) return t("{name} is already landing.", { name });
+  if ((kind === "return" || kind === "land") && inAir(uav) === false) return t("{name} is on the ground.", { name });
   return "";
 }
 

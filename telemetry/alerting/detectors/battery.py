@@ -161,13 +161,15 @@ def _falls_soon(situation: Situation, forecast: BatteryForecast, below_percent: 
 def _answer(situation: Situation, forecast: BatteryForecast | None) -> dict[str, Any]:
     """What an operator would do, what that costs, and what the UAV does by itself; as an alert has it in its details."""
     mode, uav_id = situation.mode, situation.uav.uav_id
-    own = own_act(mode, situation.memory.mode_since_s, situation.order)
+    floor_percent = situation.limits.battery_critical_percent
+    own = {} if situation.ends_as_planned else own_act(mode, situation.memory.mode_since_s, situation.order)
     if mode is ModeKind.LAND:
         return {ACTS: [], **own}
     if mode is ModeKind.RETURN:
-        falls_short = forecast is not None and (best := _best_landing(forecast)) is not None and best < 0.0
-        return {ACTS: acts(LAND, uav_id=uav_id) if falls_short else [], **own, **_advice_of_return(forecast)}
-    kinds, said = _ways_down(forecast, situation.limits.battery_critical_percent)
+        best = None if forecast is None else _best_landing(forecast)
+        may_fall_short = best is None or best < floor_percent
+        return {ACTS: acts(LAND, uav_id=uav_id) if may_fall_short else [], **own, **_advice_of_return(forecast)}
+    kinds, said = _ways_down(forecast, floor_percent)
     return {ACTS: acts(*kinds, uav_id=uav_id), **said}
 
 

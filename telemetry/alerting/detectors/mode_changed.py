@@ -3,7 +3,7 @@
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.modes import AT_THE_END, LEADS_TO, RETURN_ALONG, WITHOUT_ORDER, ModeKind
+from telemetry.alerting.modes import LEADS_TO, WITHOUT_ORDER, ModeKind
 from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
 
 CODE = "mode-changed"
@@ -18,8 +18,6 @@ FLOWN_SAYING = "%(uav)s is under other control (mode %(mode)s). Autopilot: %(wor
 HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
 FLIES_SAYING = "%(uav)s has resumed its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
 SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
-AT_END_M = 40.0
-FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})
 
 _WORDS = {
     ModeKind.RETURN: RETURNS, ModeKind.LAND: LANDS, ModeKind.HOLD: HOLDS, ModeKind.MISSION: FLIES, ModeKind.TAKE_OFF: FLIES,
@@ -40,7 +38,7 @@ def detect(situation: Situation) -> list[Finding] | None:
         situation.memory.mode_words = ("", "")
     if kind in (WITHOUT_ORDER if order is None else LEADS_TO.get(order.kind, WITHOUT_ORDER)):
         return []
-    if kind in AT_THE_END and _is_at_end(situation) and (order is None or order.kind in FLY_LIST):
+    if situation.ends_as_planned:
         return []
     level = CRITICAL if kind in (ModeKind.RETURN, ModeKind.LAND) else WARNING
     mode = newest.measurement.mode or situation.link.mode
@@ -61,11 +59,6 @@ def _words_about(situation: Situation, mode: str) -> str:
     words = quoted(situation.said, since_s - BEFORE_S, since_s + AFTER_S)
     situation.memory.mode_words = (mode, words)
     return words
-
-
-def _is_at_end(situation: Situation) -> bool:
-    place, model = situation.memory.place, situation.model
-    return place is not None and model is not None and model.line.length_m - place.along_m <= AT_END_M
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=3.0)

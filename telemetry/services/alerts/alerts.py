@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Any
 
 from django.db import transaction
-from django.db.models import F, Q
+from django.db.models import Exists, F, OuterRef, Q
 from django.utils import timezone
 
 from missions.models import Mission, Uav
@@ -107,27 +107,31 @@ def acknowledge_alert(*, alert: Alert, actor: User, note: str = "", seen_level: 
 def acknowledge_ended(*, organisation: Organisation, alert_ids: Collection[int], actor: User) -> dict[int, str]:
     """Acknowledge critical alerts that have ended, one by one; returns by id ACKNOWLEDGED, STILL_OPEN or UNKNOWN.
 
-    One that is open is left as it is. One that was acknowledged before counts as acknowledged.
+    One that is open is left as it is. One that was acknowledged before counts as acknowledged. Earlier ones of the same cause, which have
+    ended as well, are acknowledged with it.
     """
-    found = Alert.objects.filter(organisation=organisation, pk__in=alert_ids).in_bulk()
-    outcomes = {}
-    for alert_id in sorted(alert_ids):
-        alert = found.get(alert_id)
-        if alert is None:
-            outcomes[alert_id] = UNKNOWN
-        elif alert.closed_at is None:
-            outcomes[alert_id] = STILL_OPEN
-        else:
-            with transaction.atomic():
-                _acknowledge_cause(alert, actor)
-            outcomes[alert_id] = ACKNOWLEDGED
-    publish_live(organisation.pk)
+    outcomes, now = dict.fromkeys(alert_ids, UNKNOWN), timezone.now()
+    with transaction.atomic():
+        own = Alert.objects.filter(organisation=organisation)
+        cause = {name: OuterRef(name) for name in ("uav", "code", "subject")}
+        later = own.filter(pk__in=alert_ids, closed_at__isnull=False, opened_at__gt=OuterRef("opened_at"), **cause)
+        wanted = own.filter(Q(pk__in=alert_ids) | (waiting_to_be_seen() & Exists(later))).select_related("organisation")
+        for alert in wanted.select_for_update(of=("self",)).order_by("pk"):
+            is_new = alert.closed_at is not None and alert.acknowledged_at is None
+            if is_new:
+                _acknowledge(alert, actor, now)
+            if alert.pk in outcomes:
+                outcomes[alert.pk] = STILL_OPEN if alert.closed_at is None else ACKNOWLEDGED
+                if is_new:
+                    _record_acknowledged(alert, actor)
+        _tell(organisation.pk)
     return outcomes
 
 
 def _acknowledge_cause(alert: Alert, actor: User, note: str = "", seen_level: str | None = None) -> Alert:
     """The alert, and those of its cause that have ended before; all locked in one order. Raises LevelRose."""
-    same = Q(organisation=alert.organisation_id, uav=alert.uav_id, code=alert.code, subject=alert.subject) & waiting_to_be_seen()
+    earlier = Q(organisation=alert.organisation_id, uav=alert.uav_id, code=alert.code, subject=alert.subject, opened_at__lt=alert.opened_at)
+    same = earlier & waiting_to_be_seen()
     rows = {row.pk: row for row in Alert.objects.select_for_update().filter(Q(pk=alert.pk) | same).order_by("pk")}
     held, now = rows.pop(alert.pk), timezone.now()
     if held.acknowledged_at is not None:
@@ -136,8 +140,12 @@ def _acknowledge_cause(alert: Alert, actor: User, note: str = "", seen_level: st
         raise LevelRose(held)
     for row in (held, *rows.values()):
         _acknowledge(row, actor, now)
-    _record(held, actor, "acknowledge", {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note})
+    _record_acknowledged(held, actor, note)
     return held
+
+
+def _record_acknowledged(alert: Alert, actor: User, note: str = "") -> None:
+    _record(alert, actor, "acknowledge", {"code": alert.code, "level": alert.level, "uav": alert.uav_id, "note": note})
 
 
 def _acknowledge(alert: Alert, actor: User, now: datetime) -> None:

@@ -34,9 +34,16 @@ def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
         code = CODES_OF.get(change.code)
         if code is None or change.reason != CLEARED:
             continue
-        rows = Alert.objects.filter(mission=mission_id, uav=uav_id, closed_at=None)
-        if all(code_of(Finding(row.code, row.level, row.message, row.values, row.subject, row.details)) != code for row in rows):
-            withdraw(mission_id=mission_id, code=code, uav_id=uav_id)
+        rows = Alert.objects.filter(mission=mission_id, closed_at=None).order_by("opened_at")
+        reasons = [(row.uav_id, finding) for row in rows if row.uav_id is not None and code_of(finding := _finding_of(row)) is not None]
+        if any(uav == uav_id and code_of(finding) == code for uav, finding in reasons):
+            continue
+        if withdraw(mission_id=mission_id, code=code, uav_id=uav_id):  # it had taken the place of an offer for another UAV
+            suggest_for_findings((mission_id, uav, finding) for uav, finding in reasons if uav != uav_id)
+
+
+def _finding_of(alert: Alert) -> Finding:
+    return Finding(alert.code, alert.level, alert.message, alert.values, alert.subject, alert.details)
 
 
 def code_of(finding: Finding) -> str | None:

@@ -10,7 +10,7 @@ from django.db.models import Exists, F, OuterRef
 from django.db.models.functions import Now
 
 from missions.models import MissionState
-from telemetry.alerting.advice import answer_of
+from telemetry.alerting.advice import answer_of, figures_of
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
@@ -124,10 +124,11 @@ def _words_to_write(row: OpenRow, change: Opened, now: datetime) -> tuple[str, M
     """
     finding = change.finding
     is_answered_otherwise = answer_of(finding.details) != row.answer
-    if change.is_held and finding.message != row.message:
-        return (row.message, row.values) if is_answered_otherwise else None
-    is_other = is_answered_otherwise or finding.level != row.level or finding.message != row.message
-    has_changed = finding.values != row.values
-    is_worst = finding.severity != 0.0 and is_worse(finding, row.worst)
     is_due = now - row.written_at >= WORDS_STAND_FOR
+    has_other_figures = figures_of(finding.details) != row.figures
+    if change.is_held and finding.message != row.message:
+        return (row.message, row.values) if is_answered_otherwise or (has_other_figures and is_due) else None
+    is_other = is_answered_otherwise or finding.level != row.level or finding.message != row.message
+    has_changed = finding.values != row.values or has_other_figures
+    is_worst = finding.severity != 0.0 and is_worse(finding, row.worst)
     return (finding.message, finding.values) if is_other or (has_changed and (is_worst or is_due)) else None

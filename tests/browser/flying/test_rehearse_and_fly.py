@@ -111,7 +111,7 @@ def approves_and_sends(page: Page, picture: Picture) -> None:
     page.get_by_role("link", name="Plan", exact=True).click()
     wait_for_map(page)
     expect(page.locator("#flyers .simulated-mark")).to_be_visible()
-    fly = page.get_by_role("link", name=re.compile("^Fly: "))
+    fly = page.get_by_role("link", name="Fly in simulation")
     expect(fly).to_have_attribute("href", re.compile("/fly$"))
 
 

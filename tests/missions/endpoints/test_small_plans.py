@@ -25,7 +25,7 @@ from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, Role, User
 
 pytestmark = pytest.mark.django_db
-SHORT_WAYS = ("missions.views.fast_path.small_plan", "missions.views.plans.small_plan")
+SHORT_WAYS = ("missions.views.fast_path_middleware.small_plan", "missions.views.plans.small_plan")
 CSRF_TOKEN = "k" * 32
 TOLD = ("Content-Type", "Cache-Control", "Vary", "X-Frame-Options", "X-Content-Type-Options")
 

@@ -173,7 +173,9 @@ def test_a_return_that_is_too_short_of_battery_to_reach_home_can_be_cut_by_a_lan
     finding = found(flight, returning)
     assert (proposed(finding), finding.details[OWN_ACT]["since"]) == ([("land", 7)], None)
     assert advised(finding).startswith("Its battery does not last for the return")
-    assert proposed(found(flight, told(flight, second, home + 2.0, "RTL"))) == [], "it gets home"
+    finding = found(flight, told(flight, second, home + 2.0, "RTL"))
+    assert (proposed(finding), advised(finding)) == ([("land", 7)], "It lands with about 2 % of the battery (reserve 20 %).")
+    assert proposed(found(flight, told(flight, second, home + 12.0, "RTL"))) == [], "it gets home"
 
 
 def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():

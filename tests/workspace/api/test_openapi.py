@@ -19,7 +19,7 @@ from scripts.api_types import GENERATOR, NODE
 from workspace.api import api_document
 
 pytestmark = pytest.mark.django_db
-API_PAGE = Path(__file__).resolve().parents[2] / "docs" / "api.md"
+API_PAGE = Path(__file__).resolve().parents[3] / "docs" / "api.md"
 ERROR_TYPES = {"application/json", "application/problem+json"}
 
 

@@ -8,7 +8,7 @@ import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
-import { actsNow, besideWords, createSeenLevels, isMoving, messageWords } from "../alert_words.js";
+import { actsNow, besideWords, createSeenLevels, isMoving, messageWords, SEEN_AFTER_MS } from "../alert_words.js";
 import { isNone } from "../arrival.js";
 import { acknowledge, acknowledgeEnded, close, note, positionActs, takeOver, tried } from "./alert_acts.js";
 
@@ -81,6 +81,8 @@ const rowKey = (alert, uav, uavs) =>
     alert.level,
     isMoving(alert) || alert.message,
     actsNow(alert, uavs).map((act) => [act.kind, act.uav.id]),
+    alert.advice,
+    alert.own_act,
     downAt(alert),
     alert.worst?.message,
     alert.notes,
@@ -138,11 +140,13 @@ class AlertPanel {
   #moving = new Map(); // by alert: writes what moves with the time
   /** @type {Alert[]} */
   #ended = []; // shown, and not acknowledged
+  /** @type {Map<number, number>} by id: since when it has been shown as ended [ms] */
+  #endedSince = new Map();
   #acknowledgeEnded = h("button", {
     type: "button",
     class: "text-button ended-alerts",
     hidden: true,
-    onclick: () => void acknowledgeEnded(this.#ended),
+    onclick: () => void acknowledgeEnded(this.#endedAndSeen()),
   });
   /** @type {Alert[]} */
   #past = []; // read from the history
@@ -322,9 +326,16 @@ class AlertPanel {
     return (!wantedLevel || level === wantedLevel) && (!wantedUav || `${uav}` === wantedUav);
   }
 
+  /** One that ended just before the click was not read. */
+  #endedAndSeen() {
+    const latest = Date.now() - SEEN_AFTER_MS;
+    return this.#ended.filter(({ id }) => (this.#endedSince.get(id) ?? Infinity) <= latest);
+  }
+
   /** @param {Alert[]} ended shown ones that nobody has acknowledged */
   #drawAcknowledgeEnded(ended) {
     this.#ended = ended.slice(0, MAX_ACKNOWLEDGED);
+    this.#endedSince = new Map(this.#ended.map(({ id }) => [id, this.#endedSince.get(id) ?? Date.now()]));
     this.#acknowledgeEnded.hidden = !this.#page.canFly || ended.length < 2;
     this.#acknowledgeEnded.textContent = t("Acknowledge all ended ({count})", { count: this.#ended.length });
   }

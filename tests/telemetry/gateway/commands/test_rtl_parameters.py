@@ -49,7 +49,7 @@ def test_the_height_of_its_return_is_set_and_read_back(flavour, uav, mission, tm
     vehicle = FLAVOURS[flavour](parameters=dict(first))
     name = next(iter(first))
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
-        wait_for(lambda: bool(Uav.objects.get(pk=uav.pk).autopilot_return), "parameters that were told")
+        wait_for(lambda: name in Uav.objects.get(pk=uav.pk).autopilot_return.get("parameters", {}), "the parameter of its height")
         command = command_uav(
             uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.SET_RETURN_HEIGHT, actor=mission.author, parameters={"height_m": 74.2}
         )
