@@ -1,4 +1,4 @@
-"""Environment variables as settings: flags, lists, numbers, and secrets from files.
+"""Environment variables as settings: flags, lists, numbers, secrets from files, mail and log.
 
 A secret may be named by a file, as container platforms hand them over: NAME_FILE in place of NAME.
 """

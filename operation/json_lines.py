@@ -1,7 +1,7 @@
 """Every line that a program writes is JSON, whoever writes it: python -m operation.json_lines MODULE [ARGUMENT...]
 
-Lines of logging are (operation/json_lines.py); this is for all others: what is printed, warned of, raised and not caught, also before
-logging is set up, and in processes that are forked off. A file that ends in .py may stand for the module.
+The formatters of logging are here as well. Run as a program it makes JSON of all other lines: what is printed, warned of, raised and not
+caught, also before logging is set up, and in processes that are forked off. A file that ends in .py may stand for the module.
 """
 
 import io

@@ -1,4 +1,4 @@
-"""Heights and speeds that a plan keeps."""
+"""Limits that a plan keeps: heights, speeds, turns, separation, targets and time."""
 
 import math
 from dataclasses import dataclass

@@ -57,7 +57,7 @@ class RehearsalRun(models.Model):
 
     rehearsal = models.ForeignKey(Rehearsal, on_delete=models.CASCADE, related_name="runs")
     sequence = models.PositiveSmallIntegerField()
-    conditions = models.JSONField(help_text="wind, gusts, battery; see rehearsing/sky.py")
+    conditions = models.JSONField(help_text="wind, gusts, battery; see rehearsing/weather_scenario.py")
     level = models.CharField(max_length=10, choices=VerdictLevel.choices, blank=True, help_text="empty until it has been flown")
     verdict = models.JSONField(null=True, blank=True, help_text="see assessment/stored.py")
     took_s = models.FloatField(null=True, blank=True, help_text="of the worker's time")

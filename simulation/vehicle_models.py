@@ -85,7 +85,7 @@ class SimulatedVehicle(models.Model):
     position = models.PointField(srid=4326, help_text="where it stands at first")
     ground_amsl_m = models.FloatField(null=True, blank=True, help_text="of the ground there; empty = of the terrain, or 0")
     heading_deg = models.FloatField(default=0.0)
-    conditions = models.JSONField(help_text="the air that it flies in, and its battery at first; see rehearsing/sky.py")
+    conditions = models.JSONField(help_text="the air that it flies in, and its battery at first; see rehearsing/weather_scenario.py")
     port = models.PositiveIntegerField(null=True, blank=True, help_text="UDP, at which it listens; empty: it talks to the gateway")
     state = models.CharField(max_length=10, choices=SimulationState.choices, default=SimulationState.WANTED)
     reason = models.CharField(max_length=40, blank=True)

@@ -117,7 +117,7 @@ def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = N
 
 
 def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = None, action: str = "") -> NoFlyZone:
-    """Store a new or changed zone. Its geometry has passed the gate (zones/geometry_gate.py). Raises StaleRevision."""
+    """Store a new or changed zone. Its geometry has passed the gate (geodesy/geometry_validator.py). Raises StaleRevision."""
     with transaction.atomic():
         hold_ground()
         before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()

@@ -11,7 +11,7 @@ REACH_DEG = 1e-4  # more than TOUCH_M is anywhere between the polar circles
 # missions still name it.
 #
 # What has no OSM node, because it was drawn, moved by hand or came from another file, is joined where it stands: a support to a vertex
-# within TOUCH_M of it, as in graph/joining.py. The first condition on the distance, in degrees, is the one that the index knows.
+# within TOUCH_M of it, as in network/build/joining.py. The first condition on the distance, in degrees, is the one that the index knows.
 _NUMBER = f"""
 WITH met AS (
     SELECT l.id AS line_id, s.id AS support_id, node.vertex

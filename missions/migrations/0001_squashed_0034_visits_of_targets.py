@@ -128,7 +128,7 @@ class Migration(migrations.Migration):
                 ("charging_w", models.FloatField(blank=True, help_text="watts of charging at towers on the way; empty = none", null=True)),
                 (
                     "lost_link",
-                    models.JSONField(blank=True, default=dict, help_text="what UAVs do without a link; see services/requests.py"),
+                    models.JSONField(blank=True, default=dict, help_text="what UAVs do without a link; see services/planning/requests.py"),
                 ),
                 ("revision", models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")),
                 ("planned_at", models.DateTimeField(blank=True, null=True)),
@@ -349,7 +349,7 @@ class Migration(migrations.Migration):
             name="Approval",
             fields=[
                 ("id", models.UUIDField(default=uuid.uuid4, editable=False, primary_key=True, serialize=False)),
-                ("document", models.JSONField(help_text="routes, items, zones, conditions and terrain; see services/approval.py")),
+                ("document", models.JSONField(help_text="routes, items, zones, conditions and terrain; see services/approval/approval.py")),
                 ("content_sha256", models.CharField(help_text="of the document in its canonical form", max_length=64)),
                 ("approved_at", models.DateTimeField(db_default=django.db.models.functions.datetime.Now(), editable=False)),
                 ("revoke_requested_at", models.DateTimeField(blank=True, help_text="since when UAVs are being rid of it", null=True)),
@@ -678,7 +678,7 @@ class Migration(migrations.Migration):
                         blank=True,
                         db_default={},
                         default=dict,
-                        help_text="parameters of its own return, as read from it; see mavlink/own_return.py",
+                        help_text="parameters of its own return, as read from it; see mavlink/rtl.py",
                     ),
                 ),
                 ("autopilot_return_read_at", models.DateTimeField(blank=True, null=True)),
@@ -874,7 +874,7 @@ class Migration(migrations.Migration):
                 ("duration_s", models.FloatField()),
                 ("departs_s", models.FloatField(db_default=0.0, default=0.0, help_text="seconds after the mission's departure")),
                 ("energy_wh", models.FloatField(blank=True, help_text="empty without a battery", null=True)),
-                ("charging", models.JSONField(blank=True, default=list, help_text="stops at towers to charge; see services/plan_json.py")),
+                ("charging", models.JSONField(blank=True, default=list, help_text="stops at towers to charge; see services/planning/plan_json.py")),
                 ("battery_percent", models.FloatField(blank=True, help_text="left at the end; empty without a battery", null=True)),
                 (
                     "base_name",
@@ -916,7 +916,7 @@ class Migration(migrations.Migration):
                         blank=True,
                         db_default=[],
                         default=list,
-                        help_text="its waypoints before each change by hand that can be taken back; see services/by_hand.py",
+                        help_text="its waypoints before each change by hand that can be taken back; see services/manual_edits/edits.py",
                     ),
                 ),
                 (

@@ -17,7 +17,7 @@ class Approval(models.Model):
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="approvals")
-    document = models.JSONField(help_text="routes, items, zones, conditions and terrain; see services/approval.py")
+    document = models.JSONField(help_text="routes, items, zones, conditions and terrain; see services/approval/approval.py")
     content_sha256 = models.CharField(max_length=64, help_text="of the document in its canonical form")
     approved_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")
     approved_at = models.DateTimeField(db_default=Now(), editable=False)

@@ -132,7 +132,7 @@ class Uav(models.Model):
     heading_deg = models.FloatField(null=True, blank=True, help_text="degrees from true north, clockwise; empty = not known")
     battery_percent = models.FloatField(null=True, blank=True)
     autopilot_return = models.JSONField(
-        default=dict, db_default={}, blank=True, help_text="parameters of its own return, as read from it; see mavlink/own_return.py"
+        default=dict, db_default={}, blank=True, help_text="parameters of its own return, as read from it; see mavlink/rtl.py"
     )
     autopilot_return_read_at = models.DateTimeField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)

@@ -51,7 +51,7 @@ class Mission(models.Model):
     departs_at = models.DateTimeField(null=True, blank=True, help_text="planned take-off; empty = at any time")
     conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see planning/energy/conditions.py")
     charging_w = models.FloatField(null=True, blank=True, help_text="watts of charging at towers on the way; empty = none")
-    lost_link = models.JSONField(default=dict, blank=True, help_text="what UAVs do without a link; see services/requests.py")
+    lost_link = models.JSONField(default=dict, blank=True, help_text="what UAVs do without a link; see services/planning/requests.py")
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     planned_at = models.DateTimeField(null=True, blank=True)
     graph_version = models.BigIntegerField(null=True, blank=True, help_text="the graph that the routes were planned on")
@@ -239,7 +239,7 @@ class Route(models.Model):
     duration_s = models.FloatField()
     departs_s = models.FloatField(default=0.0, db_default=0.0, help_text="seconds after the mission's departure")
     energy_wh = models.FloatField(null=True, blank=True, help_text="empty without a battery")
-    charging = models.JSONField(default=list, blank=True, help_text="stops at towers to charge; see services/plan_json.py")
+    charging = models.JSONField(default=list, blank=True, help_text="stops at towers to charge; see services/planning/plan_json.py")
     battery_percent = models.FloatField(null=True, blank=True, help_text="left at the end; empty without a battery")
     base_name = models.CharField(max_length=100, blank=True, default="", help_text="the base at which it lands, where it ends at one")
     lands_at = models.PointField(srid=4326, null=True, blank=True, help_text="where that base was when the route was planned")
@@ -261,7 +261,7 @@ class Route(models.Model):
         default=list,
         db_default=[],
         blank=True,
-        help_text="its waypoints before each change by hand that can be taken back; see services/by_hand.py",
+        help_text="its waypoints before each change by hand that can be taken back; see services/manual_edits/edits.py",
     )
 
     class Meta:

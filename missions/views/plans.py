@@ -75,7 +75,9 @@ class PlanList(APIView):
     throttle_scope = "plans"
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        answer = small_plan(request, throttle_scope=self.throttle_scope) if request.META.get("HTTP_COOKIE") else None  # else: short_way.py
+        answer = (
+            small_plan(request, throttle_scope=self.throttle_scope) if request.META.get("HTTP_COOKIE") else None
+        )  # else: the middleware
         return super().dispatch(request, *args, **kwargs) if answer is None else answer
 
     @extend_schema(

@@ -1,6 +1,6 @@
 """What a flight to one node takes of time and battery beside the way along the network: access legs, climbs, and what is done there.
 
-The arithmetic is that of `costs.py`, node by node instead of visit by visit, without knowing the ground's height.
+The arithmetic is that of `assignment_costs.py`, node by node instead of visit by visit, without knowing the ground's height.
 """
 
 import math

@@ -18,7 +18,7 @@ def best_plan(problem: Problem) -> Routes:
     Held and Karp's recursion (1962) gives each UAV's shortest route over every set of targets; the sets are then shared out among the
     UAVs, each share the best of all parts of a set. For the longest route this is done twice: for its least duration, then for the
     least total among the plans that are not slower. The alternatives of a target must take equally long to serve. Where more is limited
-    than what the objective counts, see `limited_tours.py`; where UAVs fly several sorties, each set is first shared out among these.
+    than what the objective counts, see `constrained_tours.py`; where UAVs fly several sorties, each set is first shared out among these.
     """
     return best_routes(Arcs.of(problem))
 

@@ -145,7 +145,7 @@ class Migration(migrations.Migration):
             fields=[
                 ("id", models.BigAutoField(auto_created=True, primary_key=True, serialize=False, verbose_name="ID")),
                 ("sequence", models.PositiveSmallIntegerField()),
-                ("conditions", models.JSONField(help_text="wind, gusts, battery; see rehearsing/sky.py")),
+                ("conditions", models.JSONField(help_text="wind, gusts, battery; see rehearsing/weather_scenario.py")),
                 (
                     "level",
                     models.CharField(
@@ -276,7 +276,7 @@ class Migration(migrations.Migration):
                 ("position", django.contrib.gis.db.models.fields.PointField(help_text="where it stands at first", srid=4326)),
                 ("ground_amsl_m", models.FloatField(blank=True, help_text="of the ground there; empty = of the terrain, or 0", null=True)),
                 ("heading_deg", models.FloatField(default=0.0)),
-                ("conditions", models.JSONField(help_text="the air that it flies in, and its battery at first; see rehearsing/sky.py")),
+                ("conditions", models.JSONField(help_text="the air that it flies in, and its battery at first; see rehearsing/weather_scenario.py")),
                 (
                     "port",
                     models.PositiveIntegerField(

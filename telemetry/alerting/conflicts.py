@@ -298,7 +298,7 @@ def _flying(uav: Moving, origin: tuple[float, float]) -> Flying:
 def elsewhere(
     uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0, *, is_twin: bool = False
 ) -> Moving:
-    """One that another watch estimates, as estimation/as_json.py writes it: straight on."""
+    """One that another watch estimates, as services/watches.py writes it: straight on."""
     lon, lat = estimated["position"]
     heading_rad, speed_mps = math.radians(estimated["heading_deg"] or 0.0), estimated["speed_mps"]
     degree_east_m = DEGREE_M * math.cos(math.radians(lat))

@@ -1,4 +1,4 @@
-"""What a detector sees."""
+"""What a detector finds, and the acts by which an operator would answer it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -135,7 +135,7 @@ WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.e
 def estimated_by_other_watches(
     organisations: Collection[int], uav_ids: Collection[int]
 ) -> dict[int, list[tuple[int, str, Any, float, bool]]]:
-    """By organisation: UAVs, their names, estimates as stored (estimation/as_json.py), how fast their clocks run, and which are twins."""
+    """By organisation: UAVs, their names, estimates as stored (services/watches.py), how fast their clocks run, and which are twins."""
     with connection.cursor() as cursor:
         cursor.execute(_OTHERS, [sorted(organisations), sorted(uav_ids)])
         rows = cursor.fetchall()

@@ -1,4 +1,4 @@
-"""What the log may be asked for, from the address to a filter."""
+"""The log: records by place, time, mission and UAV, and the filters of their addresses."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Writing answers."""
+"""Writing answers, and which form an answer has."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,6 +1,6 @@
 """What is summed up along ways of the graph, where the two directions of an edge differ: seconds in wind, energy, climbs.
 
-The ways are those of `ways.py`, which are least in cost. What a way of them takes is a difference of sums along chains and a sum kept
+The ways are those of `paths.py`, which are least in cost. What a way of them takes is a difference of sums along chains and a sum kept
 with each hub label, so that no way is walked. Each quantity of each direction is made once for all edges, by who knows what it is.
 """
 

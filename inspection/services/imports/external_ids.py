@@ -1,6 +1,6 @@
 """Gives assets the external ids that a column of their file has for them: those of the organisation whose file it is.
 
-A file's staged rows are in asset_staging (asset_import.py). An id goes with the file: it is taken from another asset of the set, and from
+A file's staged rows are in asset_staging (assets.py). An id goes with the file: it is taken from another asset of the set, and from
 one that has vanished, but from no other. An empty cell leaves the id that an asset has.
 """
 
