@@ -13,6 +13,9 @@ import networkx as nx
 import pytest
 from django.core.management import get_commands
 
+from scripts import texts
+from workspace.api import api_document
+
 ROOT = Path(__file__).resolve().parents[1]
 PURE_PACKAGES = {"planning", "mavlink"}
 APPS = ("workspace", "accounts", "inspection", *sorted(PURE_PACKAGES), "missions", "telemetry", "simulation")
@@ -134,6 +137,17 @@ def test_every_pure_folder_is_under_the_strict_type_check() -> None:
         if app not in PURE_PACKAGES and path.parent.parent == ROOT / app and path.parent.name not in layers
     }
     assert folders | PURE_PACKAGES == set(pure_folders())
+
+
+def test_every_list_of_packages_names_all_of_them() -> None:
+    """The image, the digest of the kept OpenAPI document and the search for texts would leave out what their lists lack."""
+    packages = {*APPS, "config", "operation"}
+    image = re.search(r"^apps=\((.*)\)$", (ROOT / "scripts" / "image_files").read_text(), re.MULTILINE)
+    assert image is not None
+    assert packages <= set(image.group(1).split())
+    assert packages <= {line.lstrip("!") for line in (ROOT / ".dockerignore").read_text().splitlines()}
+    assert packages <= set(api_document.APPS)
+    assert packages - {"operation"} <= set(texts.APPS)
 
 
 def test_the_type_check_reads_every_program() -> None:
