@@ -1,6 +1,6 @@
 """A flight as it would go by the book: where the UAV is at each second of its clock.
 
-The clock knows accelerations, turns, climbs, wind and tasks; what really happens differs from it, and is told apart by `along_track_filter.py`.
+The clock knows accelerations, turns, climbs, wind and tasks; what really happens differs from it, which `along_track_filter.py` follows.
 """
 
 import math
