@@ -6,7 +6,7 @@ from typing import Protocol
 from uuid import UUID
 
 from mavlink.decoding.measurement import Measurement
-from telemetry.models import FlightEvent, FlightEventKind, TelemetryRecord, UavWatch
+from telemetry.models import FlightEvent, FlightEventKind, UavWatch
 
 
 class Report(Protocol):
@@ -37,7 +37,7 @@ def note_take_offs_and_landings(reports: Iterable[Report]) -> None:
         if now_in_air == is_in_air:
             continue
         kind = FlightEventKind.TAKE_OFF if now_in_air else FlightEventKind.LANDING
-        mission_id = report.mission_id or (None if now_in_air else _flown_last(report.uav_id, report.measured_at))
+        mission_id = report.mission_id or (None if now_in_air else _took_off_for(report.uav_id, report.measured_at))
         if is_in_air is None and not now_in_air:  # a report between said nothing of it: it has landed if it had taken off
             if mission_id is not None:
                 note_landing(mission_id=mission_id, uav_id=report.uav_id, at=report.measured_at)
@@ -66,7 +66,7 @@ def _in_air_before(uav_ids: Sequence[int] | set[int]) -> dict[int, tuple[bool | 
     return {uav_id: (state.get("is_in_air"), datetime.fromisoformat(state["measured_at"])) for uav_id, state in rows}
 
 
-def _flown_last(uav_id: int, at: datetime) -> UUID | None:
-    """The mission of its last report in the air: of the last UAV a mission may have ended before the landing is stored."""
-    records = TelemetryRecord.objects.filter(uav=uav_id, measured_at__lt=at, is_from_future=False, is_in_air=True)
-    return records.order_by("-measured_at").values_list("mission_id", flat=True).first()
+def _took_off_for(uav_id: int, at: datetime) -> UUID | None:
+    """The mission for which it took off and has not landed: a mission may have ended before its last UAV is down."""
+    last = FlightEvent.objects.filter(uav=uav_id, at__lt=at).order_by("-at", "-pk").first()
+    return last.mission_id if last is not None and last.kind == FlightEventKind.TAKE_OFF else None

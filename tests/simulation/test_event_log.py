@@ -133,7 +133,8 @@ def test_a_landing_that_is_stored_after_its_mission_has_ended_belongs_to_it(clie
     report(tern, 1, is_in_air=True)
     mark_started(mission_id=mission.pk, uav_id=tern.pk)
     mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FLOWN)
-    report(tern, 2, is_in_air=False)
+    report(tern, 2, is_in_air=True)  # it comes down after its last waypoint
+    report(tern, 3, is_in_air=False)
     assert len(of_kind(client, mission, "landing")) == 1
     assert [event["values"]["state"] for event in of_kind(client, mission, "mission-ended")] == ["completed"]
 
