@@ -59,7 +59,7 @@ RELIABILITY = (
             ),
             Tests(
                 "a UAV falls silent", "late and lost are told in time, once; it is heard again",
-                ("tests/telemetry/test_alerting.py::test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_is_over",
+                ("tests/telemetry/alerts/test_alerting.py::test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_is_over",
                  "tests/telemetry/alerting/test_faults.py::test_each_fault_fifty_times"),
                 "{passed} of {all} families of faults, 50 flights each",
             ),
@@ -348,8 +348,8 @@ FLIGHT = (
         (
             Tests(
                 "a zone is saved around a flying UAV", "told within 5 s, another plan is offered",
-                ("tests/telemetry/test_alerting.py::test_a_zone_that_is_saved_around_a_flying_uav_is_told",
-                 "tests/telemetry/test_replan_hooks.py"),
+                ("tests/telemetry/alerts/test_alerting.py::test_a_zone_that_is_saved_around_a_flying_uav_is_told",
+                 "tests/telemetry/alerts/test_replan_hooks.py"),
                 "{passed} of {all} tests",
             ),
         ),
@@ -359,7 +359,7 @@ FLIGHT = (
         (
             Tests(
                 "when planning, and in flight", "refused with what lacks; told",
-                ("tests/missions/planning/test_batteries.py", "tests/telemetry/test_replan_hooks.py"), "{passed} of {all} tests",
+                ("tests/missions/planning/test_batteries.py", "tests/telemetry/alerts/test_replan_hooks.py"), "{passed} of {all} tests",
             ),
         ),
     ),

@@ -16,7 +16,7 @@ from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.accounts.users import somebody
 from tests.missions.commands.outbox import a_uav
-from tests.telemetry.gateway.test_outages import database_away
+from tests.telemetry.gateway.outages.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
 from tests.workspace.live.proxied_site import Door, redis_at, running, wait_until

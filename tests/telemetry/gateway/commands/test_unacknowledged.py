@@ -20,8 +20,8 @@ from telemetry.models import UavLink
 from telemetry.services.links.links import Lease
 from tests.telemetry.gateway.commands.test_commands import FLAVOURS, ended
 from tests.telemetry.gateway.flyer import Flyer
+from tests.telemetry.gateway.outages.test_outages import database_away
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, wait_for
-from tests.telemetry.gateway.test_outages import database_away
 
 pytestmark = pytest.mark.django_db(transaction=True)
 IN_MISSION = {Flavour.PX4: 4 << 16 | 4 << 24, Flavour.ARDUPILOT: 3}

@@ -27,7 +27,7 @@ def test_nothing_is_lost_when_the_database_is_killed(capsys, record_property):
         prepare_cluster(places)
         address = f"postgis://{DATABASE_ROLE}@{quote(str(sockets), safe='')}/postgres"
         own = {"DATABASE_URL": address, "SPANWISE_VAR": str(places.state), "DJANGO_SETTINGS_MODULE": "config.settings"}
-        command = [sys.executable, "-m", "tests.telemetry.gateway.killed_database", str(places.state), str(sockets)]
+        command = [sys.executable, "-m", "tests.telemetry.gateway.outages.killed_database", str(places.state), str(sockets)]
         answer = subprocess.run(  # noqa: S603
             command, env=os.environ | own, cwd=PROJECT_DIR, capture_output=True, text=True, timeout=400, check=False
         )
