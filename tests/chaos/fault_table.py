@@ -55,7 +55,7 @@ RELIABILITY = (
             Tests(
                 "a vehicle with a buffer loses its link for 5, 60 and 600 s and sends what it kept, some of it twice",
                 "0 records lost, 0 doubled",
-                (f"{GATEWAY}/test_outages.py::test_a_buffering_vehicle_loses_and_doubles_nothing",), "{passed} of {all} flights",
+                (f"{GATEWAY}/outages/test_outages.py::test_a_buffering_vehicle_loses_and_doubles_nothing",), "{passed} of {all} flights",
             ),
             Tests(
                 "a UAV falls silent", "late and lost are told in time, once; it is heard again",
@@ -92,7 +92,7 @@ RELIABILITY = (
             ),
             Tests(
                 "killed 3 times while a gateway stores and carries", "0 stored or told records lost, 0 commands lost or out of order",
-                (f"{GATEWAY}/test_killed_database.py",), "{passed} of {all} tests",
+                (f"{GATEWAY}/outages/test_killed_database.py",), "{passed} of {all} tests",
             ),
             Tests(
                 "every page and list of the API while it cannot be reached", "503 with Retry-After",
