@@ -22,7 +22,7 @@ from playwright.sync_api import Error as PlaywrightError
 from accounts.reauthentication import PROOF_S
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
-from tests.browser.pictures import HAS_PICTURES
+from tests.browser.pictures import HAS_PICTURES, save_picture
 from tests.browser.regions import region
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
@@ -312,13 +312,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.fixture
 def picture() -> Callable[[Page, str], None]:
-    """Writes a screenshot for the documentation when SPANWISE_SCREENSHOTS=1."""
+    """Save a screenshot when SPANWISE_SCREENSHOTS=1."""
 
     def take(page: Page, name: str) -> None:
         if HAS_PICTURES:
             page.evaluate("document.activeElement?.blur()")
             page.mouse.move(0, 0)
             page.wait_for_timeout(PICTURE_SETTLES_MS)
-            page.screenshot(path=PROJECT_DIR / "docs" / "screenshots" / f"{name}.png")
+            save_picture(page.screenshot(), name)
 
     return take

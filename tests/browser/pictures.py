@@ -1,14 +1,46 @@
-"""Pictures: how many colours one has, and those for the documentation, in light and dark, asked for with SPANWISE_SCREENSHOTS=1."""
+"""Screenshots of a run with SPANWISE_SCREENSHOTS=1, those that documents show, and the number of colours of a picture."""
 
 import base64
+import io
 import os
+import re
 from collections.abc import Callable
+from pathlib import Path
 
+from PIL import Image
 from playwright.sync_api import Page
 
 Picture = Callable[[Page, str], None]
+PROJECT_DIR = Path(__file__).resolve().parents[2]
+ALL_PICTURES = PROJECT_DIR / "var" / "screenshots"
+SHOWN_PICTURES = PROJECT_DIR / "docs" / "screenshots"
+MAX_PICTURE_BYTES = 120_000
 HAS_PICTURES = os.environ.get("SPANWISE_SCREENSHOTS") == "1"
 THEMES = ("dark", "light") if HAS_PICTURES else ()
+
+
+def shown_names() -> set[str]:
+    """Return the names of the pictures in docs/screenshots that README.md or a document shows."""
+    documents = [PROJECT_DIR / "README.md", *(PROJECT_DIR / "docs").rglob("*.md")]
+    return {name for path in documents for name in re.findall(r"screenshots/([\w-]+)\.webp", path.read_text())}
+
+
+def smallest_webp(picture: Image.Image) -> bytes:
+    """Encode a picture without loss, or else with the best quality of 95, 90 and 85, in at most MAX_PICTURE_BYTES."""
+    for options in ({"lossless": True}, {"quality": 95}, {"quality": 90}, {"quality": 85}):
+        encoded = io.BytesIO()
+        picture.convert("RGB").save(encoded, "WEBP", method=6, **options)
+        if encoded.tell() <= MAX_PICTURE_BYTES:
+            break
+    return encoded.getvalue()
+
+
+def save_picture(png: bytes, name: str) -> None:
+    """Write a screenshot below var/, and below docs/ if a document shows it."""
+    ALL_PICTURES.mkdir(parents=True, exist_ok=True)
+    (ALL_PICTURES / f"{name}.png").write_bytes(png)
+    if name in shown_names():
+        (SHOWN_PICTURES / f"{name}.webp").write_bytes(smallest_webp(Image.open(io.BytesIO(png))))
 
 
 def in_both_themes(page: Page, picture: Picture, name: str) -> None:
