@@ -3,12 +3,13 @@
 from collections.abc import Iterable
 from typing import Any
 
-from django.db import connection, transaction
+from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from workspace.api.permissions import may_change
 from workspace.audit import person_facts, record_change
+from workspace.leases import lock_until_end
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
     AuditEntry,
@@ -90,8 +91,7 @@ def _refuse_without_administrator(before: User | None) -> None:
     """After a change, in its transaction. Two that are made at once wait for each other here."""
     if before is None or not _administrates(before):
         return
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s)", [ADMINISTRATORS_LOCK])
+    lock_until_end(ADMINISTRATORS_LOCK)
     left = User.objects.filter(is_active=True, is_service=False)
     administrators = left.filter(role=Role.ADMINISTRATOR)
     own = before.organisation_id

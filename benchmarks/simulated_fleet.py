@@ -151,7 +151,7 @@ def simulate(port: int) -> None:
 
     sys.setswitchinterval(SWITCH_S)
     with mock.patch("simulation.simulator.process.flight_of", under_way):
-        Simulator(Options("benchmark", 1e6, ("127.0.0.1", port), "127.0.0.1")).run()
+        Simulator(Options(name="benchmark", most_load=1e6, gateway=("127.0.0.1", port), host="127.0.0.1")).run()
 
 
 def simulation_of(uavs: list[Uav], speed: float) -> Simulation:

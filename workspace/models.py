@@ -8,13 +8,13 @@ from django.contrib.auth.models import UserManager as DjangoUserManager
 from django.contrib.postgres.fields import ArrayField
 from django.db import models
 from django.db.models.functions import Now
-from django.utils import timezone
 from django.utils.crypto import salted_hmac
 from django.utils.translation import gettext_lazy as _
 
 from workspace.door_models import BrowserSession as BrowserSession
 from workspace.door_models import RecoveryCode as RecoveryCode
 from workspace.door_models import SecondFactor as SecondFactor
+from workspace.leases import has_run_out
 
 
 class Organisation(models.Model):
@@ -284,7 +284,7 @@ class Job(models.Model):
     @property
     def is_held(self) -> bool:
         """Whether a worker does it, whose lease has not run out."""
-        return self.state == JobState.RUNNING and self.lease_expires_at is not None and self.lease_expires_at > timezone.now()
+        return self.state == JobState.RUNNING and not has_run_out(self.lease_expires_at)
 
 
 class AuditEntry(models.Model):

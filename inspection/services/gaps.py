@@ -6,7 +6,7 @@ from datetime import datetime
 from time import perf_counter
 
 from django.contrib.gis.geos import GEOSGeometry, Point
-from django.db import connection, transaction
+from django.db import transaction
 from django.utils import timezone
 
 from inspection.models import Asset, DataGap, GapSearch, GapState
@@ -15,6 +15,7 @@ from inspection.quality.search import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.selectors.ground import ground_edition
 from workspace.audit import record_change
+from workspace.leases import try_lock_until_end
 from workspace.models import User
 
 logger = logging.getLogger(__name__)
@@ -43,9 +44,7 @@ def find_gaps(*, force: bool = False) -> GapSearch | None:
     if gaps_are_current() and not force:
         return None
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_try_advisory_xact_lock(%s)", [SEARCH_LOCK])
-            (is_ours,) = cursor.fetchone()
+        is_ours = try_lock_until_end(SEARCH_LOCK)
         if not is_ours or (gaps_are_current() and not force):
             return None
         return _search_and_store()

@@ -6,7 +6,7 @@ from hashlib import sha256
 from time import perf_counter
 
 from django.conf import settings
-from django.db import connection, transaction
+from django.db import transaction
 
 from inspection.models import GraphSnapshot
 from inspection.network.build.network import network
@@ -15,6 +15,7 @@ from inspection.network.snapshot_file import to_bytes
 from inspection.selectors.graph import NoGraph, current_graph, prepare_graph, rules_of_snapshots, zones_in_force
 from inspection.selectors.ground import ground_revision
 from inspection.selectors.ground_data import ground_data, has_flyable_assets
+from workspace.leases import lock_until_end, try_lock_until_end
 
 BUILD_LOCK = 5_372_001  # any number that nothing else locks
 KEPT_SNAPSHOTS = 20
@@ -26,8 +27,7 @@ def build_graph(*, force: bool = False, progress: Callable[[str, float], None] |
     One build runs at a time: whoever waits for another's finds its snapshot.
     """
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_advisory_xact_lock(%s)", [BUILD_LOCK])
+        lock_until_end(BUILD_LOCK)
         snapshot = None if force else _current_snapshot()
         return snapshot or _build_and_store(progress)
 
@@ -37,9 +37,7 @@ def refresh_graph() -> GraphSnapshot | None:
     if _current_snapshot() is not None or not (has_flyable_assets() or GraphSnapshot.objects.exists()):
         return None
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_try_advisory_xact_lock(%s)", [BUILD_LOCK])
-            (is_ours,) = cursor.fetchone()
+        is_ours = try_lock_until_end(BUILD_LOCK)
         return _build_and_store(None) if is_ours and _current_snapshot() is None else None
 
 

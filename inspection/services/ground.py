@@ -1,18 +1,17 @@
 """The ground's revision: counted up with every change to assets or zones."""
 
-from django.db import connection
 from django.db.models import F
 from django.utils import timezone
 
 from inspection.models import Ground
+from workspace.leases import lock_until_end
 
 GROUND_LOCK = 0x05A7_0001  # advisory lock: one at a time writes more of the ground than single rows
 
 
 def hold_ground() -> None:
     """Wait for an import or a curator at work, and keep others waiting until the caller's transaction ends."""
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s)", [GROUND_LOCK])
+    lock_until_end(GROUND_LOCK)
 
 
 def mark_ground_changed() -> int:

@@ -9,9 +9,8 @@ from uuid import UUID
 
 from django.conf import settings
 from django.contrib.gis.geos import Point
-from django.db import connection, transaction
+from django.db import transaction
 from django.db.models import Q
-from django.db.models.functions import Now
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
@@ -20,6 +19,7 @@ from simulation.rehearsing.weather_scenario import Sky, sky_to_json
 from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
 from workspace.audit import record_change
+from workspace.leases import has_run_out, is_free, lock_until_end
 from workspace.models import Organisation, User
 
 KEPT = 200  # simulations of an organisation that are over
@@ -138,7 +138,7 @@ def end_simulation(*, simulation: Simulation, actor: User) -> None:
         now = timezone.now()
         held.end_wanted_at = now
         held.save(update_fields=["end_wanted_at"])
-        if held.lease_expires_at is None or held.lease_expires_at < now:
+        if has_run_out(held.lease_expires_at):
             end_now(held, "ended-by-hand")
         note(held, actor, "end", {})
 
@@ -155,7 +155,7 @@ def end_vehicle(*, vehicle: SimulatedVehicle, actor: User) -> None:
             return
         now = timezone.now()
         wanted.filter(pk=vehicle.pk).update(end_wanted_at=now)
-        if held.lease_expires_at is None or held.lease_expires_at < now:
+        if has_run_out(held.lease_expires_at):
             end_vehicles_now([vehicle.pk])
         note(held, actor, "end", {"vehicle": vehicle.name})
 
@@ -178,10 +178,9 @@ def end_now(simulation: Simulation, reason: str, *, state: SimulationState = Sim
 
 def hold_starts() -> None:
     """Until the transaction ends: of two that start at once the second counts the first one's. What is over and nobody holds is ended."""
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s)", [_STARTS])
+    lock_until_end(_STARTS)
     now = timezone.now()
-    unheld = Simulation.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), state__in=PRESENT)
+    unheld = Simulation.objects.filter(is_free(), state__in=PRESENT)
     for simulation in unheld.filter(Q(lifetime_ends_at__lte=now) | Q(end_wanted_at__isnull=False)):
         end_now(simulation, "ended-by-hand" if simulation.end_wanted_at else "lifetime-over")
 

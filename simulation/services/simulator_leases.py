@@ -11,7 +11,7 @@ from typing import Any
 from uuid import UUID
 
 from django.db import transaction
-from django.db.models import F, Q
+from django.db.models import F
 from django.db.models.functions import Now
 from django.utils import timezone
 
@@ -19,6 +19,7 @@ from missions.models import LinkKind, MissionState
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState
 from simulation.services.simulations import end_now, end_vehicles_now, note
 from simulation.vehicle_models import PRESENT
+from workspace.leases import is_free_for, release, renew, take
 
 AFTER_MISSION = timedelta(minutes=10)  # what stands in for a mission's UAVs stays so long after it is over
 OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
@@ -39,8 +40,7 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
     """
     with transaction.atomic():
         now = timezone.now()
-        free = Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()) | Q(holder__startswith=f"{_name(holder)}/")
-        waiting = Simulation.objects.filter(free, state__in=PRESENT).exclude(pk__in=flown)
+        waiting = Simulation.objects.filter(is_free_for(holder, lease_s=lease_s), state__in=PRESENT).exclude(pk__in=flown)
         for simulation in waiting.select_for_update(skip_locked=True, of=("self",)).order_by("created_at"):
             if (reason := _why_over(simulation)) is not None:
                 _end(simulation, reason)
@@ -50,9 +50,7 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
             vehicles = _to_fly(simulation)
             if not vehicles:
                 continue
-            Simulation.objects.filter(pk=simulation.pk).update(
-                state=SimulationState.FLYING, holder=holder, lease_expires_at=Now() + timedelta(seconds=lease_s)
-            )
+            take(Simulation.objects.filter(pk=simulation.pk), holder=holder, lease_s=lease_s, state=SimulationState.FLYING)
             # The air is stored with each vehicle, the speed with the simulation; the faults of a lost flight went with it.
             is_first = simulation.restarts == 0
             if not is_first:
@@ -63,14 +61,12 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
 
 def renew_simulations(*, holder: str, ids: Collection[UUID], lease_s: float) -> set[UUID]:
     """Those that are still held."""
-    held = Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT)
-    held.update(lease_expires_at=Now() + timedelta(seconds=lease_s))
-    return set(held.values_list("pk", flat=True))
+    return set(renew(Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT), lease_s=lease_s))
 
 
 def release_simulations(*, holder: str) -> None:
     """Whoever takes them finds them as if this simulator had been lost: there is no going on in mid-air."""
-    Simulation.objects.filter(holder=holder).update(holder="", lease_expires_at=None)
+    release(Simulation.objects.filter(holder=holder), holder="")
 
 
 def end_those_over(*, holder: str, ids: Collection[UUID]) -> set[UUID]:
@@ -170,7 +166,3 @@ def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
 def _is_gone(vehicle: SimulatedVehicle) -> bool:
     """What flew, and what had crashed: neither stands on the ground whole."""
     return bool(vehicle.told.get("is_in_air") or vehicle.told.get("is_crashed"))
-
-
-def _name(holder: str) -> str:
-    return holder.rsplit("/", 1)[0]

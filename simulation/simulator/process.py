@@ -36,7 +36,7 @@ from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
 from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.live.lease_times import held_until_s
+from workspace.leases import held_until_s
 
 logger = logging.getLogger(__name__)
 INTERVAL_S = 0.5

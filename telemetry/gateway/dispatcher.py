@@ -20,7 +20,7 @@ from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
-from workspace.live.lease_times import held_until_s
+from workspace.leases import held_until_s
 from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)

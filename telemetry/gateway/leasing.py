@@ -12,7 +12,7 @@ from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
 from telemetry.services.links.links import UNHEARD_S, renew_leases, take_leases
-from workspace.live.lease_times import held_until_s
+from workspace.leases import held_until_s
 from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)

@@ -1,12 +1,13 @@
 """What a gateway is started with."""
 
 import re
-import secrets
 import socket
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from django.conf import settings
+
+from workspace.leases import HolderOptions, holder_name
 
 OWN_SYSTEM, OWN_COMPONENT = 255, 190  # those of ground stations; MAV_COMP_ID_MISSIONPLANNER
 
@@ -36,23 +37,16 @@ def _address(entry: str) -> Address:
     return Address(found[1] or found[3], int(found[2] or found[4]))
 
 
-@dataclass(frozen=True)
-class Options:
-    """`name` is the same at every start of one gateway, and no other's; `holder` is of this run alone."""
+@dataclass(frozen=True, kw_only=True)
+class Options(HolderOptions):
+    """What a gateway listens on, and how much of what it hears it keeps until it is stored."""
 
     udp: list[Address]
     tcp: list[Address]
-    name: str
     log_dir: Path
-    run: str = field(default_factory=lambda: secrets.token_hex(4))
-    lease_s: float = 10.0
     flush_s: float = 0.2
     most_records: int = 100_000
     log_mib: float = 256.0
-
-    @property
-    def holder(self) -> str:
-        return f"{self.name}/{self.run}"
 
 
 def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name: str | None = None) -> Options:
@@ -63,7 +57,7 @@ def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name:
     return Options(
         udp=udp_addresses,
         tcp=tcp_addresses,
-        name=re.sub(r"[^\w.-]", "-", name or settings.GATEWAY_NAME or usual)[:80],
+        name=holder_name(name or settings.GATEWAY_NAME or usual),
         log_dir=Path(settings.FLIGHT_LOG_DIR),
         most_records=settings.GATEWAY_MAX_RECORDS,
         log_mib=settings.MAX_FLIGHT_LOG_MIB,

@@ -11,37 +11,21 @@ from datetime import UTC, datetime
 from typing import Any
 from uuid import UUID
 
-from django.db import connection
+from django.db import connection, transaction
+from django.db.models import F
+from django.db.models.functions import Now
 
 from telemetry.estimation.estimate import Arrival, Estimate
+from telemetry.models import UavWatch
+from workspace.leases import is_free, is_free_for, release, renew, take
 
-_TAKE = """
-INSERT INTO telemetry_uavwatch (uav_id, organisation_id, mission_id, holder, lease_expires_at)
-SELECT uav.id, uav.organisation_id, wanted.mission, %(holder)s, now() + make_interval(secs => %(lease_s)s)
-FROM unnest(%(uav_ids)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) JOIN missions_uav uav ON uav.id = wanted.uav
-ORDER BY uav.id
-ON CONFLICT (uav_id) DO UPDATE SET
-    holder = excluded.holder, lease_expires_at = excluded.lease_expires_at, organisation_id = excluded.organisation_id,
-    mission_id = excluded.mission_id
-WHERE telemetry_uavwatch.holder IN ('', excluded.holder)
-    OR split_part(telemetry_uavwatch.holder, '/', 1) = split_part(excluded.holder, '/', 1)
-    OR telemetry_uavwatch.lease_expires_at IS NULL OR telemetry_uavwatch.lease_expires_at < now()
-RETURNING uav_id
+_ADD = """
+INSERT INTO telemetry_uavwatch (uav_id, organisation_id, holder)
+SELECT uav.id, uav.organisation_id, '' FROM missions_uav uav WHERE uav.id = ANY(%s) ORDER BY uav.id ON CONFLICT (uav_id) DO NOTHING
 """
-_RENEW = """
-UPDATE telemetry_uavwatch watch SET lease_expires_at = now() + make_interval(secs => %s)
-FROM (SELECT uav_id FROM telemetry_uavwatch WHERE uav_id = ANY(%s) AND holder = %s ORDER BY uav_id FOR UPDATE) held
-WHERE watch.uav_id = held.uav_id RETURNING watch.uav_id
-"""
-_RELEASE = """
-UPDATE telemetry_uavwatch SET holder = '', lease_expires_at = NULL, estimated = CASE WHEN %(is_over)s THEN NULL ELSE estimated END,
-    mission_id = CASE WHEN %(is_over)s THEN NULL ELSE mission_id END, version = version + 1, updated_at = now()
-WHERE holder = %(holder)s AND (%(uav_ids)s::bigint[] IS NULL OR uav_id = ANY(%(uav_ids)s))
-"""
-_FORGET_OVER = """
-UPDATE telemetry_uavwatch SET estimated = NULL, mission_id = NULL, holder = '', lease_expires_at = NULL, version = version + 1,
-    updated_at = now()
-WHERE mission_id IS NOT NULL AND NOT uav_id = ANY(%s) AND (lease_expires_at IS NULL OR lease_expires_at < now())
+_SET_MISSIONS = """
+UPDATE telemetry_uavwatch watch SET mission_id = wanted.mission, organisation_id = uav.organisation_id
+FROM unnest(%s::bigint[], %s::uuid[]) AS wanted(uav, mission) JOIN missions_uav uav ON uav.id = wanted.uav WHERE watch.uav_id = uav.id
 """
 _SHOW = """
 UPDATE telemetry_uavwatch watch SET estimated = made.estimated, mission_id = made.mission, version = version + 1, updated_at = now()
@@ -53,6 +37,8 @@ FROM (
 WHERE watch.uav_id = made.uav
 RETURNING watch.uav_id, watch.organisation_id
 """
+_CHANGED: dict[str, Any] = {"holder": "", "version": F("version") + 1, "updated_at": Now()}
+_IS_OVER: dict[str, Any] = {"estimated": None, "mission": None}
 _REPLACE = """
 UPDATE telemetry_positionestimate estimate SET replaced_at = now() FROM unnest(%s::bigint[], %s::timestamptz[]) AS report(uav, second)
 WHERE estimate.uav_id = report.uav AND estimate.estimated_for = report.second AND estimate.replaced_at IS NULL
@@ -137,26 +123,33 @@ class Made:
 
 def take_watches(*, missions: dict[int, UUID], holder: str, lease_s: float) -> set[int]:
     """Those of the UAVs, given with the mission that each flies, that the watch holds from now on. holder: "name/run"."""
-    uav_ids = sorted(missions)
-    values = {"uav_ids": uav_ids, "missions": [missions[uav_id] for uav_id in uav_ids], "holder": holder, "lease_s": lease_s}
-    return _uav_ids(_TAKE, values)
+    with transaction.atomic():
+        with connection.cursor() as cursor:
+            cursor.execute(_ADD, [sorted(missions)])
+        may_take = UavWatch.objects.filter(is_free_for(holder, lease_s=lease_s), uav__in=missions)
+        taken = [watch.uav_id for watch in take(may_take, holder=holder, lease_s=lease_s)]
+        if taken:
+            with connection.cursor() as cursor:
+                cursor.execute(_SET_MISSIONS, [taken, [missions[uav_id] for uav_id in taken]])
+    return set(taken)
 
 
 def renew_watches(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
     """Those that are still held."""
-    return _uav_ids(_RENEW, [lease_s, sorted(uav_ids), holder])
+    return set(renew(UavWatch.objects.filter(uav__in=uav_ids, holder=holder), lease_s=lease_s))
 
 
 def release_watches(*, holder: str, uav_ids: Collection[int] | None = None, is_over: bool = False) -> None:
     """All of the holder, or these. is_over: they fly no mission any more, and nothing is estimated of them."""
-    with connection.cursor() as cursor:
-        cursor.execute(_RELEASE, {"holder": holder, "is_over": is_over, "uav_ids": None if uav_ids is None else sorted(uav_ids)})
+    held = UavWatch.objects.filter(holder=holder)
+    if uav_ids is not None:
+        held = held.filter(uav__in=uav_ids)
+    release(held, **_CHANGED, **(_IS_OVER if is_over else {}))
 
 
 def forget_what_is_over(*, flying: Collection[int]) -> None:
     """Estimates that a watch left behind when it died, of UAVs that fly no mission by now."""
-    with connection.cursor() as cursor:
-        cursor.execute(_FORGET_OVER, [sorted(flying)])
+    release(UavWatch.objects.filter(is_free(), mission__isnull=False).exclude(uav__in=flying), **_CHANGED, **_IS_OVER)
 
 
 def show_estimates(*, made: Sequence[Made], holder: str) -> dict[int, int]:
@@ -204,9 +197,3 @@ def _row(one: Made) -> dict[str, Any]:
         "waypoint_sequence": estimate.waypoint_sequence,
         "is_lost": estimate.is_lost,
     }
-
-
-def _uav_ids(statement: str, values: Any) -> set[int]:
-    with connection.cursor() as cursor:
-        cursor.execute(statement, values)
-        return {uav_id for (uav_id,) in cursor.fetchall()}

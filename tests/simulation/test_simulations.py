@@ -138,7 +138,7 @@ def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
         port = other.getsockname()[1]
         settings.SIMULATOR_PORTS = f"{port}-{port}"
         simulation = pool(person, 1)
-        simulator = Simulator(Options("one", 10.0, ("127.0.0.1", 1), "127.0.0.1"))
+        simulator = Simulator(Options(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1"))
         simulator.round()
     told = simulation_json(fresh(simulation))
     assert (told["state"], told["reason"]) == ("failed", "port-taken"), told
@@ -229,7 +229,7 @@ def test_what_a_simulator_had_to_give_up_it_takes_again(person):
 
 def test_nothing_flies_beyond_its_lease_while_the_database_neither_answers_nor_refuses(person):
     simulation = pool(person, 1)
-    simulator = Simulator(Options("one", 10.0, ("127.0.0.1", 1), "127.0.0.1", lease_s=1.0))
+    simulator = Simulator(Options(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1", lease_s=1.0))
     simulator.round()
     flight = simulator.flights[simulation.pk]
     wait_for(lambda: flight.is_given_up, "the end of the lease, which nobody renews")

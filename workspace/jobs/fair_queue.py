@@ -3,11 +3,12 @@
 from datetime import timedelta
 from uuid import UUID
 
-from django.db import connection, transaction
+from django.db import transaction
 from django.db.models import Count, Max, Min, Q
 from django.utils import timezone
 
 from workspace.jobs.services import start_job
+from workspace.leases import lock_until_end
 from workspace.models import Job, JobState
 
 TURNS_LOCK = 0x05A7_0030  # advisory lock: one worker at a time chooses
@@ -21,8 +22,7 @@ def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
     ends. A job whose worker was lost goes on before any other.
     """
     with transaction.atomic():
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT pg_advisory_xact_lock(%s)", [TURNS_LOCK])
+        lock_until_end(TURNS_LOCK)
         job = Job.objects.filter(pk=job_id).first()
         if job is None:
             return None

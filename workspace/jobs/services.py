@@ -8,10 +8,12 @@ from uuid import UUID
 from celery import current_app
 from django.conf import settings
 from django.db import transaction
-from django.db.models import Q
+from django.db.models import F, Q, QuerySet
+from django.db.models.functions import Now
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from workspace.leases import from_now, is_free, release
 from workspace.live.changes import publish_job
 from workspace.models import (
     OPEN_STATES,
@@ -67,7 +69,6 @@ def refuse_jobs_beyond(limit: int, *, user: User, task: str) -> None:
 
 def start_job(*, job_id: UUID | str) -> Job | None:
     """Take the job for this worker, or return None if it is finished, cancelled or held by another worker."""
-    now = timezone.now()
     with transaction.atomic():
         job = Job.objects.select_for_update().filter(pk=job_id).first()
         if job is None or not job.is_open:
@@ -80,12 +81,9 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job.state == JobState.RUNNING and (_attempts_lost(job) >= MAX_ATTEMPTS or _has_used_its_time(job)):
             _give_up(job)
             return None
-        job.state = JobState.RUNNING
-        job.attempts += 1
-        job.started_at = now
-        job.lease_expires_at = now + timedelta(seconds=LEASE_S)
-        job.best = None
-        job.save()
+        values = {"state": JobState.RUNNING, "attempts": F("attempts") + 1, "started_at": Now(), "best": None}
+        Job.objects.filter(pk=job.pk).update(**values, lease_expires_at=from_now(LEASE_S))
+        job.refresh_from_db()
         transaction.on_commit(partial(publish_job, job.pk))
     return job
 
@@ -96,8 +94,8 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
     Raises JobCancelled when the user has asked to stop (the lease is renewed all the same: what was found is still to be kept), and
     JobLost when this worker does not hold the job any more.
     """
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
-    values: dict[str, Any] = {"lease_expires_at": timezone.now() + timedelta(seconds=LEASE_S)}
+    held = _held(job)
+    values: dict[str, Any] = {"lease_expires_at": from_now(LEASE_S)}
     told = values | {"progress": min(max(progress, 0.0), 1.0), "message": message[:300]} | ({} if best is None else {"best": best})
     if not held.filter(cancel_requested_at=None).update(**told):
         raise JobCancelled if held.update(**values) else JobLost
@@ -106,8 +104,7 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
 
 def give_back_job(*, job: Job) -> bool:
     """The worker is told to stop: whoever gets the job's message next goes on with it at once, without waiting for the lease to run out."""
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
-    return bool(held.update(state=JobState.QUEUED, lease_expires_at=timezone.now() + timedelta(seconds=LEASE_S)))
+    return bool(release(_held(job), after_s=LEASE_S, state=JobState.QUEUED))
 
 
 def pause_job(*, job: Job, progress: float, message: str, pause_s: float) -> None:
@@ -116,10 +113,8 @@ def pause_job(*, job: Job, progress: float, message: str, pause_s: float) -> Non
     Attempts until now count no longer as lost. A job that is to be cancelled ends. Nothing happens if another worker has taken it over.
     """
     parameters = job.parameters | {_ATTEMPTS_BEFORE: job.attempts}
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None)
-    again_at = timezone.now() + timedelta(seconds=pause_s)
-    told = {"progress": progress, "message": message[:300], "parameters": parameters, "lease_expires_at": again_at}
-    if held.update(state=JobState.QUEUED, **told):
+    told = {"progress": progress, "message": message[:300], "parameters": parameters}
+    if release(_held(job).filter(cancel_requested_at=None), after_s=pause_s, state=JobState.QUEUED, **told):
         publish_job(job.pk)
     else:
         confirm_cancelled(job=job)
@@ -131,7 +126,7 @@ def _attempts_lost(job: Job) -> int:
 
 
 def cancel_is_requested(*, job: Job) -> bool:
-    return not Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None).exists()
+    return not _held(job).filter(cancel_requested_at=None).exists()
 
 
 def finish_job(*, job: Job, result: Any = None, message: str = "") -> bool:
@@ -145,11 +140,15 @@ def fail_job(*, job: Job, code: str, message: str) -> None:
 
 def _end(job: Job, **values: Any) -> bool:
     """End the job if this attempt still holds it. An attempt whose lease another one has taken ends nothing."""
-    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
-    ended = bool(held.update(**values, best=None, finished_at=timezone.now(), lease_expires_at=None))
+    ended = bool(release(_held(job), **values, best=None, finished_at=timezone.now()))
     if ended:
         transaction.on_commit(partial(publish_job, job.pk))
     return ended
+
+
+def _held(job: Job) -> QuerySet[Job]:
+    """The job's row while this attempt holds it: what stands for the holder's name in other leases."""
+    return Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
 
 
 def _has_used_its_time(job: Job) -> bool:
@@ -195,21 +194,19 @@ def requeue_lost_jobs() -> list[Job]:
 
     The lease of a queued job is the time until which a message for it is believed to be on its way.
     """
-    now = timezone.now()
-    patience = timedelta(seconds=QUEUE_TIMEOUT_S)
     lost = []
     with transaction.atomic():
-        for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
+        for job in Job.objects.select_for_update(skip_locked=True).filter(is_free(), state=JobState.RUNNING):
             if job.cancel_requested_at is not None:
                 confirm_cancelled(job=job)
             elif _attempts_lost(job) >= MAX_ATTEMPTS or _has_used_its_time(job):
                 _give_up(job)
             else:
-                Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=now)
+                release(Job.objects.filter(pk=job.pk), state=JobState.QUEUED)
                 lost.append(job.pk)  # sent at once, however new it is
-        is_due = Q(pk__in=lost) | Q(lease_expires_at=None, created_at__lt=now - patience) | Q(lease_expires_at__lt=now)
+        is_due = Q(pk__in=lost) | Q(lease_expires_at=None, created_at__lt=from_now(-QUEUE_TIMEOUT_S)) | Q(lease_expires_at__lt=Now())
         jobs = list(Job.objects.select_for_update(skip_locked=True).filter(is_due, state=JobState.QUEUED))
-        Job.objects.filter(pk__in=[job.pk for job in jobs]).update(lease_expires_at=now + patience)
+        Job.objects.filter(pk__in=[job.pk for job in jobs]).update(lease_expires_at=from_now(QUEUE_TIMEOUT_S))
     return jobs
 
 

@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import count
 
-from django.db import connection
 from django.db.models import Q
 from django.utils import timezone
 
 from missions.models import Mission, MissionState, MissionUav
 from missions.selectors.events import SHOWN_AFTER_END
+from workspace.leases import lock_until_end
 
 CALL_NUMBERS_LOCK = 0x05A7_0032  # advisory lock, with the organisation
 ROUTE_COLOURS = 8  # of static/css/tokens.css
@@ -20,8 +20,7 @@ def give_call_sign(mission: Mission) -> None:
 
     The number is the smallest that no other mission has which live pages of the organisation show.
     """
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s, %s)", [CALL_NUMBERS_LOCK, mission.organisation_id])
+    lock_until_end(CALL_NUMBERS_LOCK, mission.organisation_id)
     is_shown = Q(state__in=[MissionState.DISPATCHED, MissionState.ACTIVE]) | Q(ended_at__gt=timezone.now() - SHOWN_AFTER_END)
     others = Mission.objects.filter(is_shown, organisation=mission.organisation_id).exclude(pk=mission.pk)
     taken = set(others.values_list("call_number", flat=True))

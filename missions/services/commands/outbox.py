@@ -32,28 +32,13 @@ from missions.models import (
 )
 from missions.services.commands.refused import refuse
 from workspace.audit import record_change
+from workspace.leases import from_now, is_free, release, renew, take
 from workspace.live.changes import publish_live
 from workspace.models import User
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"
 WITHDRAWN = "withdrawn"
-
-_CLAIM = """
-    WITH wanted AS (
-        SELECT id FROM missions_uavcommand
-        WHERE uav_id = ANY(%s) AND state IN ('queued', 'sent', 'acknowledged')
-            AND (%s::text IS NULL OR (link = %s::text
-                AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
-            AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
-            AND (NOT %s OR (priority = %s AND NOT parameters ?| %s::text[]))
-            AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
-            AND (expires_at IS NULL OR expires_at > statement_timestamp())
-        ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
-    )
-    UPDATE missions_uavcommand AS command
-    SET holder = %s, attempts = attempts + 1, lease_expires_at = statement_timestamp() + make_interval(secs => %s)
-    FROM wanted WHERE command.id = wanted.id RETURNING command.*"""
 
 
 def queue_command(
@@ -76,7 +61,7 @@ def queue_command(
     takes it before.
     """
     wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
-    waits = {"lease_expires_at": Now() + timedelta(seconds=wait_s)} if wait_s > 0.0 else {}
+    waits = {"lease_expires_at": from_now(wait_s)} if wait_s > 0.0 else {}
     with transaction.atomic():
         link = Uav.objects.select_for_update(no_key=True).values_list("link", flat=True).get(pk=uav.pk)
         overtaken = UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind))
@@ -136,11 +121,15 @@ def claim_commands(
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
-    about = None if axes is None else [str(axis) for axis in axes]
-    with transaction.atomic():
-        unheard = [to_unheard, CommandPriority.SAFETY, [HAND_OVER, ALONG_ROUTE]]
-        values = [list(uav_ids), link, link, link, about, about, *unheard, limit, holder, lease_s]
-        found = list(UavCommand.objects.raw(_CLAIM, values))
+    waiting = UavCommand.objects.filter(is_free(), _wanted(), uav__in=uav_ids, state__in=OPEN_COMMANDS)
+    if link is not None:
+        waiting = waiting.filter(link=link, uav__link=link)
+    if axes is not None:
+        waiting = waiting.filter(axis__in=axes)
+    if to_unheard:
+        waiting = waiting.filter(priority=CommandPriority.SAFETY).exclude(parameters__has_any_keys=[HAND_OVER, ALONG_ROUTE])
+    urgent = waiting.order_by("priority", "created_at", "sequence")[:limit]
+    found = take(urgent, holder=holder, lease_s=lease_s, skip_locked=True, attempts=F("attempts") + 1)
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))
 
 
@@ -149,20 +138,19 @@ def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
 
     What was not sent in its time is no longer held.
     """
-    with transaction.atomic():
-        held = UavCommand.objects.select_for_update().filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
-        held = held.exclude(sent_at=None, expires_at__lte=Now())
-        attempts = dict(held.order_by("pk").values_list("pk", "attempts"))
-        UavCommand.objects.filter(pk__in=attempts).update(lease_expires_at=Now() + timedelta(seconds=lease_s))
-    return attempts
+    held = UavCommand.objects.filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
+    return renew(held.exclude(sent_at=None, expires_at__lte=Now()), lease_s=lease_s, column="attempts")
 
 
 def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
-    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many."""
+    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many.
+
+    The row keeps its holder, which the history of the command names, until another one takes it.
+    """
     if not uav_ids:
         return 0
     held = UavCommand.objects.filter(uav__in=uav_ids, link=LinkKind.MAVLINK, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
-    return held.exclude(holder__in=["", holder]).update(lease_expires_at=None)
+    return release(held.exclude(holder__in=["", holder]))
 
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
@@ -227,14 +215,14 @@ def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder
 
 def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "", code: str = "") -> bool:
     """Given back, for anybody to take after so many seconds. With a `code` the row keeps why it has to wait, which `note` tells."""
-    back: dict[str, Any] = {"holder": "", "lease_expires_at": Now() + timedelta(seconds=retry_in_s) if retry_in_s else None}
+    back: dict[str, Any] = {"holder": "", "lease_expires_at": from_now(retry_in_s) if retry_in_s else None}
     back |= {"outcome_code": code[:50], "outcome": note[:500]} if code else {}
     return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
 
 
 def expire_overdue() -> int:
     """End what nobody wants any more and nobody is carrying; returns how many. Of one that had to wait the reason is kept."""
-    overdue = UavCommand.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), expires_at__lte=Now())
+    overdue = UavCommand.objects.filter(is_free(), expires_at__lte=Now())
     with transaction.atomic():
         unsent = overdue.filter(sent_at=None)
         never = _end(unsent.filter(outcome_code=""), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)

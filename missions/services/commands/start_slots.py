@@ -6,7 +6,6 @@ from datetime import datetime, timedelta
 
 import numpy as np
 from django.conf import settings
-from django.db import connection
 from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
@@ -20,6 +19,7 @@ from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.refused import Reason
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts, keep_apart
+from workspace.leases import lock_until_end
 
 START_SLOT = "start-slot"  # what a command failed with
 OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same
@@ -31,8 +31,7 @@ KEPT_SHARE = 0.5  # of the planned time between two UAVs, which has to be left a
 
 def hold_starts(organisation_id: int) -> None:
     """One start of an organisation is decided on at a time, to the end of the transaction."""
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s, %s)", [STARTS_LOCK, organisation_id])
+    lock_until_end(STARTS_LOCK, organisation_id)
 
 
 def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[Reason]:

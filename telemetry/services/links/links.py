@@ -11,9 +11,12 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from django.db import connection
+from django.db.models import Q
 
 from missions.services.commands.commands import release_claims_of_others
+from telemetry.models import UavLink
 from telemetry.services.waypoints import lists_on
+from workspace.leases import from_now, is_free_for, release, renew, take
 
 NAMESAKE_S = 2.5  # a gateway that runs renews its leases more often
 UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
@@ -69,50 +72,44 @@ class LinkState:
     received_messages_s: float | None = None
 
 
-TAKE = """
-INSERT INTO telemetry_uavlink
-    (uav_id, holder, lease_expires_at, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
-SELECT uav.id, %(holder)s, now() + make_interval(secs => %(lease_s)s), '', '', '', '', '', '[]', '{}', '{}', '{}'
-FROM missions_uav uav WHERE uav.id = ANY(%(uav_ids)s) ORDER BY uav.id
-ON CONFLICT (uav_id) DO UPDATE SET holder = excluded.holder, lease_expires_at = excluded.lease_expires_at
-WHERE telemetry_uavlink.holder IN ('', excluded.holder)
-    OR (split_part(telemetry_uavlink.holder, '/', 1) = split_part(excluded.holder, '/', 1)
-        AND telemetry_uavlink.lease_expires_at < now() + make_interval(secs => %(lease_s)s - %(namesake_s)s))
-    OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
-    OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
-RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_armed AND is_in_air THEN mode ELSE '' END, mission_item
+_ADD = """
+INSERT INTO telemetry_uavlink (uav_id, holder, address, autopilot, firmware, mode, loaded_sha256, boots, signing, losses, limits)
+SELECT uav.id, '', '', '', '', '', '', '[]', '{}', '{}', '{}' FROM missions_uav uav WHERE uav.id = ANY(%s) ORDER BY uav.id
+ON CONFLICT (uav_id) DO NOTHING
 """
 
 
 def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> list[Lease]:
     """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
-    values: dict[str, list[int] | str | float] = {
-        "uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S, "namesake_s": NAMESAKE_S,
-    }  # fmt: skip
     with connection.cursor() as cursor:
-        cursor.execute(TAKE, values)
-        rows = cursor.fetchall()
-    release_claims_of_others(uav_ids=[uav_id for uav_id, *_ in rows], holder=holder)
-    return [
-        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits), mode, item)
-        for uav_id, signing, boots, losses, sha256, limits, mode, item in rows
-    ]
+        cursor.execute(_ADD, [sorted(uav_ids)])
+    may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(heard_at__lt=from_now(-UNHEARD_S))
+    links = take(UavLink.objects.filter(may_take, uav__in=uav_ids), holder=holder, lease_s=lease_s)
+    release_claims_of_others(uav_ids=[link.uav_id for link in links], holder=holder)
+    return [_lease_of(link) for link in links]
 
 
 def renew_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
     """Those that are still held."""
-    with connection.cursor() as cursor:
-        cursor.execute(
-            "UPDATE telemetry_uavlink SET lease_expires_at = now() + make_interval(secs => %s) "
-            "WHERE uav_id = ANY(%s) AND holder = %s RETURNING uav_id",
-            [lease_s, sorted(uav_ids), holder],
-        )
-        return {uav_id for (uav_id,) in cursor.fetchall()}
+    return set(renew(UavLink.objects.filter(uav__in=uav_ids, holder=holder), lease_s=lease_s))
 
 
 def release_leases(*, holder: str) -> None:
-    with connection.cursor() as cursor:
-        cursor.execute("UPDATE telemetry_uavlink SET holder = '', lease_expires_at = NULL WHERE holder = %s", [holder])
+    release(UavLink.objects.filter(holder=holder), holder="")
+
+
+def _lease_of(link: UavLink) -> Lease:
+    was_in_air = link.is_armed and link.is_in_air
+    return Lease(
+        uav_id=link.uav_id,
+        signing=link.signing,
+        boots=link.boots,
+        losses=link.losses,
+        loaded_sha256=link.loaded_sha256,
+        limits=link.limits,
+        mode_in_air=link.mode if was_in_air else "",
+        mission_item=link.mission_item,
+    )
 
 
 _TYPES = {
@@ -148,8 +145,3 @@ def save_links(*, states: Sequence[LinkState], holder: str) -> None:
 
 def _stored(value: Any, kind: str) -> Any:
     return json.dumps(value) if kind == "jsonb" else value
-
-
-def _json(value: Any) -> Any:
-    """Django's connection leaves jsonb as text."""
-    return json.loads(value) if isinstance(value, str) else value

@@ -56,7 +56,9 @@ def gateway_at_work(log_dir: Path, *, name: str = "test", **options: Any) -> Ite
         asyncio.run(serve())
 
     async def serve() -> None:
-        gateway = Gateway(Options([Address("127.0.0.1", 0)], [Address("127.0.0.1", 0)], name, log_dir, flush_s=0.05, **options))
+        gateway = Gateway(
+            Options(udp=[Address("127.0.0.1", 0)], tcp=[Address("127.0.0.1", 0)], name=name, log_dir=log_dir, flush_s=0.05, **options)
+        )
         made.extend([gateway, asyncio.get_running_loop()])
         await gateway.run(on_listening=lambda _: started.set())
 

@@ -49,7 +49,7 @@ def flying(*, is_simulated: bool) -> list[Uav]:
 
 def alerts_of(uavs: list[Uav]) -> set[str]:
     """They fly at each other at one height."""
-    watch = Watch(Options("one", 100, "1"))
+    watch = Watch(Options(name="one", most_uavs=100, run="1"))
     for second in range(12):
         at = NOW + timedelta(seconds=second)
         for uav, side in zip(uavs, (-1.0, 1.0), strict=True):

@@ -40,7 +40,7 @@ def report(uav: Uav, second: float, **values) -> None:
 
 
 def watch(name: str = "one", run: str = "1", **options) -> Watch:
-    return Watch(Options(name, 100, run, **options))
+    return Watch(Options(name=name, most_uavs=100, run=run, **options))
 
 
 def seconds(**of) -> list[float]:
