@@ -2,11 +2,12 @@
 
 import re
 from collections import Counter
+from collections.abc import Iterator
 from pathlib import Path
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 TEXT = (PROJECT_DIR / "docs" / "security.md").read_text()
-ROWS = re.findall(r"^\| (\d+)\.(\d+)\.(\d+) \| ([^|]+) \| (met|in part|not met|n/a) \| ([^|]+) \|$", TEXT, flags=re.MULTILINE)
+LINE = re.compile(r"^\| (\d+\.\d+\.\d+)(?: to (\d+\.\d+\.\d+))? \| [^|]+ \| (met|in part|not met|n/a) \| ([^|]+) \|$", re.MULTILINE)
 VERDICTS = ("met", "in part", "not met", "n/a")
 
 # By section, the numbers of the requirements of levels 1 and 2 (those of level 3 are left out).
@@ -33,22 +34,36 @@ WANTED = {
 }  # fmt: skip
 
 
+REQUIREMENTS = [f"{section}.{number}" for section, numbers in WANTED.items() for number in numbers]
+
+
+def answers() -> Iterator[tuple[str, str, str]]:
+    """Yield requirement, verdict and evidence; a line `10.1.1 to 10.1.2` answers all requirements from the first to the last."""
+    for first, last, verdict, evidence in LINE.findall(TEXT):
+        for requirement in REQUIREMENTS[REQUIREMENTS.index(first) : REQUIREMENTS.index(last or first) + 1]:
+            yield requirement, verdict, evidence
+
+
 def test_every_requirement_is_answered_once() -> None:
-    wanted = [f"{section}.{number}" for section, numbers in WANTED.items() for number in numbers]
-    assert [".".join(row[:3]) for row in ROWS] == wanted
-    assert len(wanted) == 253
+    assert [requirement for requirement, _, _ in answers()] == REQUIREMENTS
+    assert len(REQUIREMENTS) == 253
+
+
+def test_only_requirements_that_do_not_apply_share_a_line() -> None:
+    assert [(first, last) for first, last, verdict, _ in LINE.findall(TEXT) if last and verdict != "n/a"] == []
 
 
 def test_what_is_not_met_says_why() -> None:
-    assert [row[:3] for row in ROWS if row[4] in ("not met", "in part") and len(row[5]) < 20] == []
+    assert [number for number, verdict, evidence in answers() if verdict in ("not met", "in part") and len(evidence) < 20] == []
 
 
 def test_the_counts_are_those_of_the_lines() -> None:
-    counts = Counter((row[0], row[4]) for row in ROWS)
-    for chapter, told in re.findall(r"^\| V(\d+) [^|]+ \| ([^\n]+) \|$", TEXT, flags=re.MULTILINE):
-        assert [int(number) for number in told.split(" | ")] == [counts[chapter, verdict] for verdict in VERDICTS], chapter
-    told = re.findall(r"^\| all 253 \| ([^\n]+) \|$", TEXT, flags=re.MULTILINE)[0]
-    assert [int(number) for number in told.split(" | ")] == [sum(row[4] == verdict for row in ROWS) for verdict in VERDICTS]
+    counts = Counter((requirement.partition(".")[0], verdict) for requirement, verdict, _ in answers())
+    for chapter, stated in re.findall(r"^\| V(\d+) [^|]+ \| ([^\n]+) \|$", TEXT, flags=re.MULTILINE):
+        assert [int(number) for number in stated.split(" | ")] == [counts[chapter, verdict] for verdict in VERDICTS], chapter
+    stated = re.findall(r"^\| all 253 \| ([^\n]+) \|$", TEXT, flags=re.MULTILINE)[0]
+    totals = Counter(verdict for _, verdict, _ in answers())
+    assert [int(number) for number in stated.split(" | ")] == [totals[verdict] for verdict in VERDICTS]
 
 
 def test_every_test_and_file_that_is_named_exists() -> None:
