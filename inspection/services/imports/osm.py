@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import shapely
-from django.db import connection, transaction
+from django.db import transaction
 from django.db.backends.utils import CursorWrapper
 from django.db.models import Count
 from django.utils.dateparse import parse_datetime
@@ -20,20 +20,44 @@ from django.utils.translation import gettext as _
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
 from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
-from inspection.models import Asset, DataImport, ImportKind
+from inspection.models import ROW_ACTIONS, Asset, ChangeAction, DataImport, ImportKind
 from inspection.services.ground import hold_ground, mark_ground_changed
-from inspection.services.imports import osm_merge
+from inspection.services.imports.asset_merge import UNCHANGED, Merge, Sample, Source, staging
 from inspection.services.proposals.reading import Provenance
 from inspection.services.supports import number_supports
-from workspace.models import DEFAULT_ORGANISATION_ID, User
+from workspace.models import User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
 SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of what they cover together
 EXTENT_MARGIN_DEG = 0.01
-MANY_NEW = 10_000  # rows after which all that the planner knows of the assets is out of date
 HANDFUL = 10  # of one subtype; so few can really all be gone, more of them missing at once were filtered out of the file
 
+_IS_NEWER = "EXISTS (SELECT FROM inspection_dataimport i WHERE i.id = a.data_import_id AND i.data_timestamp > %(timestamp)s)"
+
 Progress = Callable[[str, float], None]
+
+
+# Files of different regions, even neighbours that overlap, say nothing about each other: only rows written by an import whose extent is
+# nearly this one's may vanish, of these only what the header's box holds, if it states one.
+OPENSTREETMAP = Source(
+    same="a.kind = s.kind AND a.osm_type = s.osm_type AND a.osm_id = s.osm_id",
+    newer=_IS_NEWER,
+    missing=f"""
+a.osm_id IS NOT NULL AND NOT a.is_edited AND a.vanished_at IS NULL
+AND (a.data_import_id = ANY(%(sources)s) OR %(whole_region)s)
+AND a.kind || ' ' || a.subtype <> ALL(%(filtered_out)s)
+AND NOT {_IS_NEWER}
+AND (%(box)s::geometry IS NULL OR ST_Intersects(ST_Points(a.geometry), %(box)s::geometry))""",
+    facts=("osm_type", "osm_id", "node_osm_ids", "parts", "content_hash"),
+    order="a.id, s.kind, s.osm_id",
+)
+# Of an object that stands twice in a file the last one counts.
+_KEEP_THE_LAST = """
+DELETE FROM asset_staging s USING (
+    SELECT kind, osm_type, osm_id, max(id) AS last FROM asset_staging GROUP BY kind, osm_type, osm_id HAVING count(*) > 1
+) twice
+WHERE s.kind = twice.kind AND s.osm_type = twice.osm_type AND s.osm_id = twice.osm_id AND s.id <> twice.last
+"""
 
 
 @dataclass(frozen=True)
@@ -42,7 +66,7 @@ class OsmDifference:
 
     counts: dict[str, Any]  # what is in the file
     numbers: dict[str, int]
-    samples: dict[str, list[tuple[Any, ...]]]  # by action: kind, id of the asset, label, WKB, facts before and after
+    samples: dict[ChangeAction, list[Sample]]
 
 
 def import_osm(
@@ -69,35 +93,19 @@ def import_osm(
             hold_ground()
             data_import = DataImport.objects.create(
                 kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
-                attribution=SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution,
-                data_timestamp=_timestamp(content.data_timestamp), **_origin(provenance),
+                data_timestamp=_timestamp(content.data_timestamp), **(provenance.of_import if provenance else {})
+                | {"attribution": SYNTHETIC_ATTRIBUTION if is_synthetic else content.attribution},
             )  # fmt: skip
-            values = _values(cursor, content, path, is_synthetic, replace_edited, replace_region, but=data_import)
-            values |= {
-                "data_import": data_import.pk, "actor": imported_by and imported_by.pk,
-                "organisation": imported_by.organisation_id if imported_by else DEFAULT_ORGANISATION_ID,
-            }  # fmt: skip
-            numbers = _numbers(cursor, values)
+            values = _values(content, path, is_synthetic, replace_region, but=data_import)
+            merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
+            numbers = _numbers(merge)
             _tell(progress, "writing", 0.2)
-            for statement in (
-                osm_merge.REMEMBER_CHANGED,
-                osm_merge.REMEMBER_GONE,
-                osm_merge.VANISH,
-                osm_merge.UPDATE,
-                osm_merge.KEEP_BESIDE,
-            ):
-                cursor.execute(statement, values)
-            _tell(progress, "writing", 0.4)
-            cursor.execute(osm_merge.INSERT, values)
-            _tell(progress, "writing", 0.8)
-            columns = "" if numbers["new"] > MANY_NEW else "(id, kind, osm_type, osm_id, line_id, vanished_at)"
-            cursor.execute(f"ANALYZE inspection_asset {columns}")  # the supports are numbered next, and tiles are asked for soon
+            merge.write(data_import.pk, imported_by, lambda share: _tell(progress, "writing", 0.2 + 0.8 * share))
         counts = content.counts | numbers | {"extent": content.extent}
-        has_changed = any(numbers[key] for key in ("new", "changed", "vanished"))
-        if number_supports() or has_changed:
+        if number_supports() or merge.changes_something:
             mark_ground_changed()
         known = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic, sha256=sha256).exclude(pk=data_import.pk).first()
-        if known is not None and not has_changed:
+        if known is not None and not merge.changes_something:
             data_import.delete()
             known.counts = counts  # of this run, for the caller; the row keeps those of its own
             return known
@@ -113,23 +121,19 @@ def difference_of_osm(
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
             _tell(progress, "comparing", 0.0)
-            values = _values(cursor, content, path, False, replace_edited, replace_region)
-            numbers = _numbers(cursor, values)
+            values = _values(content, path, False, replace_region)
+            merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
             _tell(progress, "comparing", 0.6)
-            samples = {}
-            for action, statement in osm_merge.SAMPLES.items():
-                cursor.execute(statement, values | {"most": most})
-                samples[action] = cursor.fetchall()
+            samples = {action: merge.samples(action, most) for action in ROW_ACTIONS}
         transaction.set_rollback(True)
-    return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, numbers, samples)
+    return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, _numbers(merge), samples)
 
 
 @contextmanager
 def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapper, OsmContent]]:
     """Read the file's records into a temporary table as they come; a cursor beside it, and what is known of all. Raises OsmFileError."""
-    with connection.cursor() as cursor:
-        cursor.execute(osm_merge.STAGING)
-        with cursor.copy(osm_merge.COPY) as copy:
+    with staging() as (cursor, copying):
+        with copying() as copy:
 
             def take(records: list[AssetRecord]) -> None:
                 for row in _rows(records):
@@ -139,27 +143,21 @@ def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapp
             if not content.kinds:
                 raise OsmFileError(_("The file has no power lines, towers, railways or bridges."))
         if content.is_unsorted:
-            cursor.execute(osm_merge.KEEP_THE_LAST)
-        cursor.execute("ANALYZE osm_staging, inspection_asset")  # right after a first import the planner still takes the table for empty
+            cursor.execute(_KEEP_THE_LAST)
         yield cursor, content
-        cursor.execute("DROP TABLE osm_staging")  # before the end of the transaction: several imports may share one
 
 
-def _numbers(cursor: CursorWrapper, values: dict[str, Any]) -> dict[str, int]:
-    cursor.execute(osm_merge.COUNTS, values)
-    names = ("new", "changed", "vanished", "kept", "kept_edited", "kept_newer", "unchanged")
-    return dict(zip(names, cursor.fetchone(), strict=True))
+def _numbers(merge: Merge) -> dict[str, int]:
+    """What was edited by hand is counted apart, whatever becomes of it."""
+    unchanged = merge.numbers[UNCHANGED] - merge.edited.get(UNCHANGED, 0)
+    return merge.numbers | {"kept_edited": sum(merge.edited.values()), "kept_newer": merge.newer, UNCHANGED: unchanged}
 
 
-def _values(
-    cursor: CursorWrapper, content: OsmContent, path: Path, is_synthetic: bool, replace_edited: bool, replace_region: bool,
-    *, but: DataImport | None = None,
-) -> dict[str, Any]:  # fmt: skip
+def _values(content: OsmContent, path: Path, is_synthetic: bool, replace_region: bool, *, but: DataImport | None = None) -> dict[str, Any]:
     """What the statements need to know of the file.
 
-    Files of different regions, even neighbours that overlap, say nothing about each other: only rows written by an import whose extent
-    is nearly this one's may vanish, of these only what the header's box holds, if it states one. A file may be filtered (power lines
-    only): a subtype of which it has none at all is taken for filtered out, unless there was a handful only or the file has the old name.
+    A file may be filtered (power lines only): a subtype of which it has none at all is taken for filtered out, unless there was a handful
+    only or the file has the old name.
     """
     earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic)
     if but is not None:
@@ -175,16 +173,10 @@ def _values(
     ]
     box = content.stated_extent or (content.extent if replace_region else None)
     return {
-        "timestamp": _timestamp(content.data_timestamp), "replace_edited": replace_edited, "whole_region": replace_region,
+        "timestamp": _timestamp(content.data_timestamp), "whole_region": replace_region,
         "sources": [source.pk for source in sources], "filtered_out": filtered_out,
         "box": box and shapely.to_wkb(shapely.set_srid(shapely.box(*box), 4326), hex=True, include_srid=True),
     }  # fmt: skip
-
-
-def _origin(provenance: Provenance | None) -> dict[str, Any]:
-    if provenance is None:
-        return {}
-    return {"licence": provenance.licence, "source_address": provenance.source_address, "fetched_at": provenance.fetched_at}
 
 
 def _tell(progress: Progress | None, stage: str, share: float) -> None:
@@ -209,10 +201,10 @@ def _rows(records: Sequence[AssetRecord]) -> Iterator[tuple[Any, ...]]:
     centre_wkb = shapely.to_wkb(shapely.set_srid(centres, 4326), hex=True, include_srid=True)
     for record, geometry, centre in zip(records, wkb, centre_wkb, strict=True):
         yield (
-            record.kind, record.subtype, record.osm_type, record.osm_id, geometry, centre, record.name[:255], record.ref[:255],
+            record.kind, record.osm_type, record.osm_id, "", record.subtype, geometry, centre, record.name[:255], record.ref[:255],
             record.operator[:255], list(record.voltages_v), max(record.voltages_v, default=None), record.circuits, record.height_m,
             record.length_m, record.is_flyable, list(record.node_osm_ids), json.dumps(record.tags), json.dumps(record.parts),
-            record.content_hash,
+            record.content_hash, "",
         )  # fmt: skip
 
 

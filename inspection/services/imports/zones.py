@@ -146,12 +146,7 @@ def _unread_json(record: UnreadRecord) -> dict[str, Any]:
 
 def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: bool) -> dict[str, Any]:
     """Where the zones come from, as far as somebody or the file says so."""
-    stated: dict[str, Any] = {}
-    if provenance is not None:
-        stated = {
-            "attribution": provenance.attribution, "licence": provenance.licence, "source_address": provenance.source_address,
-            "fetched_at": provenance.fetched_at,
-        }  # fmt: skip
+    stated: dict[str, Any] = {} if provenance is None else provenance.of_import
     if is_synthetic:
         stated["attribution"] = SYNTHETIC_ATTRIBUTION
     elif not stated.get("attribution"):

@@ -1,10 +1,12 @@
 """Asset files that are not OpenStreetMap's as proposals: first what is in them, then, once their columns are explained, the difference."""
 
+import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from django.contrib.gis.geos import GEOSGeometry
 from django.db import transaction
 
 from inspection.importers.assets.asset_file import AssetFile
@@ -12,12 +14,11 @@ from inspection.importers.assets.mapping import Tally
 from inspection.importers.assets.suggestion import suggested_mapping
 from inspection.importers.assets.survey import Survey, survey_of
 from inspection.importers.rows import AssetFileError
-from inspection.models import ROW_ACTIONS, Asset, AssetSet, DataImport
-from inspection.services.facts import ASSET_FACTS, asset_facts, differing
+from inspection.models import ROW_ACTIONS, AssetSet, DataImport
+from inspection.services.facts import ASSET_FACTS, differing
+from inspection.services.imports.asset_merge import UNCHANGED, Merge
 from inspection.services.imports.assets import (
     EXPLANATIONS,
-    UNCHANGED,
-    Difference,
     UnfinishedMapping,
     counts_of,
     import_assets,
@@ -129,22 +130,20 @@ def _first_cell(file: AssetFile, name: str) -> list[str]:
     return [cell[:60]] if cell else []
 
 
-def _changes(found: Difference) -> Iterator[Change]:
+def _changes(found: Merge) -> Iterator[Change]:
     for action in ROW_ACTIONS:
-        for asset, stated in found.pairs(action, MAX_CHANGES):
-            before, after = differing(_shown(asset) if asset else None, _shown(stated) if stated else None)
-            one = stated or asset
-            if one is not None:
-                yield Change(action, one.kind, _label(one), asset.pk if asset else None, one.geometry, before, after)
+        for row in found.samples(action, MAX_CHANGES):
+            before, after = differing(_shown(row.facts), _shown(row.facts_in_file))
+            drawn = GEOSGeometry(memoryview(bytes(row.geometry_in_file or row.geometry or b"")), srid=4326)
+            yield Change(action, row.kind, row.label_in_file or row.label or "", row.asset_id, drawn, before, after)
 
 
-def _shown(asset: Asset) -> dict[str, Any]:
-    facts = asset_facts(asset)
+def _shown(text: str | None) -> dict[str, Any] | None:
+    """What people read of the facts; the cursor gives jsonb as text."""
+    if text is None:
+        return None
+    facts = json.loads(text)
     return {name: facts[name] for name in (*ASSET_FACTS, "geometry")}
-
-
-def _label(asset: Asset) -> str:
-    return asset.ref or asset.name or f"{asset.get_kind_display()} {asset.source_key}"
 
 
 def _file(path: Path | None) -> Path:

@@ -14,6 +14,7 @@ from inspection.services.imports.osm import OsmDifference, difference_of_osm, im
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 
+STAYING = (ChangeAction.KEPT, ChangeAction.VANISHED)  # drawn where they are, not where the file has them
 _FOR_PROGRAMS = {"node_osm_ids", "parts", "content_hash", "osm_type", "osm_id"}
 
 
@@ -48,10 +49,11 @@ def _options(parameters: dict[str, Any]) -> dict[str, bool]:
 
 def _changes(found: OsmDifference) -> Iterator[Change]:
     for action, rows in found.samples.items():
-        for kind, key, label, wkb, was, will_be in rows:
-            before, after = differing(_facts(was), _facts(will_be))
-            geometry = GEOSGeometry(memoryview(bytes(wkb)), srid=4326)
-            yield Change(ChangeAction(action), kind, label, key, geometry, before, after)
+        for row in rows:
+            before, after = differing(_facts(row.facts), _facts(row.facts_in_file))
+            drawn = row.geometry if action in STAYING else row.geometry_in_file
+            label = row.label or row.label_in_file or ""
+            yield Change(action, row.kind, label, row.asset_id, GEOSGeometry(memoryview(bytes(drawn or b"")), srid=4326), before, after)
 
 
 def _facts(text: str | None) -> dict[str, Any] | None:

@@ -56,6 +56,11 @@ class Provenance:
     fetched_at: datetime | None = None
     organisation_id: int | None = None  # whose file it is, and whose ids it has
 
+    @property
+    def of_import(self) -> dict[str, Any]:
+        """The fields of a DataImport."""
+        return {name: getattr(self, name) for name in ("attribution", "licence", "source_address", "fetched_at")}
+
 
 @dataclass
 class Reading:

@@ -1,0 +1,223 @@
+"""Stages the rows of a file, compares them with the assets of its source, and makes these what the file says.
+
+OpenStreetMap files and other asset files differ in which assets are theirs (`Source`); the rest is the same. A row that a curator edited
+is not touched unless it is to be replaced: what the file says of it is kept beside it, as source_facts. What the source has and the file
+has not is marked as vanished, never deleted.
+"""
+
+# ruff: noqa: S608 -- the statements are put together from the constants of this package
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from django.db import connection
+from django.db.backends.utils import CursorWrapper
+
+from inspection.models import ROW_ACTIONS, ChangeAction
+from inspection.services.facts import ASSET_FACTS
+from workspace.models import DEFAULT_ORGANISATION_ID, User
+
+MANY_NEW = 10_000  # rows after which all that the planner knows of the assets is out of date
+UNCHANGED = "unchanged"
+_KEYS = ("kind", "osm_type", "osm_id", "source_key")
+_VALUES = (
+    "subtype", "geometry", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m", "length_m",
+    "is_flyable", "node_osm_ids", "tags", "parts", "content_hash",
+)  # fmt: skip
+COLUMNS = (*_KEYS, *_VALUES, "external_id")  # of a row that is staged
+_STAGING = """
+CREATE TEMPORARY TABLE asset_staging (
+    id serial, kind text, osm_type text, osm_id bigint, source_key text, subtype text, geometry geometry, centre geometry, name text,
+    ref text, operator text, voltages_v integer[], max_voltage_v integer, circuits smallint, height_m double precision,
+    length_m double precision, is_flyable boolean, node_osm_ids bigint[], tags jsonb, parts jsonb, content_hash text, external_id text
+) ON COMMIT DROP
+"""
+_COPY = f"COPY asset_staging ({', '.join(COLUMNS)}) FROM STDIN"
+_JOINED = ", ".join(("id", *_KEYS))
+_DIFFERS = "a.content_hash <> s.content_hash"
+_FATE = "FROM asset_fate f JOIN asset_staging s ON s.id = f.staging_id JOIN inspection_asset a ON a.id = f.asset_id"
+_LABEL = (
+    "COALESCE(NULLIF({row}.ref, ''), NULLIF({row}.name, ''), "
+    "INITCAP({row}.kind) || ' ' || COALESCE({row}.osm_type || {row}.osm_id, {row}.source_key))"
+)
+_ENTRY = "INSERT INTO workspace_auditentry (organisation_id, actor_id, action, subject_type, subject_id, before, after)"
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A row that a file would change: as it is stored, as the file has it, or both; facts as JSON."""
+
+    kind: str
+    asset_id: int | None
+    label: str | None
+    label_in_file: str | None
+    geometry: bytes | None  # WKB
+    geometry_in_file: bytes | None
+    facts: str | None
+    facts_in_file: str | None
+
+
+@dataclass(frozen=True)
+class Source:
+    """Which assets are a source's own, as SQL over a (an asset) and s (a staged row), with the values of `Merge`."""
+
+    same: str
+    missing: str  # assets that count as vanished, or as edited and vanished, where the file has none that is the same
+    newer: str = "false"  # assets of which the file says something older than what is known
+    facts: tuple[str, ...] = ()  # what the history keeps besides what people read
+    order: str = "f.staging_id, f.asset_id"  # of samples
+    # An edited asset of which the source now says what the curator said follows its source again. Not with OpenStreetMap, where others
+    # edit: what a curator of the organisation has settled stays settled.
+    follows_again: bool = False
+
+    @cached_property
+    def fates(self) -> str:
+        """What becomes of each row of the file and of each missing one of the source."""
+        return f"""
+CREATE TEMPORARY TABLE asset_fate ON COMMIT DROP AS
+SELECT a.id AS asset_id, s.id AS staging_id, COALESCE(a.is_edited, false) AS is_edited,
+       CASE WHEN a.id IS NULL THEN 'new'
+            WHEN a.is_edited AND NOT %(replace_edited)s THEN CASE WHEN {_DIFFERS} THEN 'kept' ELSE 'unchanged' END
+            WHEN {self.newer} THEN 'newer'
+            WHEN a.is_edited OR a.vanished_at IS NOT NULL OR {_DIFFERS} THEN 'changed'
+            ELSE 'unchanged' END AS fate
+FROM asset_staging s LEFT JOIN inspection_asset a ON {self.same}
+UNION ALL
+SELECT a.id, NULL, a.is_edited,
+       CASE WHEN NOT a.is_edited OR %(replace_edited)s THEN 'vanished'
+            WHEN COALESCE((a.source_facts->>'vanished')::boolean, false) THEN 'unchanged' ELSE 'kept' END
+FROM inspection_asset a
+WHERE {self.missing} AND (a.vanished_at IS NULL OR a.is_edited AND NOT %(replace_edited)s)
+  AND NOT EXISTS (SELECT FROM asset_staging s WHERE {self.same})
+"""
+
+    def facts_of(self, row: str, *, vanished: str = "false", **instead: str) -> str:
+        """What services/facts.py says of an asset, of the row with this alias; some members from elsewhere."""
+        members = ", ".join(f"'{column}', {instead.get(column, f'{row}.{column}')}" for column in (*ASSET_FACTS, *self.facts))
+        return f"jsonb_build_object({members}, 'geometry', ST_AsGeoJSON({row}.geometry, 15)::jsonb, 'vanished', {vanished})"
+
+    @cached_property
+    def stored_facts(self) -> str:
+        return self.facts_of("a", vanished="a.vanished_at IS NOT NULL")
+
+    @cached_property
+    def facts_in_file(self) -> str:
+        return self.facts_of("s", asset_set_id="%(asset_set)s::bigint", data_import_id="%(data_import)s::bigint", is_edited="false")
+
+    @cached_property
+    def samples(self) -> str:
+        """Kind, asset and label, then label, geometry and facts of both sides; the left one is the stored one."""
+        return f"""
+SELECT COALESCE(a.kind, s.kind), a.id, {_LABEL.format(row="a")}, {_LABEL.format(row="s")}, ST_AsBinary(a.geometry), ST_AsBinary(s.geometry),
+       CASE WHEN a.id IS NOT NULL THEN {self.stored_facts} END::text, CASE WHEN s.id IS NOT NULL THEN {self.facts_in_file} END::text
+FROM asset_fate f LEFT JOIN asset_staging s ON s.id = f.staging_id LEFT JOIN inspection_asset a ON a.id = f.asset_id
+WHERE f.fate = %(fate)s ORDER BY {self.order} LIMIT %(most)s
+"""
+
+    @cached_property
+    def changes(self) -> tuple[str, ...]:
+        """The statements that make the assets what the file says, but for new ones. In this order: the history is of what was."""
+        after = self.facts_of("a", vanished="true", data_import_id="%(data_import)s::bigint", is_edited="false")
+        return (
+            f"""{_ENTRY}
+SELECT %(organisation)s, %(actor)s, 'changed', 'asset', a.id::text, {self.stored_facts}, {self.facts_in_file}
+{_FATE} WHERE f.fate = 'changed' ORDER BY a.id""",
+            f"""{_ENTRY}
+SELECT %(organisation)s, %(actor)s, 'vanished', 'asset', a.id::text, {self.stored_facts}, {after}
+FROM asset_fate f JOIN inspection_asset a ON a.id = f.asset_id WHERE f.fate = 'vanished' ORDER BY a.id""",
+            """
+UPDATE inspection_asset a
+SET vanished_at = now(), data_import_id = %(data_import)s, is_edited = false, source_facts = NULL, revision = a.revision + 1,
+    updated_at = now()
+FROM asset_fate f WHERE f.asset_id = a.id AND f.fate = 'vanished'""",
+            f"""
+UPDATE inspection_asset a
+SET {", ".join(f"{column} = s.{column}" for column in _VALUES)}, data_import_id = %(data_import)s, vanished_at = NULL,
+    is_edited = false, source_facts = NULL, revision = a.revision + 1, updated_at = now()
+FROM asset_fate f JOIN asset_staging s ON s.id = f.staging_id WHERE f.asset_id = a.id AND f.fate = 'changed'""",
+        )
+
+    @cached_property
+    def kept(self) -> tuple[str, ...]:
+        """Edited rows stay as they are, but know what their source says now."""
+        same, in_file = "false", self.facts_of("s", asset_set_id="NULL", data_import_id="NULL", is_edited="false")
+        if self.follows_again:
+            facts = " AND ".join(f"a.{column} IS NOT DISTINCT FROM s.{column}" for column in ASSET_FACTS)
+            same = f"(a.vanished_at IS NULL AND ST_AsBinary(a.geometry) = ST_AsBinary(s.geometry) AND {facts})"
+        return (
+            f"""
+UPDATE inspection_asset a
+SET content_hash = s.content_hash, is_edited = NOT {same}, source_facts = CASE WHEN NOT {same} THEN {in_file} END
+FROM asset_fate f JOIN asset_staging s ON s.id = f.staging_id WHERE f.asset_id = a.id AND f.fate = 'kept'""",
+            f"""
+UPDATE inspection_asset a
+SET source_facts = COALESCE(a.source_facts, {self.stored_facts}) || '{{"vanished": true}}'
+FROM asset_fate f WHERE f.asset_id = a.id AND f.fate = 'kept' AND f.staging_id IS NULL""",
+        )
+
+
+_NEW = ", ".join((*_KEYS, *_VALUES))
+_INSERT = f"""
+INSERT INTO inspection_asset ({_NEW}, asset_set_id, data_import_id, is_edited, updated_at)
+SELECT {", ".join(f"s.{column}" for column in (*_KEYS, *_VALUES))}, %(asset_set)s::bigint, %(data_import)s, false, now()
+FROM asset_staging s JOIN asset_fate f ON f.staging_id = s.id
+WHERE f.fate = 'new' ORDER BY s.kind DESC, s.osm_id, s.id
+"""
+
+
+class Merge:
+    """A staged file and its source: what the file would change, and how it is done. Valid in the transaction that staged it."""
+
+    def __init__(self, cursor: CursorWrapper, source: Source, *, replace_edited: bool, asset_set: int | None = None, **values: Any) -> None:
+        self._cursor, self._source = cursor, source
+        self._values = {"replace_edited": replace_edited, "asset_set": asset_set, "data_import": None} | values
+        cursor.execute(f"ANALYZE asset_staging ({_JOINED}), inspection_asset ({_JOINED})")  # right after a first import it seems empty
+        cursor.execute(source.fates, self._values)
+        cursor.execute("ANALYZE asset_fate")
+        cursor.execute("SELECT fate, count(*), count(*) FILTER (WHERE is_edited AND staging_id IS NOT NULL) FROM asset_fate GROUP BY fate")
+        found = {fate: (number, edited) for fate, number, edited in cursor.fetchall()}
+        self.numbers = {str(fate): found.get(fate, (0, 0))[0] for fate in (*ROW_ACTIONS, UNCHANGED)}
+        self.newer = found.get("newer", (0, 0))[0]
+        self.edited = {fate: edited for fate, (_, edited) in found.items()}  # rows of the file whose asset is edited
+
+    @property
+    def changes_something(self) -> bool:
+        return any(self.numbers[action] for action in (ChangeAction.NEW, ChangeAction.CHANGED, ChangeAction.VANISHED))
+
+    def samples(self, action: ChangeAction, most: int) -> list[Sample]:
+        """The first rows of this action."""
+        self._cursor.execute(self._source.samples, self._values | {"fate": action.value, "most": most})
+        return [Sample(*row) for row in self._cursor.fetchall()]
+
+    def write(self, data_import: int, actor: User | None, tell: Callable[[float], None] = lambda share: None) -> None:
+        """Make the assets what the file says. tell: how much of it is done, 0 to 1."""
+        self._values |= {
+            "data_import": data_import, "actor": actor and actor.pk,
+            "organisation": actor.organisation_id if actor else DEFAULT_ORGANISATION_ID,
+        }  # fmt: skip
+        for statement in self._source.changes:
+            self._cursor.execute(statement, self._values)
+        self.keep_beside()
+        tell(0.25)
+        self._cursor.execute(_INSERT, self._values)
+        tell(0.75)
+        columns = "" if self.numbers[ChangeAction.NEW] > MANY_NEW else "(id, kind, osm_type, osm_id, line_id, vanished_at)"
+        self._cursor.execute(f"ANALYZE inspection_asset {columns}")  # the supports are numbered next, and tiles are asked for soon
+
+    def keep_beside(self) -> None:
+        for statement in self._source.kept:
+            self._cursor.execute(statement, self._values)
+
+
+@contextmanager
+def staging() -> Iterator[tuple[CursorWrapper, Callable[[], Any]]]:
+    """A cursor beside an empty staging table, and a context that gives what writes its rows. Call it in a transaction."""
+    with connection.cursor() as cursor:
+        cursor.execute(_STAGING)
+        yield cursor, lambda: cursor.copy(_COPY)
+        # Before the end of the transaction: several imports may share one.
+        cursor.execute("DROP TABLE IF EXISTS asset_fate")
+        cursor.execute("DROP TABLE asset_staging")
