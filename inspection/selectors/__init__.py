@@ -1,15 +1,13 @@
 """Reads of the ground: what views, commands and the other apps call."""
 
+from inspection.selectors.asset_names import asset_detail, asset_label, voltage_text
 from inspection.selectors.assets import (
     UNREAD_OF_A_LINE,
     Box,
-    asset_detail,
-    asset_label,
     asset_with_geometry,
     assets_near,
     assets_on_the_ground,
     references_of,
-    voltage_text,
     with_external_id,
     zones,
 )

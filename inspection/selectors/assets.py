@@ -1,4 +1,4 @@
-"""Assets and zones as lists, and what they are called."""
+"""Assets and zones as lists."""
 
 import math
 import re
@@ -10,28 +10,16 @@ from django.contrib.gis.db.models.functions import AsGeoJSON, Distance
 from django.contrib.gis.geos import MultiPolygon, Point, Polygon
 from django.db.models import Q, QuerySet
 from django.db.models.functions import Cast
-from django.utils.translation import gettext as _
-from django.utils.translation import gettext_noop
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, AssetReference, NoFlyZone
 from inspection.network.zones.zone_index import METRES_PER_DEGREE_LON
-from inspection.selectors.made_names import made_name, word_of
+from inspection.selectors.asset_names import made_name
 
 COORDINATE_DIGITS = 7  # about a centimetre
-# In English: what is stored and what the tiles say. gettext_noop names them for the catalogues.
-CARRIES = {
-    "a road and a railway": gettext_noop("carries a road and a railway"),
-    "a railway": gettext_noop("carries a railway"),
-    "a road": gettext_noop("carries a road"),
-    "a path": gettext_noop("carries a path"),
-    "water": gettext_noop("carries water"),
-    "a pipeline": gettext_noop("carries a pipeline"),
-}
 
 VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
 KILOVOLTS = re.compile(r"\d{1,4}(?:\.\d{1,3})?")  # said alone: a reference, or a voltage
-VOLTAGE_NOT_STATED = gettext_noop("voltage not stated")
 # Of the line that is read along with a support.
 UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
 OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
@@ -142,50 +130,3 @@ def _text_filter(text: str) -> Q:
         wanted &= matches
     made = made_name(text)
     return wanted if made is None else wanted | made.filter()
-
-
-def asset_label(asset: Asset) -> str:
-    """What an asset is called: ref, name, a support's place on its line ("Tower 18 of 41"), operator and voltage of a line, else its
-    kind and OSM id ("Tower n42").
-
-    The same words as LABEL in selectors/tiles.py.
-    """
-    if given := asset.ref or asset.name:
-        return given
-    if asset.kind == AssetKind.LINE and (asset.operator or asset.max_voltage_v):
-        return " ".join(part for part in (asset.operator, voltage_text(asset.max_voltage_v)) if part)
-    if asset.kind == AssetKind.RAILWAY and asset.operator:
-        return _("%(operator)s railway") % {"operator": asset.operator}
-    word = _(word_of(asset.kind, asset.subtype))
-    if asset.line_id is not None:
-        return _("%(kind)s %(place)s of %(places)s") % {"kind": word, "place": asset.place_on_line, "places": asset.places_on_line}
-    return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"
-
-
-def asset_detail(asset: Asset) -> str:
-    """The second fact, which the label does not say: "138 kV AEP" of a support's line or of a line; what a bridge carries. May be empty.
-
-    Reads the line of a support: load it with select_related. The same words as the details in selectors/tiles.py.
-    """
-    given = asset.ref or asset.name
-    operator = asset.operator if asset.operator != given else ""
-    if asset.kind == AssetKind.TOWER and asset.line is not None:
-        line = asset.line
-        return _voltage_and_owner(voltage_text(line.max_voltage_v or asset.max_voltage_v), line.ref or line.name or line.operator)
-    if asset.kind == AssetKind.TOWER:
-        return f"{voltage_text(asset.max_voltage_v)} {operator}".strip()
-    if asset.kind == AssetKind.LINE and (given or len(asset.voltages_v) != 1):
-        return _voltage_and_owner(", ".join(map(voltage_text, asset.voltages_v)), operator if given else "")
-    if asset.kind == AssetKind.RAILWAY and given:
-        return ", ".join(fact for fact in (asset.name, operator) if fact and fact != given)
-    return _(CARRIES[asset.carries]) if asset.carries else ""
-
-
-def _voltage_and_owner(voltage: str, owner: str) -> str:
-    if voltage:
-        return f"{voltage} {owner}".strip()
-    return f"{owner}, {_(VOLTAGE_NOT_STATED)}" if owner else _(VOLTAGE_NOT_STATED)
-
-
-def voltage_text(voltage_v: int | None) -> str:
-    return f"{voltage_v / 1000:g} kV" if voltage_v else ""

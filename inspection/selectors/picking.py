@@ -16,8 +16,8 @@ from django.db.models.functions import Lower
 
 from inspection.models import Asset, AssetKind
 from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order
+from inspection.selectors.asset_names import assets_with_made_names, made_name
 from inspection.selectors.ground_data import supports_and_lines
-from inspection.selectors.made_names import assets_with_made_names, made_name
 
 Box = tuple[float, float, float, float]
 

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from django.core.cache import cache
 from django.db import connection
 
-from inspection.selectors.assets import VOLTAGE_NOT_STATED
+from inspection.models import AssetKind
+from inspection.selectors.asset_names import DETAIL_SQL, LABEL_SQL, LINE_VOLTAGE_V, VOLTAGES_SQL, sql_words
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
 MAX_ZOOM = 22
-RECIPE = 5  # part of the ETag: counts the changes to this file's statements
+RECIPE = 6  # part of the ETag: counts the changes to this file's statements
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
@@ -29,20 +30,6 @@ ZONE_LABEL_ZOOM = 9
 MAX_SCHEDULE_LENGTH = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
 MAX_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
 MAX_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
-VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
-# The words of asset_label in selectors/assets.py.
-LABEL = f"""COALESCE(
-    NULLIF(ref, ''), NULLIF(name, ''),
-    CASE WHEN kind = 'line' THEN NULLIF(CONCAT_WS(' ', NULLIF(operator, ''), {VOLTAGE_TEXT}), '')
-         WHEN kind = 'railway' THEN NULLIF(operator, '') || ' railway' END,
-    CASE subtype WHEN 'minor_line' THEN 'Line' WHEN 'cable' THEN 'Cable' WHEN 'pole' THEN 'Pole' WHEN 'portal' THEN 'Portal'
-                 WHEN 'tram' THEN 'Tramway' WHEN 'subway' THEN 'Subway' ELSE INITCAP(kind) END
-    || ' ' || CASE WHEN line_id IS NOT NULL THEN place_on_line || ' of ' || places_on_line ELSE COALESCE(osm_type || osm_id, id::text) END
-)"""
-VOLTAGES_TEXT = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
-GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
-OPERATOR = f"NULLIF(NULLIF(operator, ''), {GIVEN})"
-TOWER_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"  # from which zoom on a tower is drawn goes by its line
 TOWERS = """inspection_asset LEFT JOIN (
     SELECT id AS own_id, max_voltage_v AS line_voltage_v,
            COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
@@ -59,9 +46,9 @@ SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 
 
 def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> bytes:
-    """The tile of the ground as it is now. Raises NoSuchTile.
+    """The tile of the ground as it is now, in the reader's language. Raises NoSuchTile.
 
-    `edition` is another text after each change of the ground; with None nothing is kept.
+    `edition` is another text after each change of the ground and in each language; with None nothing is kept.
     """
     if edition is None or zoom > LAST_KEPT_ZOOM:
         return vector_tile(zoom, column, row)
@@ -75,33 +62,17 @@ def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> by
     return tile
 
 
-def _voltage_and_owner(voltage: str, owner: str) -> str:
-    return f"COALESCE({voltage} || COALESCE(' ' || {owner}, ''), {owner} || ', {VOLTAGE_NOT_STATED}', '{VOLTAGE_NOT_STATED}')"
-
-
-def _asset_columns(detail: str, voltage_v: str = "max_voltage_v") -> str:
+def _asset_columns(kind: AssetKind, voltage_v: str = "max_voltage_v") -> str:
     return f"""
-        id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL} AS label, {detail} AS detail,
+        id AS feature_id, id, kind, NULLIF(subtype, '') AS subtype, {LABEL_SQL} AS label, {DETAIL_SQL[kind]} AS detail,
         NULLIF(ref, '') AS ref, NULLIF(name, '') AS name, NULLIF(operator, '') AS operator, is_flyable AS flyable,
-        ({voltage_v} / 1000.0)::float8 AS voltage, {VOLTAGES_TEXT} AS voltages,
+        ({voltage_v} / 1000.0)::float8 AS voltage, {VOLTAGES_SQL} AS voltages,
         CASE WHEN kind IN ('line', 'railway') THEN ROUND(length_m)::int END AS length_m
     """
 
 
-# The words of asset_detail in selectors/assets.py; null instead of an empty text.
-LINE_COLUMNS = _asset_columns(
-    f"""CASE WHEN {GIVEN} IS NOT NULL THEN {_voltage_and_owner(VOLTAGES_TEXT, OPERATOR)}
-             WHEN CARDINALITY(voltages_v) <> 1 THEN {_voltage_and_owner(VOLTAGES_TEXT, "NULL")} END"""
-)
-RAILWAY_COLUMNS = _asset_columns(
-    f"CASE WHEN {GIVEN} IS NOT NULL THEN NULLIF(CONCAT_WS(', ', NULLIF(NULLIF(name, ''), {GIVEN}), {OPERATOR}), '') END"
-)
-BRIDGE_COLUMNS = _asset_columns("'carries ' || NULLIF(carries, '')")
-TOWER_COLUMNS = _asset_columns(
-    f"""CASE WHEN line_id IS NOT NULL THEN {_voltage_and_owner(f"trim_scale({TOWER_VOLTAGE_V} / 1000.0) || ' kV'", "line_owner")}
-             ELSE NULLIF(CONCAT_WS(' ', {VOLTAGE_TEXT}, {OPERATOR}), '') END""",
-    TOWER_VOLTAGE_V,
-)
+LINE_COLUMNS, RAILWAY_COLUMNS, BRIDGE_COLUMNS = map(_asset_columns, (AssetKind.LINE, AssetKind.RAILWAY, AssetKind.BRIDGE))
+TOWER_COLUMNS = _asset_columns(AssetKind.TOWER, LINE_VOLTAGE_V)  # from which zoom on a tower is drawn goes by its line
 
 
 @dataclass(frozen=True)
@@ -129,7 +100,7 @@ LAYERS = (
     Layer("bridge_points", BRIDGE_ZOOM, BRIDGE_COLUMNS, f"inspection_asset WHERE kind = 'bridge' AND {ON_GROUND}", "centre", "centre",
           "id"),
     Layer("towers", TOWER_ZOOM, TOWER_COLUMNS, f"{TOWERS} WHERE kind = 'tower' AND {ON_GROUND}", "centre", "centre",
-          f"{TOWER_VOLTAGE_V} DESC NULLS LAST, id"),
+          f"{LINE_VOLTAGE_V} DESC NULLS LAST, id"),
     Layer("zones", 0, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "geometry", "geometry", "ST_Area(geometry) DESC"),
     Layer("zone_labels", ZONE_LABEL_ZOOM, ZONE_COLUMNS, "inspection_noflyzone WHERE true", "ST_PointOnSurface(geometry)", "geometry", "id"),
 )  # fmt: skip
@@ -153,7 +124,7 @@ def vector_tile(zoom: int, column: int, row: int) -> bytes:
                 "zoom": zoom, "column": column, "row": row, "west": west, "south": south, "east": east, "north": north,
                 "tolerance_deg": 360 / 2**zoom / EXTENT * 4,  # half a pixel of a 512 pixel tile
                 "most": next((most for last_zoom, most in MAX_FEATURES_FAR if zoom <= last_zoom), MAX_FEATURES),
-                "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM,
+                "least_voltage_v": least_voltage_v, "out_of_use_zoom": OUT_OF_USE_ZOOM, **sql_words(),
             },
         )  # fmt: skip
         return bytes(cursor.fetchone()[0])

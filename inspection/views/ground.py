@@ -142,13 +142,13 @@ class Tile(APIView):
         operation_id="get_tile",
         summary="A vector tile of assets and zones",
         description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels; empty where there is nothing. "
-        "The ETag changes with the ground.",
+        "Labels and details are in the reader's language. The ETag changes with the ground and the language.",
         parameters=[OpenApiParameter("of", str, description="has no effect on the answer: with another value a map asks again at once")],
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
         revision, changed_at = selectors.ground_edition()
-        edition = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}"
+        edition = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}-{get_language()}"
         etag = f'"{edition}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:

@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from django.test import Client
-from django.utils import timezone
+from django.utils import timezone, translation
 
-from inspection.models import Ground, NoFlyZone
+from inspection.models import Asset, Ground, NoFlyZone
 from inspection.selectors import asset_detail, asset_label, tile_of_edition, vector_tile
 from inspection.services import mark_ground_changed
 from tests.accounts.users import client_of, somebody
@@ -117,6 +117,23 @@ def test_the_map_and_the_api_call_a_support_of_a_line_alike(facts: dict[str, Any
     asset = tower(line=line((11.0, 56.0), (11.1, 56.0), **facts), place_on_line=18, places_on_line=41)
     [feature] = layers_at(14)["towers"]
     assert (feature.properties["label"], feature.properties["detail"]) == (asset_label(asset), asset_detail(asset))
+
+
+@pytest.mark.parametrize(
+    ("make", "named"),
+    [
+        (lambda: tower(osm_id=42), ("Mast n42", "")),
+        (lambda: tower(line=line(), place_on_line=18, places_on_line=41), ("Mast 18 von 41", "Spannung nicht angegeben")),
+        (lambda: railway(ref="12", operator="CSX"), ("12", "CSX")),
+        (lambda: bridge(name="Weir", tags={"railway": "rail"}), ("Weir", "trägt eine Bahn")),
+    ],
+)
+def test_a_tile_speaks_the_readers_language(make: Any, named: tuple[str, str]) -> None:
+    key = make().pk
+    asset = Asset.objects.select_related("line").get(pk=key)
+    with translation.override("de"):
+        [feature, *_] = [feature for features in layers_at(14).values() for feature in features if feature.id == key]
+        assert (feature.properties["label"], feature.properties.get("detail", "")) == named == (asset_label(asset), asset_detail(asset))
 
 
 def test_a_tower_has_the_voltage_of_its_line() -> None:

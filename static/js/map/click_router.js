@@ -1,7 +1,6 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
 import { h } from "../dom.js";
-import { inWords } from "./asset_names.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
 import { PICKABLE, TILES } from "./look/voltages.js";
@@ -43,7 +42,7 @@ export function firstInOrder(features, kinds = null) {
     kind: KINDS[best.sourceLayer ?? ""],
     layer: best.sourceLayer ?? "",
     id: best.properties.id,
-    properties: inWords(/** @type {ThingProperties} */ (best.properties)),
+    properties: /** @type {ThingProperties} */ (best.properties),
     geometry: /** @type {Geometry} */ (best.geometry),
   };
 }
