@@ -15,9 +15,10 @@ from django.db import connection
 from inspection.models import Asset
 from inspection.services import import_terrain
 from mavlink.approved_route import route_from_json
-from missions.models import EndAction, Mission, MissionState, Uav
+from missions.models import Mission, MissionState, Uav
 from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
+from planning.request import EndAction
 from telemetry.models import UavLink
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff

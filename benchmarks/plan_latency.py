@@ -24,9 +24,9 @@ from benchmarks.article_method import ArticleMethod  # noqa: E402 (Django first)
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.network.inspection_graph import InspectionGraph, NodeKind  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
-from missions.models import EndAction  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan  # noqa: E402
 from planning.problem import Objective  # noqa: E402
+from planning.request import EndAction  # noqa: E402
 
 
 def missions(graph: InspectionGraph, uavs: int, targets: int, count: int, seed: int) -> list[tuple[list[LonLat], list[int]]]:

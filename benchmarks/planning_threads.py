@@ -29,10 +29,10 @@ from django.db import connections  # noqa: E402 (Django first)
 from benchmarks.plan_latency import missions  # noqa: E402
 from benchmarks.report import machine  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
-from missions.models import EndAction  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan  # noqa: E402
 from missions.services.planning import planner  # noqa: E402
 from planning.problem import Objective  # noqa: E402
+from planning.request import EndAction  # noqa: E402
 
 
 def requests(uavs: int, targets: int, count: int, seed: int) -> list[PlanRequest]:

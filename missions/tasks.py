@@ -12,7 +12,7 @@ from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, replanning
 from missions.services.commands import commands
 from missions.services.commands.planned_starts import carry_on_planned_starts
-from missions.services.planning.best_so_far import OnPlanProgress, PlanProgress
+from planning.progress import OnPlanProgress, PlanProgress
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
 from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
@@ -38,7 +38,7 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     except JobCancelled:
         confirm_cancelled(job=job)
     except InvalidRequest as error:
-        fail_job(job=job, code="invalid", message=next(iter(error.faults.values())))
+        fail_job(job=job, code="invalid", message=str(next(iter(error.faults.values()))))
     except NoGraph:
         fail_job(job=job, code="no_graph", message=NO_GRAPH)
     except GraphOutdated as error:

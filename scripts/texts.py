@@ -103,7 +103,7 @@ def texts_of_module(source: str) -> Iterator[Text]:
         words = [argument.value for argument in call.args if isinstance(argument, ast.Constant) and isinstance(argument.value, str)]
         if call.func.id in {"_", "gettext", "gettext_lazy", "gettext_noop"} and words:
             yield words[0]
-        elif call.func.id in {"ngettext", "ngettext_lazy"} and len(words) > 1:
+        elif call.func.id in {"ngettext", "ngettext_lazy", "ngettext_noop"} and len(words) > 1:
             yield words[0], words[1]
 
 

@@ -36,7 +36,7 @@ from deploy.load.day.in_air import put_in_air  # noqa: E402
 from deploy.load.day.site import Desk, InAir, Person, Site  # noqa: E402
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.models import Asset, AssetKind, GraphSnapshot  # noqa: E402
-from missions.models import CredentialKind, EndAction, LinkKind, Mission, Uav, UavType  # noqa: E402
+from missions.models import CredentialKind, LinkKind, Mission, Uav, UavType  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, make_plan, plan_mission  # noqa: E402
 from missions.services.approval.approval import approve_mission  # noqa: E402
 from missions.services.commands.refused import Refused  # noqa: E402
@@ -44,6 +44,7 @@ from missions.services.fleet.credentials import make_credential  # noqa: E402
 from missions.services.fleet.types_and_bases import create_uav_type  # noqa: E402
 from missions.services.fleet.uavs import create_uav  # noqa: E402
 from planning.problem import Objective  # noqa: E402
+from planning.request import EndAction  # noqa: E402
 from workspace.api_tokens import create_api_token  # noqa: E402
 from workspace.models import Organisation, Role, User  # noqa: E402
 

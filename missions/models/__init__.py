@@ -10,7 +10,7 @@ from missions.models.commands import (
     UavCommand,
     UavCommandEvent,
 )
-from missions.models.fleet import Base, CredentialKind, EndAction, LinkKind, Uav, UavCredential, UavState, UavType
+from missions.models.fleet import END_ACTIONS, Base, CredentialKind, LinkKind, Uav, UavCredential, UavState, UavType
 from missions.models.missions import (
     ENDED_STATES,
     InspectionTarget,
@@ -30,6 +30,7 @@ from missions.models.starts import PlannedStarts, StartsEnd
 
 __all__ = [
     "ENDED_STATES",
+    "END_ACTIONS",
     "OPEN_COMMANDS",
     "Approval",
     "Base",
@@ -38,7 +39,6 @@ __all__ = [
     "CommandPriority",
     "CommandState",
     "CredentialKind",
-    "EndAction",
     "InspectionTarget",
     "LinkKind",
     "Mission",

@@ -6,15 +6,16 @@ from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
 
+from planning.request import EndAction
 from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 
-
-class EndAction(models.TextChoices):
-    HOVER = "hover", "Hover at the last target"
-    RETURN = "return", "Return to start"
-    LAND = "land", "Land at the last target"
-    BASE = "base", "Land at the nearest base"
+END_ACTIONS = [
+    (EndAction.HOVER.value, "Hover at the last target"),
+    (EndAction.RETURN.value, "Return to start"),
+    (EndAction.LAND.value, "Land at the last target"),
+    (EndAction.BASE.value, "Land at the nearest base"),
+]
 
 
 class UavType(models.Model):
@@ -140,7 +141,7 @@ class Uav(models.Model):
         max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="", help_text="another system's id of it; one UAV each"
     )
     attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
-    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+    end_action = models.CharField(max_length=10, choices=END_ACTIONS, default=EndAction.HOVER.value)
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
     updated_at = models.DateTimeField(auto_now=True)

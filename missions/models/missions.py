@@ -9,7 +9,8 @@ from django.db.models import Q
 from django.db.models.functions import Now
 
 from inspection.models import Asset
-from missions.models.fleet import EndAction, Uav
+from missions.models.fleet import END_ACTIONS, Uav
+from planning.request import EndAction
 from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
@@ -141,7 +142,7 @@ class MissionUav(models.Model):
     start = models.PointField(srid=4326)
     max_range_m = models.FloatField(null=True, blank=True)
     cruise_speed_mps = models.FloatField()
-    end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
+    end_action = models.CharField(max_length=10, choices=END_ACTIONS, default=EndAction.HOVER.value)
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
     sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=MAX_SENSOR_LENGTH), default=list, blank=True)

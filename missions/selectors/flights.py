@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
 from uuid import UUID
@@ -11,7 +10,9 @@ import numpy as np
 from django.conf import settings
 from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Value
 
-from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
+from missions.models import Mission, MissionState, Route, Waypoint, WaypointKind
+from planning.context import OtherFlights
+from planning.request import EndAction
 from planning.separation.separation import TimedRoute
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
@@ -21,14 +22,6 @@ COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task",
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
 _ENDS_AT = ExpressionWrapper(F("mission__departs_at") + _FLOWN, output_field=DateTimeField())
-
-
-@dataclass(frozen=True)
-class OtherFlights:
-    """Routes of other missions, and those of which nobody knows when they are where: mission and UAV."""
-
-    routes: tuple[TimedRoute, ...] = ()
-    untimed: tuple[tuple[str, str], ...] = ()
 
 
 def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *, but: UUID | str | None = None) -> OtherFlights:

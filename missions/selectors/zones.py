@@ -12,12 +12,15 @@ from inspection.selectors.zone_table import zone_table
 from inspection.zones.activity import Span, active_spans, merged
 from inspection.zones.reach import ZoneTable
 from inspection.zones.schedule import Schedule
-from missions.models import EndAction, Mission, Route
+from missions.models import Mission, Route
+from missions.selectors.planning_rules import planning_rules
+from planning.checks.zones import MetZone
+from planning.checks.zones import zones_met as checked_zones_met
 from planning.clearance.nearby_zones import zones_near
-from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Margins, breaches
+from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, breaches
+from planning.request import EndAction
 
 LegTime = tuple[float, float]  # from when to when a leg is flown, in seconds after departure, its end included
-CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
 
 
 def blocked_departures(
@@ -49,23 +52,9 @@ def free_between(blocked: Iterable[Span], from_s: float, to_s: float) -> tuple[S
     return tuple(free)
 
 
-@dataclass(frozen=True)
-class MetZone:
-    """A breach, and the zone's key and name."""
-
-    breach: Breach
-    zone: int
-    name: str
-
-
 def zone_margins() -> Margins:
     """What the settings want to be kept from zones."""
-    return Margins(
-        lateral_m=CLEARANCE_KEPT * settings.GRAPH_RULES.zone_clearance_m,
-        height_m=settings.ZONE_RULES.height_margin_m,
-        time_s=settings.ZONE_RULES.time_margin_s,
-        terrain_tolerance_m=settings.FLIGHT_RULES.terrain_tolerance_m,
-    )
+    return planning_rules().margins
 
 
 def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
@@ -91,28 +80,11 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
 
 def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> list[list[MetZone]]:
     """For each route the zones that it meets, those of now or of the table; a route without times at any time."""
-    margins = zone_margins()
-    table = zone_table() if table is None else table
-    found: list[list[MetZone]] = []
-    if not len(table):
-        return [[] for _ in routes]
-    for route in routes:
-        near, facts = zones_near(table, route.position, margins, _window(route))
-        met = breaches(route, facts, margins)
-        found.append([MetZone(breach, int(near.ids[breach.zone]), near.names[breach.zone]) for breach in met])
-    return found
+    return checked_zones_met(routes, zone_table() if table is None else table, zone_margins())
 
 
 def departure_s(mission: Mission) -> float | None:
     return None if mission.departs_at is None else float(mission.departs_at.timestamp())
-
-
-def _window(route: FlownRoute) -> tuple[float, float] | None:
-    """From take-off to the end; None where any of it is not known."""
-    if route.arrival_s is None or route.departs_s is None or route.ends_s is None or np.isnan(route.arrival_s).any():
-        return None
-    moments = [route.departs_s, route.ends_s, float(route.arrival_s.min()), float(route.arrival_s.max())]
-    return min(moments), max(moments)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from missions.serializers.limits import MAX_SPEED_MPS
 from missions.serializers.shapes import WaypointSerializer
 from missions.services.manual_edits.checks import HandLook
 from missions.services.manual_edits.points import MAX_WAYPOINTS, HandPoint
-from missions.services.planning.plan_json import column_to_json, timing_to_json, waypoints_to_json
+from planning.plan_json import column_to_json, timing_to_json, waypoints_to_json
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 

@@ -9,7 +9,8 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.models import EndAction, Objective, TargetPriority, Uav
+from missions.models import END_ACTIONS, Objective, TargetPriority, Uav
+from missions.reason_texts import fault_texts
 from missions.selectors.fleet import FIGURES, figures_of, uavs_of_organisation
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
@@ -41,7 +42,6 @@ from missions.services import (
     refuse_contradictions,
     with_bases,
 )
-from missions.services.planning.requests import GO_ON, LostLinkRequest, lost_link_from_json
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
 from planning.energy.performance import (
@@ -56,6 +56,7 @@ from planning.energy.performance import (
 )
 from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from planning.problem import Objective as RoutingObjective
+from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_json
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
@@ -115,7 +116,7 @@ class UavInputSerializer(PerformanceFieldsSerializer):
     position = PositionField(required=False)
     max_range_m = AboveZeroField(required=False, allow_null=True, max_value=MAX_RANGE_M, help_text="null or missing: not limited")
     cruise_speed_mps = AboveZeroField(required=False, max_value=MAX_SPEED_MPS)
-    end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS, required=False)
     most_targets = serializers.IntegerField(
         required=False, allow_null=True, min_value=1, max_value=MAX_TARGETS, help_text="null or missing: not limited"
     )
@@ -356,7 +357,7 @@ class PlanInputSerializer(OptionsSerializer):
             refuse_contradictions(request)
             attrs["bases"] = with_bases(request, self.context["organisation"]).bases
         except InvalidRequest as error:
-            raise serializers.ValidationError({place: [fault] for place, fault in error.faults.items()}) from error
+            raise serializers.ValidationError({place: [fault] for place, fault in fault_texts(error).items()}) from error
         return attrs
 
     def to_request(self) -> PlanRequest:

@@ -12,10 +12,11 @@ from inspection.serializers.schedule_words import schedule_sentence
 from inspection.serializers.zones import ScheduleField
 from inspection.zones.activity import Span
 from missions.fields import PositionField
-from missions.models import EndAction
+from missions.models import END_ACTIONS
 from missions.selectors.zones import LegalWindows
 from missions.serializers.known_fields import KnownFieldsSerializer
 from planning.clearance.zone_clearance import FlownRoute
+from planning.request import EndAction
 from workspace.api import strict_serializers as serializers
 
 MAX_WAYPOINTS = 20_000
@@ -31,7 +32,7 @@ class TimedWaypointSerializer(serializers.Serializer):
 class TimedRouteSerializer(serializers.Serializer):
     """A plan's route; more of it may come along and is not read."""
 
-    end_action = serializers.ChoiceField(choices=EndAction.choices)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS)
     departs_s = serializers.FloatField(required=False)
     duration_s = serializers.FloatField()
     arrival_s = serializers.ListField(

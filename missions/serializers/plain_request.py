@@ -10,10 +10,10 @@ from typing import Any
 from django.conf import settings
 
 from inspection.geodesy import LonLat
-from missions.models import EndAction
 from missions.serializers.limits import MAX_KEY, MAX_RANGE_M, MAX_SPEED_MPS, MAX_UAV_NAME_LENGTH
 from missions.services import PlanRequest, TargetRequest, UavRequest
 from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
+from planning.request import EndAction
 
 _OBJECTIVES = {objective.value: objective for objective in Objective if objective is not Objective.ENERGY}  # which needs batteries
 _END_ACTIONS = {action.value: action for action in EndAction if action is not EndAction.BASE}  # which needs the organisation's bases

@@ -5,10 +5,11 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
+from missions.reason_texts import fault_texts
 from missions.selectors.fleet import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
 from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
-from missions.services.targets.reachability import CODES, NO_UAV
+from missions.services.planning.reachability import CODES, NO_UAV
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 from workspace.jobs.serializers import Declared
@@ -57,7 +58,7 @@ class ReachabilityInputSerializer(OptionsSerializer):
         try:
             attrs["request"] = with_bases(plan_request(attrs), self.context["organisation"])
         except InvalidRequest as error:
-            raise serializers.ValidationError({place: [fault] for place, fault in error.faults.items()}) from error
+            raise serializers.ValidationError({place: [fault] for place, fault in fault_texts(error).items()}) from error
         return attrs
 
     def to_request(self) -> PlanRequest:

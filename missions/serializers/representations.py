@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inspection.selectors import asset_detail, asset_label
-from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
 from missions.selectors.mission_list import ListedMission, sketch
 from missions.selectors.missions import approval_in_force, open_plan_of_mission
 from missions.selectors.stale_plans import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
@@ -14,10 +14,10 @@ from missions.selectors.uav_changes import uav_change_json, uav_changes
 from missions.serializers.commands import approval_json
 from missions.services import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
 from missions.services.missions import EDITABLE
-from missions.services.planning.requests import lost_link_from_json, lost_link_to_json
-from missions.services.targets.straight_line import straight_json
 from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.energy.performance import performance_from_json, performance_to_json
+from planning.plan_json import straight_json
+from planning.request import EndAction, lost_link_from_json, lost_link_to_json
 from planning.trajectory.waypoints import KINDS, NONE
 
 

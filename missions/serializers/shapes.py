@@ -3,7 +3,7 @@
 from rest_framework import serializers
 
 from missions.fields import ColoursField, PositionField
-from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
+from missions.models import END_ACTIONS, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.selectors.fleet import FIGURES
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
@@ -58,7 +58,7 @@ class RouteSerializer(serializers.Serializer):
 
     uav = serializers.CharField(help_text="name")
     uav_id = serializers.IntegerField(allow_null=True)
-    end_action = serializers.ChoiceField(choices=EndAction.choices)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS)
     base = serializers.CharField(allow_null=True, help_text="the base at which it lands, where it ends at one")
     length_m = serializers.FloatField(help_text="metres flown")
     duration_s = serializers.FloatField(help_text="from its own take-off")
@@ -271,7 +271,7 @@ class LastRouteSerializer(serializers.Serializer):
     uav = serializers.CharField(help_text="name")
     uav_id = serializers.IntegerField(allow_null=True)
     start = PositionField(required=False, help_text="missing, as end_action and base, in what was remembered before these were")
-    end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS, required=False)
     base = serializers.CharField(required=False, allow_null=True, help_text="the base at which it lands, where it ends at one")
     length_m = serializers.FloatField()
     duration_s = serializers.FloatField()
@@ -307,7 +307,7 @@ class MissionUavSerializer(serializers.Serializer):
     position = PositionField()
     max_range_m = serializers.FloatField(allow_null=True)
     cruise_speed_mps = serializers.FloatField()
-    end_action = serializers.ChoiceField(choices=EndAction.choices)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS)
     most_targets = serializers.IntegerField(allow_null=True)
     sensors = serializers.ListField(child=serializers.CharField())
     sorties = serializers.IntegerField(help_text="flights that it makes at most")

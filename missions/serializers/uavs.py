@@ -5,7 +5,7 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
+from missions.models import END_ACTIONS, CredentialKind, LinkKind, Uav, UavState
 from missions.selectors.fleet import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.serializers.inputs import MAX_RANGE_M, MAX_SPEED_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -67,7 +67,7 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
     )
     battery_percent = FiniteFloatField(allow_null=True, required=False, min_value=0, max_value=100)
     sensor = serializers.CharField(max_length=100, allow_blank=True, required=False, help_text="besides those of its type")
-    end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    end_action = serializers.ChoiceField(choices=END_ACTIONS, required=False)
     external_id = ExternalIdField(help_text="another system's id of it, one UAV each; empty: none")
     attributes = AttributesField(help_text="of other systems; a change replaces all of them")
     twin_of = serializers.IntegerField(read_only=True, allow_null=True, help_text="the UAV that it is the simulated twin of")

@@ -1,5 +1,7 @@
 """Writes of missions, and planning: from a request to a plan, from a plan to stored routes."""
 
+from missions.selectors.planning_context import with_bases
+from missions.selectors.resolved_targets import resolved_targets
 from missions.services.fleet.credentials import make_credential, mavlink_signing_key, revoke_credential
 from missions.services.fleet.rows import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
 from missions.services.fleet.types_and_bases import (
@@ -30,9 +32,12 @@ from missions.services.missions import (
     request_of_mission,
     restore_mission,
 )
-from missions.services.planning.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
+from missions.services.planning.explanations import explain_route, explain_unreached_target
 from missions.services.planning.planner import GraphOutdated, make_plan
-from missions.services.planning.requests import (
+from missions.services.planning.warm_up import warm_up
+from planning.assignment.options import refuse_contradictions
+from planning.plan_json import FLAT_GROUND, NO_QUALITY, NO_SHORTFALL, TERRAIN_MODEL, locked_targets
+from planning.request import (
     CALM,
     BaseRequest,
     InvalidRequest,
@@ -45,11 +50,6 @@ from missions.services.planning.requests import (
     request_from_json,
     request_to_json,
 )
-from missions.services.planning.warm_up import warm_up
-from missions.services.targets.constraints import refuse_contradictions, with_bases
-from missions.services.targets.places import places_of
-from missions.services.targets.why_route import explain_route
-from missions.services.targets.why_target import explain_unreached_target
 
 __all__ = [
     "CALM",
@@ -100,7 +100,6 @@ __all__ = [
     "make_credential",
     "make_plan",
     "mavlink_signing_key",
-    "places_of",
     "plan_mission",
     "plan_mission_for_job",
     "plannable_request",
@@ -109,6 +108,7 @@ __all__ = [
     "request_from_json",
     "request_of_mission",
     "request_to_json",
+    "resolved_targets",
     "restore_base",
     "restore_mission",
     "restore_uav",

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 
 from inspection.geodesy import distance_m
-from missions.models import EndAction, InspectionTarget, Mission, Route, Waypoint, WaypointKind
+from missions.models import InspectionTarget, Mission, Route, Waypoint, WaypointKind
 from missions.services.manual_edits.legs import hand_legs_json
+from planning.request import EndAction
 
 OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 

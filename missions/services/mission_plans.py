@@ -10,13 +10,14 @@ from django.utils import timezone
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
+from missions.selectors.planning_context import with_bases
 from missions.services.manual_edits.preserved import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
-from missions.services.planning.best_so_far import OnPlanProgress
-from missions.services.planning.plan_json import NO_SHORTFALL
 from missions.services.planning.planner import make_plan
-from missions.services.planning.requests import GO_ON, PlanRequest, request_from_json
-from missions.services.targets.constraints import has_sensor, with_bases
+from planning.assignment.options import has_sensor
+from planning.plan_json import NO_SHORTFALL
+from planning.progress import OnPlanProgress
+from planning.request import GO_ON, PlanRequest, request_from_json
 from planning.solver.solver import Stop
 from workspace.audit import record_change
 from workspace.jobs.services import JobCancelled, finish_job

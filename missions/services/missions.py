@@ -12,10 +12,16 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
+from missions.models import InspectionTarget, Mission, MissionState, MissionUav
+from missions.selectors.resolved_targets import resolved_targets
 from missions.services.approval.lost_link import lost_link_of_stored
 from missions.services.last_plan import summary_of_plan
-from missions.services.planning.requests import (
+from planning.assignment.options import refuse_contradictions
+from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
+from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
+from planning.problem import Objective
+from planning.request import (
+    EndAction,
     InvalidRequest,
     LockRequest,
     LostLinkRequest,
@@ -32,11 +38,6 @@ from missions.services.planning.requests import (
     task_from_json,
     task_to_json,
 )
-from missions.services.targets.constraints import refuse_contradictions
-from missions.services.targets.places import places_of
-from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
-from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
-from planning.problem import Objective
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 
@@ -309,7 +310,7 @@ def _performance(row: MissionUav) -> Performance:
 
 def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
     """Unsaved rows with the label and the task that each target has today. Raises InvalidRequest."""
-    places, _ = places_of(targets)
+    places, _ = resolved_targets(targets)
     rows = []
     for place in places:
         target = targets[place.target]

@@ -6,8 +6,8 @@ from typing import Any
 from django.db import IntegrityError, transaction
 
 from missions.models import SavedSelection
-from missions.services.planning.requests import TargetRequest, priority_to_json, task_to_json
-from missions.services.targets.places import places_of
+from missions.selectors.resolved_targets import resolved_targets
+from planning.request import TargetRequest, priority_to_json, task_to_json
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 
@@ -52,7 +52,7 @@ def delete_selection(*, selection: SavedSelection, actor: User, expected_revisio
 
 def _as_kept(targets: Sequence[TargetRequest]) -> list[dict[str, Any]]:
     """As in a mission's request, each with the label it has today: a name is left where the asset goes."""
-    places, _ = places_of(targets)
+    places, _ = resolved_targets(targets)
     return [
         {
             "asset": target.asset,

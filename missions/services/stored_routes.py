@@ -4,8 +4,8 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from missions.models import Mission, Route, Waypoint
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import task_from_json
+from planning.plan import PlannedRoute
+from planning.request import task_from_json
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

@@ -13,16 +13,16 @@ from rest_framework.views import APIView
 
 from missions import services
 from missions.models import Mission, WaypointKind
+from missions.reason_texts import fault_texts
+from missions.selectors.planning_context import stored_bases
 from missions.serializers import explanations
 from missions.serializers.inputs import PlanInputSerializer, plan_request
+from missions.services.planning.explanations import explain_route, explain_unreached_target
 from missions.services.planning.later_departure import better_departure
-from missions.services.planning.requests import InvalidRequest, PlanRequest
-from missions.services.targets.constraints import stored_bases
-from missions.services.targets.why_route import explain_route
-from missions.services.targets.why_target import explain_unreached_target
 from missions.views.missions import mission_or_404
 from missions.views.plans import is_small
 from missions.views.problems import api_problems
+from planning.request import InvalidRequest, PlanRequest
 from workspace.api.errors import ApiProblem
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
@@ -69,7 +69,7 @@ def _route(request: PlanRequest, orders: list[list[int]], uav: int, *, is_by_len
     try:
         found = explain_route(request=request, routes=orders, uav=uav, is_by_length=is_by_length)
     except InvalidRequest as error:
-        return {"uav": uav, "fault": next(iter(error.faults.values())), "explanation": None}
+        return {"uav": uav, "fault": next(iter(fault_texts(error).values())), "explanation": None}
     return {"uav": uav, "fault": "", "explanation": found}
 
 

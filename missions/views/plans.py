@@ -16,7 +16,7 @@ from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.plain_request import plain_request
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
-from missions.services.targets.reachability import reachability
+from missions.services.planning.reachability import reachability
 from missions.views.fast_path import small_plan
 from missions.views.problems import api_problems
 from workspace.api.errors import ApiProblem
@@ -103,7 +103,7 @@ class PlanList(APIView):
         with api_problems():
             if is_small(len(asked.targets)):
                 return Response(services.make_plan(request=asked, as_text=True))
-            services.places_of(asked.targets)  # says at once what a worker would find wrong later
+            services.resolved_targets(asked.targets)  # says at once what a worker would find wrong later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
 
 

@@ -9,6 +9,7 @@ from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiResponse
 
 from inspection.selectors import NoGraph
+from missions.reason_texts import fault_texts
 from missions.selectors.fleet import last_change
 from missions.services import (
     ExternalIdTaken,
@@ -89,8 +90,9 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
     try:
         yield
     except InvalidRequest as error:
-        place, fault = next(iter(error.faults.items()))
-        details = {where: [what] for where, what in error.faults.items()}
+        faults = fault_texts(error)
+        place, fault = next(iter(faults.items()))
+        details = {where: [what] for where, what in faults.items()}
         raise ApiProblem(400, "invalid", f"{place}: {fault}", details=details) from error
     except NothingToPlan as error:
         raise ApiProblem(400, "nothing_to_plan", _("A mission needs at least one UAV and one target to be planned.")) from error

@@ -16,7 +16,7 @@ from django.utils.translation import gettext as _
 from inspection.demo_region import BASES
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
-from missions.models import Base, EndAction, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
+from missions.models import Base, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
 from missions.selectors.fleet import performance_of
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY
@@ -24,6 +24,7 @@ from missions.services.commands.refused import refuse
 from missions.services.fleet.demo_uavs import create_demo_uavs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.problem import Objective, Task, TaskKind
+from planning.request import EndAction
 from simulation.models import Simulation
 from simulation.services.demo_flights import fly_demo_mission
 from simulation.services.simulations import end_simulation

@@ -4,10 +4,10 @@ from uuid import UUID
 
 from missions.models import Approval
 from missions.services.commands.dispatch import DamagedApproval, approved_load
-from missions.services.planning.requests import lost_link_from_json
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import conditions_from_json
 from planning.energy.performance import performance_from_json
+from planning.request import lost_link_from_json
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.services.of_flight import OfFlight
 

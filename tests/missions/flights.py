@@ -8,11 +8,12 @@ import numpy as np
 
 from inspection.models import Asset
 from inspection.services import import_terrain
-from missions.models import Approval, EndAction, Mission, Uav, UavCommand
+from missions.models import Approval, Mission, Uav, UavCommand
 from missions.services import PlanRequest, UavRequest, create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.commands import note_applied, note_sent
 from missions.services.commands.dispatch import dispatch_mission
+from planning.request import EndAction
 from tests.accounts.users import somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds

@@ -32,8 +32,8 @@ from missions.services.approval.approval import approve_mission, revoke_approval
 from missions.services.approval.document import approval_document, content_sha256
 from missions.services.commands.commands import note_applied, note_failed
 from missions.services.commands.refused import Refused
-from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
+from planning.request import LostLinkRequest
 from tests.missions import worlds
 from tests.missions.commands.outbox import claim, fence, now
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned

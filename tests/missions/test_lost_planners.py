@@ -22,9 +22,10 @@ from django.conf import settings
 from django.db import connection
 from django.utils import timezone
 
-from missions.models import EndAction, Mission
+from missions.models import Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.accounts.users import somebody
 from tests.missions.worlds import UAV_AT, World, world
 from workspace import tasks

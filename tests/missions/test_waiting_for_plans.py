@@ -112,7 +112,7 @@ def test_when_enough_requests_wait_the_next_is_answered_at_once(here: World, cli
 
 
 def test_a_plan_that_fails_meanwhile_is_answered_as_an_error(here: World, client: Client) -> None:
-    with mock.patch("missions.services.planning.planner.MAX_GROUNDS", 0):
+    with mock.patch("missions.services.planning.planner.MAX_CONTEXTS", 0):
         response = wait_with(client, here, tasks.solve_plan, "wait=15")
     assert (response.status_code, response.json()["error"]["code"]) == (503, "graph_outdated")
     assert int(response["Retry-After"]) > 0

@@ -13,9 +13,9 @@ from typing import Any
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.services import build_graph, mark_ground_changed
-from missions.models import EndAction
 from missions.services import PlanRequest, TargetRequest, UavRequest
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.inspection import ground
 
 TOWER_LONS = (10.000, 10.004, 10.008, 10.012, 10.016, 10.020)

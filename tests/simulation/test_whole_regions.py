@@ -11,10 +11,10 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors.planning import heights_at, planning_read
 from inspection.services import build_graph, import_osm, mark_ground_changed
-from missions.models import EndAction
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from planning.energy.performance import Performance
 from planning.problem import Objective
+from planning.request import EndAction
 from simulation.assessment.judging import judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly

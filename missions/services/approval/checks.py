@@ -16,8 +16,8 @@ from missions.selectors.uav_changes import uav_changes
 from missions.services.commands.refused import Reason
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import MissionChanged
-from missions.services.planning.over_wires import spans_in_the_way
 from missions.services.stored_routes import stored_routes
+from planning.checks.wires import spans_in_the_way
 
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
 
@@ -107,7 +107,7 @@ def _ground(mission: Mission) -> Iterator[Reason]:
         yield Reason("times_not_known", _("The times of a route are not known. Plan it again."))
         return
     names = [row.name for row in mission.mission_uavs.all()]
-    for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m)):
+    for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m, settings.FLIGHT_RULES)):
         words = _("The route of %(uav)s passes a mast or wires too near.") % {"uav": names[number]}
         yield Reason("wires", words, number)
 

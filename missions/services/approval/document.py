@@ -22,13 +22,13 @@ from mavlink.fence import fence_of, rally_items
 from mavlink.intermediate_waypoints import with_points_between
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
-from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
+from missions.models import LinkKind, Mission, Route, Waypoint
 from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.fence import rally_points, zones_beside
 from missions.services.commands.refused import Reason, Refused
-from missions.services.planning.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
+from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from planning.trajectory.waypoints import WaypointKind
 
 COORDINATE_DIGITS = 7  # about a centimetre

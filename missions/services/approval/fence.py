@@ -9,9 +9,9 @@ from inspection.selectors.zone_table import zone_table
 from mavlink.fence import FenceRules, FenceZone
 from missions.models import Mission, Route
 from missions.selectors.zones import flown_route, zone_margins
-from missions.services.planning.requests import lost_link_from_json
 from planning.clearance.lost_link import LostLink
 from planning.clearance.nearby_zones import zones_near
+from planning.request import lost_link_from_json
 
 
 def zones_beside(route: Route, departs_s: float | None) -> list[FenceZone]:

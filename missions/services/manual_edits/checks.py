@@ -11,18 +11,19 @@ from inspection.models import AssetKind
 from inspection.network.build.network import Network
 from inspection.network.spans import spans_of
 from inspection.selectors.planning import Edition, heights_at, planning_read
-from missions.models import EndAction, Mission
+from missions.models import Mission
+from missions.reason_texts import fault_texts
 from missions.selectors.legs import LegFlyer, speed_words, too_low_text
 from missions.selectors.zones import MetZone, zones_met
 from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_route
-from missions.services.planning.final_check import flown_route
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import InvalidRequest, PlanRequest
+from planning.checks.zones import flown_route
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.clearance.zone_clearance import TAKE_OFF
 from planning.connection_points import tallest_support_m
 from planning.energy.power import NoHeadway
+from planning.plan import PlannedRoute
+from planning.request import EndAction, InvalidRequest, PlanRequest
 from planning.trajectory.heights import GroundHeights, asset_height_m, with_heights
 from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
@@ -85,7 +86,7 @@ def look_by_hand(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> 
     try:
         flown = flown_by_hand(route.request, uav, wished, route.departs_s, ground)
     except InvalidRequest as error:
-        return HandLook(error.faults | faults)
+        return HandLook(fault_texts(error) | faults)
     for found in faults_as_flown(flown, wished, mission, route.request, uav, ground):
         faults = found | faults
     return HandLook(faults, flown, _points_flown(flown, wished, route.request, uav))
@@ -244,7 +245,7 @@ def _speed_faults(flown: PlannedRoute, leads_to: Sequence[int], request: PlanReq
 
 
 def _zone_faults(flown: PlannedRoute, leads_to: Sequence[int], mission: Mission) -> dict[str, str]:
-    (met,) = zones_met([flown_route(flown, mission.departs_at)])
+    (met,) = zones_met([flown_route(flown, mission.departs_at, settings.FLIGHT_RULES)])
     last = len(leads_to) - 1
 
     def leg(meeting: MetZone) -> int:

@@ -23,8 +23,8 @@ from missions.services.manual_edits.points import HandPoint, are_moved, list_fau
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import InvalidRequest
+from planning.plan import PlannedRoute
+from planning.request import InvalidRequest
 from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 

@@ -8,8 +8,8 @@ from missions.models import Mission, Route
 from missions.services.manual_edits.checks import HandGround, hand_ground
 from missions.services.manual_edits.edits import checked_by_hand, place_of, settle_by_hand, store_by_hand
 from missions.services.manual_edits.legs import HandLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import InvalidRequest
+from planning.plan import PlannedRoute
+from planning.request import InvalidRequest
 from planning.trajectory.waypoints import RoutePoints
 
 NOT_KEPT = "by_hand_not_kept"

@@ -5,7 +5,8 @@ from typing import Any
 from django.conf import settings
 
 from missions.models import Mission
-from missions.selectors.flights import OtherFlights, flights_at_the_same_time, routes_of_mission_in_time
+from missions.selectors.flights import flights_at_the_same_time, routes_of_mission_in_time
+from planning.context import OtherFlights
 from planning.separation.report import separation_json
 from planning.separation.separation import Separation, closest_encounter, conflicts
 

@@ -9,12 +9,11 @@ from typing import Any
 from django.conf import settings
 
 from inspection.geodesy import LonLat
-from inspection.selectors.planning import planning_read
+from missions.selectors.planning_context import read_targets
 from missions.services.planning.planner import make_plan
-from missions.services.planning.requests import PlanRequest, moment_to_json
-from missions.services.planning.zone_choice import near_positions
-from missions.services.targets.places import places_of
+from planning.airspace import near_positions
 from planning.problem import Objective, Priority
+from planning.request import PlanRequest, moment_to_json
 
 AHEAD_S = 48 * 3_600.0
 MAX_TRIES = 12
@@ -41,10 +40,9 @@ def better_departure(*, request: PlanRequest, now: datetime) -> dict[str, Any]:
 def _moments(request: PlanRequest, now: datetime) -> Iterator[datetime]:
     """On full minutes, in order, after the margin that is kept from a zone's times."""
     from_s = (request.departs_at or now).timestamp()
-    ground = planning_read().ground()
-    places, _gone = places_of(request.targets)
+    ground, targets, _deleted = read_targets(request)
     ends = [*(uav.position for uav in request.uavs), *(base.position for base in request.bases)]
-    near = near_positions(ground.table, [*ends, *(LonLat(*at) for place in places for at in place.course)])
+    near = near_positions(ground.table, [*ends, *(LonLat(*at) for target in targets for at in target.course)])
     table = ground.table.only(near & ground.table.reaching(0.0, settings.FLIGHT_RULES.max_agl_m))
     spans = (span for own in table.spans(from_s, from_s + AHEAD_S) for span in own)
     moments_s = {STEP_S * math.ceil(span.to_s / STEP_S) for span in spans if span.to_s < from_s + AHEAD_S}

@@ -8,7 +8,7 @@ from inspection.network.route_index import asset_places, node_tree, route_index
 from inspection.network.spans import spans_of
 from inspection.network.warm_up import rehearse as rehearse_ways
 from inspection.selectors import NoGraph
-from missions.services.planning.map_data import current_scene
+from missions.selectors.planning_context import current_airspace
 from planning.solver.warm_up import rehearse as rehearse_solvers
 from planning.trajectory.warm_up import rehearse as rehearse_drawing
 
@@ -21,7 +21,7 @@ def warm_up() -> None:
     rehearse_solvers()
     rehearse_drawing()
     try:
-        scene = current_scene()
+        airspace = current_airspace()
     except NoGraph:
         return
     except Error as error:
@@ -30,6 +30,6 @@ def warm_up() -> None:
     finally:
         connections.close_all()
     for part in (route_index, node_tree, asset_places):
-        part(scene.graph)
-    asset_places(scene.whole_graph)
-    spans_of(scene.network)
+        part(airspace.graph)
+    asset_places(airspace.whole_graph)
+    spans_of(airspace.network)

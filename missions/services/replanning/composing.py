@@ -9,12 +9,11 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, path_length_m
-from missions.models import EndAction
-from missions.services.planning.plan_json import PlannedRoute
-from missions.services.planning.requests import task_from_json
 from missions.services.replanning.leaving import CannotLeave, Leaving
 from planning.energy.conditions import Conditions
 from planning.energy.power import NoHeadway
+from planning.plan import PlannedRoute
+from planning.request import EndAction, task_from_json
 from planning.trajectory.route_points import line_of
 from planning.trajectory.sorties import timing_of_route
 from planning.trajectory.timing import Timing

@@ -33,9 +33,9 @@ from datetime import datetime, timedelta
 from itertools import pairwise
 from typing import Any
 
-from missions.services.planning.requests import moment_to_json
 from missions.services.replanning.proposals import Proposal
 from missions.services.replanning.rest import Rest, distance_apart_m
+from planning.request import moment_to_json
 
 
 def difference_of(proposal: Proposal, *, now: datetime, valid_until: datetime) -> dict[str, Any]:

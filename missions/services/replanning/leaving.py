@@ -8,12 +8,11 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import path_length_m
-from missions.models import EndAction
-from missions.services.planning.requests import UavRequest, task_from_json
 from missions.services.replanning.rest import Rest
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, hold_taken, speeds, table_of
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
+from planning.request import EndAction, UavRequest, task_from_json
 from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 

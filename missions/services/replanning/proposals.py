@@ -9,16 +9,16 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from missions.models import Mission
+from missions.selectors.planning_context import with_bases
 from missions.services.missions import request_of_mission
 from missions.services.planning.planner import make_plan
-from missions.services.planning.requests import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from missions.services.replanning.composing import Continued, continued_route
 from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
 from missions.services.replanning.rest import Cause, Rest
 from missions.services.replanning.zones_ahead import zone_ahead
-from missions.services.targets.constraints import with_bases
 from planning.energy.conditions import conditions_from_json
 from planning.problem import Objective, Priority
+from planning.request import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from planning.solver.solver import Stop, never
 
 MAX_ALONE = 4  # UAVs of which it is tried that one of them takes all

@@ -14,12 +14,12 @@ from missions.services.commands.refused import Reason
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.mission_plans import store_plan
 from missions.services.missions import check_lost_link, create_mission
-from missions.services.planning.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
-from missions.services.planning.requests import PlanRequest, lost_link_from_json
 from missions.services.replanning.composing import Continued
 from missions.services.replanning.proposals import Proposal
 from planning.energy.conditions import conditions_from_json
+from planning.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
 from planning.problem import Objective
+from planning.request import PlanRequest, lost_link_from_json
 
 
 def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[Reason]]:

@@ -10,10 +10,10 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from missions.models import Approval
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load
-from missions.services.planning.requests import lost_link_from_json
 from planning.clearance.lost_link import LostLinkPlan
 from planning.energy.conditions import conditions_from_json
 from planning.energy.performance import performance_from_json
+from planning.request import lost_link_from_json
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine

@@ -12,13 +12,14 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
-from missions.models import CommandKind, EndAction, Route, Uav
+from missions.models import CommandKind, Route, Uav
 from missions.services.approval.fence import rally_points
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, reported_return, return_checks, ways_now
 from missions.services.commands.staggered_returns import stuck_returns
 from missions.services.commands.start_slots import KEPT_SHARE
 from missions.services.commands.steering import mission_in_hand
 from planning.clearance.rtl_paths import Places
+from planning.request import EndAction
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts
 from telemetry.alerting.modes import ModeKind, mode_kind

@@ -133,7 +133,7 @@ def test_without_a_graph_the_answer_is_try_again(client: Client) -> None:
 
 
 def test_while_the_zones_never_rest_the_answer_is_to_try_again(here: World, client: Client) -> None:
-    with mock.patch("missions.services.planning.planner.MAX_GROUNDS", 0):
+    with mock.patch("missions.services.planning.planner.MAX_CONTEXTS", 0):
         response = post(client, "plans", plan_body(here.towers[5]))
     assert error_of(response, 503)["code"] == "graph_outdated"
     assert int(response["Retry-After"]) > 0
@@ -215,7 +215,7 @@ def test_a_finished_job_is_not_solved_again(here: World, client: Client) -> None
 
 def test_a_job_that_fails_says_why(here: World, client: Client) -> None:
     job = large_job(here, client)
-    with mock.patch("missions.services.planning.planner.MAX_GROUNDS", 0):
+    with mock.patch("missions.services.planning.planner.MAX_CONTEXTS", 0):
         tasks.solve_plan(str(job.pk))
     job.refresh_from_db()
     assert job.state == JobState.FAILED
@@ -273,7 +273,7 @@ def test_the_best_route_so_far_is_drawn_while_it_is_searched_for(here: World, cl
     with (
         mock.patch("workspace.jobs.job_watch.report_progress", report),
         mock.patch("missions.tasks.JobWatch", watching_often),
-        mock.patch("missions.services.targets.assignment.solve", solve),
+        mock.patch("planning.assignment.assignment.solve", solve),
     ):
         tasks.solve_plan(str(job.pk))
     best = next(entry for entry in drawn if entry)

@@ -11,13 +11,13 @@ import pytest
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
-from missions.models import EndAction, Mission, MissionState
+from missions.models import Mission, MissionState
 from missions.services import PlanRequest, TargetRequest, make_plan
-from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Objective
+from planning.request import EndAction, LostLinkRequest
 from tests.accounts.users import somebody
 from tests.inspection import ground
 from tests.missions.oracles.flight_oracle import Judge

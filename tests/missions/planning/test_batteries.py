@@ -9,14 +9,13 @@ from django.contrib.gis.gdal import GDALRaster
 
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
-from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
-from missions.services.planning.requests import UavRequest
-from missions.services.targets.energy_shortfall import least_missing
-from missions.services.targets.refusals import LeftOut
+from planning.plan import UnassignedTarget
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
+from planning.explain.energy_shortfall import least_missing
 from planning.problem import Objective, Priority
+from planning.request import EndAction, UavRequest
 from tests.inspection import ground
 from tests.missions.worlds import island, power_line, rebuild, request, uav, world
 
@@ -297,12 +296,12 @@ def test_what_is_not_on_one_route_with_others_is_not_put_down_to_the_wind() -> N
 
 
 def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
-    by_battery, alone = LeftOut(0, "beyond_energy", "It takes 9 Wh more", 9.0), LeftOut(0, "beyond_range", "It is within range alone", 0.0)
+    by_battery, alone = UnassignedTarget(0, "beyond_energy", "It takes 9 Wh more", 9.0), UnassignedTarget(0, "beyond_range", "It is within range alone", 0.0)
     assert least_missing([by_battery], [alone], {}) == least_missing([alone], [by_battery], {}) == [alone]
 
 
 def test_what_another_plan_flies_is_within_reach_alone() -> None:
-    left_out = LeftOut(0, "beyond_range", "It is 9 km there, 1 km more", 1_000.0)
+    left_out = UnassignedTarget(0, "beyond_range", "It is 9 km there, 1 km more", 1_000.0)
     (told,) = least_missing([left_out], [], {0: uav(max_range_m=9_000.0)})
     assert (told.reason, told.missing, told.message[:24]) == ("beyond_range", 0.0, "It is within range alone")
     assert least_missing([left_out], [], {1: uav()}) == [left_out]

@@ -9,10 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from inspection.models import Asset, NoFlyZone
-from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
-from missions.services.planning.requests import NO_BATTERY
 from planning.problem import Objective
+from planning.request import NO_BATTERY, EndAction
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.property_tests.random_missions import AMPLE
 from tests.missions.worlds import rebuild, request, uav, world

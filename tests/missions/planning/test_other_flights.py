@@ -5,9 +5,10 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 import pytest
 
-from missions.models import EndAction, Mission, MissionState, Waypoint
+from missions.models import Mission, MissionState, Waypoint
 from missions.selectors.flights import flights_at_the_same_time
 from missions.services import create_mission, duplicate_mission, plan_mission
+from planning.request import EndAction
 from planning.rules import SeparationRules
 from planning.separation.separation import conflicts
 from tests.accounts.users import somebody

@@ -12,10 +12,10 @@ import pytest
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset
-from missions.models import EndAction
 from missions.services import BaseRequest, TargetRequest, make_plan
-from missions.services.planning.candidate_plans import solve_assignment
+from planning.assignment.candidate_plan import solve_assignment
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.missions.oracles.clock_oracle import clock_of
 from tests.missions.worlds import World, request, uav, world
 
@@ -36,7 +36,7 @@ def counted_s(asked: Any) -> tuple[dict[str, Any], float]:
         solutions.append(solve_assignment(*args, **options))
         return solutions[-1]
 
-    with mock.patch("missions.services.planning.candidate_plans.solve_assignment", solve):
+    with mock.patch("planning.assignment.candidate_plan.solve_assignment", solve):
         plan = make_plan(request=asked)
     return plan, solutions[0][0].longest_s
 

@@ -5,8 +5,8 @@ from unittest import mock
 import pytest
 
 from inspection.models import Asset, AssetKind
+from missions.selectors.resolved_targets import resolved_targets
 from missions.services import TargetRequest
-from missions.services.targets.places import places_of
 from tests.missions.worlds import world
 
 pytestmark = pytest.mark.django_db
@@ -27,9 +27,9 @@ def test_the_short_way_finds_what_the_long_way_finds() -> None:
     assets = Asset.objects.filter(kind__in=(AssetKind.TOWER, AssetKind.BRIDGE))
     targets = [TargetRequest(pk) for pk in assets.values_list("pk", flat=True)]
     assert len(targets) > 3
-    quick = places_of(targets)
-    with mock.patch("missions.services.targets.places._plain_places", return_value=None):
-        slow = places_of(targets)
+    quick = resolved_targets(targets)
+    with mock.patch("missions.selectors.resolved_targets._whole_towers_and_bridges", return_value=None):
+        slow = resolved_targets(targets)
     assert slow == quick
     assert [place.label for place in slow[0]] == [place.label for place in quick[0]]
     assert {place.height_m for place in quick[0]} >= {31.5, 32.5}

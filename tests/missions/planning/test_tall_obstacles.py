@@ -14,9 +14,9 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
-from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
 from planning.energy.performance import Performance
+from planning.request import EndAction
 from tests.cases import long
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff

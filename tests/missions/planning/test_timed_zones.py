@@ -7,9 +7,9 @@ import pytest
 from django.contrib.gis.geos import LineString
 
 from inspection.models import NoFlyZone
-from missions.models import EndAction
 from missions.services import make_plan
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.missions.worlds import request, uav, world, zone_around
 
 pytestmark = pytest.mark.django_db

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
-from missions.services.planning.plan_json import line_text, waypoints_text, waypoints_to_json
+from planning.plan_json import line_text, waypoints_text, waypoints_to_json
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

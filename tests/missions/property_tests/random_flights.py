@@ -13,13 +13,13 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, import_osm, mark_ground_changed
-from missions.models import EndAction, Mission, MissionState
+from missions.models import Mission, MissionState
 from missions.services import PlanRequest, UavRequest, create_mission, make_plan, store_plan
-from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Objective
+from planning.request import EndAction, LostLinkRequest
 from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.property_tests.random_missions import Region, put_random_zones
 from workspace.models import User

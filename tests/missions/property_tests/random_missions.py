@@ -10,11 +10,10 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
-from missions.models import EndAction
 from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
-from missions.services.planning.requests import NO_BATTERY
 from planning.energy.performance import Performance
 from planning.problem import Objective
+from planning.request import NO_BATTERY, EndAction
 
 ZONES = 40
 AMPLE = Performance(battery_wh=50_000.0)  # where the least energy is wished for, every UAV has a battery; this one binds nobody

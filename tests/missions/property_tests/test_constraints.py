@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 from inspection.geodesy import LonLat
-from missions.models import EndAction
 from missions.services import (
     BaseRequest,
     InvalidRequest,
@@ -19,8 +18,9 @@ from missions.services import (
     request_from_json,
     request_to_json,
 )
-from missions.services.planning.best_so_far import PlanProgress
 from planning.problem import Objective, Priority
+from planning.progress import PlanProgress
+from planning.request import EndAction
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, World, island, request, uav, world, zone_around
 
 pytestmark = pytest.mark.django_db

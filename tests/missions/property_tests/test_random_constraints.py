@@ -11,14 +11,12 @@ import shapely
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
-from inspection.selectors.planning import planning_read
-from missions.models import EndAction
+from missions.selectors.planning_context import current_airspace
+from missions.selectors.resolved_targets import resolved_targets
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
-from missions.services.planning.map_data import current_scene, scene_on
-from missions.services.planning.requests import NO_BATTERY
-from missions.services.targets.places import places_of
 from planning.connection_points import Terminal, ways_between
 from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
+from planning.request import NO_BATTERY, EndAction
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.property_tests.random_missions import AMPLE
 from tests.missions.property_tests.test_random_missions import is_on_shortest_ways
@@ -160,13 +158,13 @@ class _Model:
 
 
 def _model(asked: PlanRequest, plan: dict[str, Any]) -> _Model:
-    scene = scene_on(planning_read().ground(), None, is_by_length=is_on_shortest_ways(plan))
+    scene = current_airspace(is_by_length=is_on_shortest_ways(plan))
     near_m = scene.access.zone_clearance_m
 
     def is_clear(place: LonLat) -> bool:
         return not scene.zones.contains([place], near_m)[0]
 
-    places = [place for place in places_of(asked.targets)[0] if all(map(is_clear, place.course))]
+    places = [place for place in resolved_targets(asked.targets)[0] if all(map(is_clear, place.course))]
     visits, courses = [], []
     for number, place in enumerate(places):
         for course in (place.course, place.course[::-1])[: 2 if len(place.course) > 1 else 1]:
@@ -225,7 +223,7 @@ def _assert_nothing_better_is_possible(asked: PlanRequest, plan: dict[str, Any])
 
 
 def _flies(uav: UavRequest) -> bool:
-    scene = current_scene()
+    scene = current_airspace()
     return not scene.zones.contains([uav.position], scene.access.zone_clearance_m)[0]
 
 

@@ -15,13 +15,11 @@ import shapely
 from inspection.geodesy import distance_m, path_length_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
-from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
+from missions.selectors.planning_context import current_airspace
+from missions.selectors.resolved_targets import NamedTarget, resolved_targets
 from missions.services import PlanRequest, make_plan
-from missions.services.planning.map_data import current_scene, scene_on
-from missions.services.targets.assignment import route_end
-from missions.services.targets.places import Place, places_of
-from missions.services.targets.refusals import Scene
+from planning.airspace import Airspace
 from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from planning.problem import Objective, Problem, UavStart, Visit
 from tests.cases import long
@@ -54,7 +52,7 @@ def _fly(path: Any, *, missions: int, seed: int) -> None:
     seen: Counter[str] = Counter()
     for zone_set in range(ZONE_SETS):
         put_random_zones(seed * 100 + zone_set)
-        region, scene, shortest = Region(), current_scene(), scene_on(planning_read().ground(), None, is_by_length=True)
+        region, scene, shortest = Region(), current_airspace(), current_airspace(is_by_length=True)
         draw = random.Random(seed * 1_000 + zone_set)
         rings = _exact_rings()
         network = _networkx_graph(scene.graph)
@@ -120,9 +118,9 @@ def _assert_ranges_and_lengths(request: PlanRequest, plan: dict[str, Any]) -> No
 class MissionModel:
     """The mission as terminals and ways, put together here once more from the request, without the planner's own assembly."""
 
-    def __init__(self, request: PlanRequest, scene: Scene) -> None:
+    def __init__(self, request: PlanRequest, scene: Airspace) -> None:
         self.scene = scene
-        self.places, _ = places_of(request.targets)
+        self.places, _ = resolved_targets(request.targets)
         near = scene.access.zone_clearance_m
         self.uavs = [number for number, uav in enumerate(request.uavs) if not scene.zones.contains([uav.position], near)[0]]
         self.open = [place for place in self.places if not _is_in_zone(place, scene)]
@@ -138,7 +136,7 @@ class MissionModel:
         self.ways: Ways = ways_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access, bases)
         self.problem = Problem(
             uavs=tuple(
-                UavStart(request.uavs[uav].max_range_m, route_end(request, uav), request.uavs[uav].cruise_speed_mps) for uav in self.uavs
+                UavStart(request.uavs[uav].max_range_m, request.route_end(uav), request.uavs[uav].cruise_speed_mps) for uav in self.uavs
             ),
             visits=tuple(self.visits),
             target_count=len(self.open),
@@ -175,7 +173,7 @@ def _networkx_graph(graph: InspectionGraph) -> nx.Graph:
     return network
 
 
-def _is_in_zone(place: Place, scene: Scene) -> bool:
+def _is_in_zone(place: NamedTarget, scene: Airspace) -> bool:
     near = scene.access.zone_clearance_m
     if len(place.course) == 1:
         return bool(scene.zones.contains([place.course[0]], near)[0])
@@ -183,7 +181,7 @@ def _is_in_zone(place: Place, scene: Scene) -> bool:
     return bool(scene.zones.meets(line[:-1], line[1:], near).any())
 
 
-def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Scene, model: MissionModel, shortest: Scene) -> None:
+def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Airspace, model: MissionModel, shortest: Airspace) -> None:
     reason_of = {item["target"]: item["reason"] for item in plan["unassigned"]}
     for place in model.places:
         reason = reason_of.get(place.target)
@@ -222,7 +220,7 @@ def _fits_beside_the_others(model: MissionModel, plan: dict[str, Any]) -> bool:
     return bool(model.uavs) and len(model.open) - best_merit(model.problem)[0] > visited
 
 
-def _can_be_reached(target: int, model: MissionModel, scene: Scene) -> bool:
+def _can_be_reached(target: int, model: MissionModel, scene: Airspace) -> bool:
     """By components alone: whether access legs and direct legs join the target to a UAV, perhaps by way of other targets."""
     network = _component_of(scene.graph)
     joined = nx.Graph()
@@ -248,7 +246,7 @@ def _component_of(graph: InspectionGraph) -> dict[int, int]:
     return {node: number for number, nodes in enumerate(parts) for node in nodes}
 
 
-def _metres_to_a_zone(place: Place, scene: Scene) -> float:
+def _metres_to_a_zone(place: NamedTarget, scene: Airspace) -> float:
     """Measured in a plane stretched to metres at the place."""
     lon, lat = place.course[0]
     scale = np.array([111_320.0 * math.cos(math.radians(lat)), 111_320.0])

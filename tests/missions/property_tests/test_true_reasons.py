@@ -7,13 +7,12 @@ from typing import Any
 
 import pytest
 
-from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
-from missions.models import EndAction
+from missions.selectors.planning_context import current_airspace
 from missions.services import LockRequest, PlanRequest, TargetRequest, make_plan
-from missions.services.planning.map_data import current_scene, scene_on
 from planning.energy.performance import Performance
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.cases import long
 from tests.missions.oracles.reason_oracle import ReasonOracle
 from tests.missions.property_tests.random_missions import Region, put_random_zones
@@ -75,7 +74,7 @@ def test_an_oracle_finds_the_same_reason_for_every_uav(region_file: Any, file_na
     import_osm(path=region_file(file_name))
     put_random_zones(7)
     region, draw, seen = Region(), random.Random(f"reasons {file_name}"), Counter[str]()
-    preferred, shortest = current_scene(), scene_on(planning_read().ground(), None, is_by_length=True)
+    preferred, shortest = current_airspace(), current_airspace(is_by_length=True)
     untrue = []
     for _ in range(MISSIONS):
         asked = _with_wishes(region.mission(draw), draw)

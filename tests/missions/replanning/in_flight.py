@@ -6,7 +6,7 @@ from typing import Any
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 
-from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
+from missions.models import CommandKind, Mission, ReplanOffer, Route, Uav
 from missions.selectors.missions import mission_of_organisation
 from missions.services import create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
@@ -16,6 +16,7 @@ from missions.services.commands.steering import command_uav
 from missions.services.replanning import ask_for_offer, work_out_for_job
 from planning.energy.performance import Performance
 from planning.problem import Objective
+from planning.request import EndAction
 from planning.solver.solver import never
 from tests.inspection import ground
 from tests.missions import worlds

@@ -11,12 +11,13 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
-from missions.models import EndAction, Mission, OfferState, ReplanOffer, Route
+from missions.models import Mission, OfferState, ReplanOffer, Route
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.commands.refused import Refused
 from missions.services.replanning import accept_offer
 from planning.problem import Objective
+from planning.request import EndAction
 from tests.accounts.users import somebody
 from tests.cases import long
 from tests.inspection import ground as ground_rows

@@ -11,11 +11,12 @@ from django.core.management import call_command
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from inspection.selectors.planning import heights_at, planning_read
-from missions.models import EndAction, Mission
+from missions.models import Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.commands.refused import Refused
 from planning.energy.performance import Performance
 from planning.problem import Objective, Task, TaskKind
+from planning.request import EndAction
 from simulation.assessment.judging import Verdict, judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly

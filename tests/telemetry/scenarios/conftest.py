@@ -11,9 +11,9 @@ import pytest
 
 from missions.models import Mission, Uav
 from missions.services import TargetRequest
-from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
 from planning.problem import Task, TaskKind
+from planning.request import LostLinkRequest
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around

@@ -7,8 +7,8 @@ import pytest
 from missions.models import CommandKind, CommandState, MissionState
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import load_of
-from missions.services.planning.requests import LostLinkRequest
 from planning.clearance.lost_link import LostLink
+from planning.request import LostLinkRequest
 from telemetry.models import TelemetryRecord, TelemetryStream
 from tests.accounts.users import somebody
 from tests.missions.flights import planned

@@ -12,11 +12,12 @@ from django.conf import settings
 
 from inspection.geodesy.wgs84 import short_distance_m
 from inspection.models import Asset
-from missions.models import CommandKind, CommandState, EndAction, Mission, MissionState, Uav
+from missions.models import CommandKind, CommandState, Mission, MissionState, Uav
 from missions.services import create_mission, plan_mission
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission
+from planning.request import EndAction
 from telemetry.alerting.detectors.converging import CODE
 from telemetry.models import Alert
 from tests.accounts.users import somebody

@@ -1,0 +1,87 @@
+"""Everything that a plan is made from, read at once: what the planner takes, made of rows."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
+from inspection.selectors.node_ground import node_ground_m
+from inspection.selectors.planning import PlanningGround, heights_at, planning_read, terrain_at
+from missions.hooks.in_air import uavs_in_the_air
+from missions.selectors.fleet import bases_of_organisation, states_out_of_service
+from missions.selectors.flights import flights_at_the_same_time
+from missions.selectors.planning_rules import planning_rules
+from missions.selectors.resolved_targets import NamedTarget, resolved_targets, whole_assets
+from planning.airspace import Airspace, airspace_on, zone_choice
+from planning.context import OtherFlights, PlanningContext, ResolvedTarget, Terrain
+from planning.request import BaseRequest, EndAction, InvalidRequest, PlanRequest
+from workspace.models import Organisation
+
+
+def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget], list[int]]:
+    """The map of now, the targets on it, and those whose asset has been deleted. Raises InvalidRequest."""
+    read = planning_read(whole_assets(request.targets))
+    targets, deleted = resolved_targets(request.targets, read.points)
+    return read.ground(), targets, deleted
+
+
+def planning_context(
+    request: PlanRequest | None, ground: PlanningGround, targets: Sequence[ResolvedTarget] = (), deleted_targets: Sequence[int] = ()
+) -> PlanningContext:
+    """Return what a plan for the request is made from, over this map; without a request nothing of a fleet. Raises NoGraph."""
+    edition = ground.edition
+    terrain_edition, heights_m = terrain_at(edition), heights_at(edition)  # the edition before any height is read
+    stored = [uav.uav for uav in request.uavs if uav.uav is not None] if request is not None else []
+    return PlanningContext(
+        rules=planning_rules(),
+        network=ground.network(),
+        zones=ground.table,
+        cleared=ground.graph,
+        zone_index=ground.zones,
+        terrain=None if heights_m is None else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_edition)),
+        map_version=edition[0],
+        targets=targets,
+        deleted_targets=deleted_targets,
+        out_of_service={key: state.value for key, state in states_out_of_service(stored).items()} if stored else {},
+        in_air=frozenset(uavs_in_the_air(stored)),
+        other_flights=lambda window_s: _other_flights(request, window_s),
+    )
+
+
+def _other_flights(request: PlanRequest | None, window_s: float) -> OtherFlights:
+    """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
+    if request is None or request.departs_at is None or request.organisation is None:
+        return OtherFlights()
+    from_s = request.departs_at.timestamp()
+    return flights_at_the_same_time(request.organisation, from_s, from_s + window_s, but=request.mission)
+
+
+def current_airspace(request: PlanRequest | None = None, *, is_by_length: bool = False) -> Airspace:
+    """With all zones of now, or with those that can be in force while the request is flown. Raises NoGraph."""
+    context = planning_context(request, planning_read().ground())
+    chosen = None if request is None else zone_choice(context.zones, request.departs_at, context.rules.flight).widest
+    return airspace_on(context, chosen, is_by_length=is_by_length)
+
+
+def airspace_without_zones(airspace: Airspace) -> Airspace:
+    """As if there were none."""
+    return airspace_on(airspace.context, np.zeros(len(airspace.context.zones), dtype=bool), is_by_length=airspace.is_by_length)
+
+
+def with_bases(request: PlanRequest, organisation: Organisation) -> PlanRequest:
+    """The request with the bases of today, if a UAV is to land at one. Raises InvalidRequest if there is none."""
+    landing = [uav for uav in range(len(request.uavs)) if request.end_action(uav) is EndAction.BASE]
+    if not landing:
+        return replace(request, bases=())
+    bases = stored_bases(organisation)
+    if not bases:
+        fault = _("%(uav)s is to land at a base, but there is none. Add one to the fleet, or choose another end.")
+        raise InvalidRequest({f"uavs.{uav}.end_action": fault % {"uav": request.uavs[uav].name} for uav in landing})
+    return replace(request, bases=bases)
+
+
+def stored_bases(organisation: Organisation) -> tuple[BaseRequest, ...]:
+    rows = bases_of_organisation(organisation).order_by("name", "pk")
+    return tuple(BaseRequest(row.name, LonLat(*row.location.coords)) for row in rows)

@@ -1,0 +1,219 @@
+"""Why no route visits a target: the zone, the distance or the range behind it, and which UAV could fly there."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import shapely
+from shapely.geometry import LineString
+from shapely.ops import nearest_points
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.network.build.obstacles import NO_ZONE
+from inspection.network.route_index import node_tree
+from inspection.network.zones.zone_index import widen
+from missions.models import UavState
+from missions.selectors.fleet import uavs_of_organisation
+from missions.selectors.planning_context import planning_context, read_targets, stored_bases
+from missions.services.planning.planner import make_plan
+from planning.airspace import Airspace, airspace_on, zone_at, zone_choice
+from planning.assignment.options import may_do
+from planning.assignment.refusals import groundings, target_height_m
+from planning.assignment.routing_input import needs_flight_costs, visits_of_targets
+from planning.connection_points import Terminal, Ways, ways_between
+from planning.context import ResolvedTarget
+from planning.explain import route
+from planning.problem import Objective, Problem, UavStart
+from planning.request import EndAction, PlanRequest, TargetRequest, UavRequest
+from planning.solver.reach import needed_range_m
+from planning.trajectory.heights import is_above_limit
+from workspace.models import Organisation
+
+MAX_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
+MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight
+
+
+def _airspace(request: PlanRequest, *, is_by_length: bool) -> Airspace:
+    """With the zones that can be in force while the request is flown. Raises InvalidRequest or NoGraph."""
+    ground, targets, deleted = read_targets(request)
+    context = planning_context(request, ground, targets, deleted)
+    chosen = zone_choice(context.zones, request.departs_at, context.rules.flight).widest
+    return airspace_on(context, chosen, is_by_length=is_by_length)
+
+
+def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int, is_by_length: bool = False) -> dict[str, Any]:
+    """routes: for each UAV of the request its targets in order; is_by_length: the plan takes the shortest paths.
+
+    Raises InvalidRequest or NoGraph.
+    """
+    return route.explain_route(_airspace(request, is_by_length=is_by_length), request, routes, uav)
+
+
+def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
+    """target is its place in the request. Raises InvalidRequest or NoGraph."""
+    airspace = _airspace(request, is_by_length=True)  # what is out of reach on the shortest ways is so on all
+    found = [one for one in airspace.context.targets if one.target == target]
+    said: dict[str, Any] = {
+        "target": target,
+        "reason": "asset_gone",
+        "message": "",
+        "zones": [],
+        "stretches": [],
+        "network_m": None,
+        "access_limit_m": airspace.access.access_leg_m,
+        "height_m": None,
+        "needed_height_m": None,
+        "height_limit_m": airspace.flight.max_agl_m,
+        "tied_to": request.targets[target].uav or None,
+        "sensor": request.targets[target].sensor,
+        "uavs": [],
+    }
+    if not found:
+        return said
+    (place,) = found
+    height_m = target_height_m(place, airspace)
+    network_m = _network_m(place, airspace)
+    said |= {"height_m": height_m, "needed_height_m": height_m + airspace.flight.clearance_m}
+    said |= {"network_m": network_m if np.isfinite(network_m) else None}
+    if is_above_limit(height_m, airspace.flight):
+        return said | {"reason": "above_height_limit"}
+    zones = _zones_at(place, airspace)
+    if zones:
+        return said | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, airspace)}
+    asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
+    on_the_ground = groundings(asked, airspace)
+    grounded = [number in on_the_ground for number in range(len(asked))]
+    fleet = replace(request, uavs=tuple(asked), bases=stored_bases(organisation))  # a spare UAV may land at one where none asked does
+    ways, needed_m = _needs(fleet, place, airspace)
+    uavs = [
+        {
+            "name": uav.name,
+            "uav_id": uav.uav,
+            "is_in_mission": number < len(request.uavs),
+            "is_grounded": grounded[number],
+            "is_allowed": may_do(uav, request.targets[target]),
+            "most_targets": uav.most_targets,
+            "needed_m": float(needed_m[number]) if np.isfinite(needed_m[number]) and not grounded[number] else None,
+            "max_range_m": uav.max_range_m,
+            "is_enough": bool(
+                np.isfinite(needed_m[number])
+                and not grounded[number]
+                and may_do(uav, request.targets[target])
+                and needed_m[number] <= (uav.max_range_m or np.inf)
+            ),
+        }
+        for number, uav in enumerate(asked)
+    ]
+    reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, airspace)
+    alone = _refused_alone(request, target) if reason == "not_with_the_others" and needs_flight_costs(request) else None
+    if alone is not None:
+        return said | {"reason": alone["reason"], "message": alone["message"], "uavs": uavs}
+    return said | {"reason": reason, "zones": barring, "uavs": uavs}
+
+
+def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
+    """Why the mission's UAVs cannot do it in this wind and with these batteries, if they had nothing else to do; None if they can."""
+    refused = make_plan(request=replace(request, targets=(request.targets[target],), locks=()))["unassigned"]
+    return refused[0] if refused else None
+
+
+def _reason(
+    wished: TargetRequest, place: ResolvedTarget, uavs: list[dict[str, Any]], ways: Ways, airspace: Airspace
+) -> tuple[str, list[dict[str, Any]]]:
+    if any(uav["is_enough"] for uav in uavs):
+        return "not_with_the_others", []
+    uavs = [uav for uav in uavs if uav["is_allowed"]]
+    if all(uav["is_grounded"] for uav in uavs) and (wished.uav or wished.sensor):
+        return "not_allowed", []
+    if any(uav["needed_m"] is not None for uav in uavs):
+        return "beyond_range", []
+    if not any(ways.entry_legs) and _network_m(place, airspace) > airspace.access.access_leg_m:
+        return "too_far_from_network", []
+    return "no_path", _zones_around(place, airspace)
+
+
+def _network_m(place: ResolvedTarget, airspace: Airspace) -> float:
+    """Metres to the nearest node of the network from the nearer end."""
+    gaps_m = []
+    for end in (place.course[0], place.course[-1]):
+        for node in node_tree(airspace.graph).nearest(end, 1).tolist():
+            gaps_m += distance_m(np.array([end]), airspace.graph.position[[node]]).tolist()
+    return min(gaps_m, default=float("inf"))
+
+
+def _zones_at(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]:
+    """Zones that hold the place, or that its course meets, the clearance included."""
+    shape = shapely.Point(place.course[0]) if len(place.course) == 1 else LineString(place.course)
+    polygons = airspace.zones.polygons
+    if not len(polygons):
+        return []
+    near = shapely.intersects(widen(polygons, airspace.access.zone_clearance_m), shape)
+    return [_told(zone, airspace) for zone in np.flatnonzero(near).tolist()]
+
+
+def _zones_around(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]:
+    """Zones within reach of the place, the nearest first: what bars the straight ways to it."""
+    polygons = airspace.zones.polygons
+    here = np.array([place.course[0]])
+    found = []
+    for zone in range(len(polygons)):
+        nearest, _ = nearest_points(polygons[zone], shapely.Point(place.course[0]))
+        away_m = float(distance_m(here, np.array([[nearest.x, nearest.y]]))[0])
+        if away_m <= airspace.access.access_leg_m:
+            found.append((away_m, zone))
+    return [_told(zone, airspace) for _, zone in sorted(found)[:3]]
+
+
+def _told(zone: int, airspace: Airspace) -> dict[str, Any]:
+    """What cannot be flown over counts as a zone and is none: it has no id."""
+    key = int(airspace.zones.ids[zone])
+    return {"id": None if key == NO_ZONE else key, "name": airspace.zones.names[zone]}
+
+
+def _stretches_outside(place: ResolvedTarget, airspace: Airspace) -> list[list[list[float]]]:
+    """The parts of a line's course that keep clear of every zone, as pairs of ends."""
+    if not place.is_stretch or place.asset is None:
+        return []
+    barred = shapely.union_all(widen(airspace.zones.polygons, 1.5 * airspace.access.zone_clearance_m + 1.0))
+    parts = shapely.get_parts(shapely.difference(LineString(place.course), barred))
+    ends = [np.array(part.coords) for part in parts if part.geom_type == "LineString"]
+    return [[line[0].tolist(), line[-1].tolist()] for line in ends if path_length_m(line) >= MIN_STRETCH_M]
+
+
+def _spare_uavs(request: PlanRequest, place: ResolvedTarget, organisation: Organisation) -> list[UavRequest]:
+    """UAVs of the fleet that are fit to fly, are not in the request and have the range at least straight, the nearest first."""
+    taken = {uav.uav for uav in request.uavs if uav.uav is not None}
+    found = []
+    for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken):
+        at = LonLat(*uav.location.coords)
+        away_m = float(distance_m(np.array([at]), np.array([place.course[0]]))[0])
+        if uav.range_m is None or away_m <= uav.range_m:
+            spare = UavRequest(uav.name, at, uav.range_m, uav.speed_mps, EndAction(uav.end_action), uav.pk, sensors=tuple(uav.sensors))
+            found.append((away_m, spare))
+    return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MAX_SPARE]]
+
+
+def _needs(fleet: PlanRequest, place: ResolvedTarget, airspace: Airspace) -> tuple[Ways, np.ndarray]:
+    """The least range with which each UAV could do the place alone; inf where there is no way."""
+    visits, courses = visits_of_targets([place])
+    ways = ways_between(
+        airspace.graph,
+        airspace.leg_zones,
+        starts=[Terminal(uav.position) for uav in fleet.uavs],
+        entries=[Terminal(course[0], place.asset) for course in courses],
+        exits=[Terminal(course[-1], place.asset) for course in courses],
+        rules=airspace.access,
+        bases=[Terminal(base.position) for base in fleet.bases if zone_at(base.position, airspace) is None],
+    )
+    problem = Problem(
+        uavs=tuple(UavStart(uav.max_range_m, fleet.route_end(number)) for number, uav in enumerate(fleet.uavs)),
+        visits=tuple(visits),
+        target_count=1,
+        from_start_m=ways.from_start_m,
+        between_m=ways.between_m,
+        to_start_m=ways.to_start_m,
+        objective=Objective.TOTAL,
+        to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(fleet.uavs))),
+    )
+    return ways, needed_range_m(problem).min(axis=1)

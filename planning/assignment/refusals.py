@@ -1,0 +1,73 @@
+"""Why a target is left out of a plan before any route is looked for, and why a UAV stays on the ground."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inspection.network.route_index import asset_places
+from planning.airspace import Airspace, zone_along, zone_at
+from planning.connection_points import tallest_support_m
+from planning.context import ResolvedTarget
+from planning.plan import UnassignedTarget
+from planning.request import UavRequest
+from planning.trajectory.heights import inspection_agl_m, is_above_limit
+
+RETIRED = "retired"  # a state of stored UAVs; every other one out of service is for a time
+
+
+def deleted_target(target: int) -> UnassignedTarget:
+    return UnassignedTarget(target, "asset_gone", "The asset has been deleted since it was picked.")
+
+
+def refused_target(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarget | None:
+    """Return why a target can be on no route at all, or None. Zones count at the heights between its inspection and the flight to it."""
+    height_m = target_height_m(target, airspace)
+    agl_m = inspection_agl_m(height_m, airspace.flight)
+    if is_above_limit(height_m, airspace.flight):
+        needed_m = height_m + airspace.flight.clearance_m
+        limit_m = airspace.flight.max_agl_m
+        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
+        return UnassignedTarget(target.target, "above_height_limit", message)
+    if target.is_stretch:
+        zone = zone_along(target.course, agl_m, airspace)
+        if zone is not None:
+            return UnassignedTarget(target.target, "inside_zone", f"It runs through {zone}.")
+    else:
+        zone = zone_at(target.course[0], airspace, agl_m)
+        if zone is not None:
+            return UnassignedTarget(target.target, "inside_zone", f"It stands inside {zone}.")
+    return None
+
+
+def target_height_m(target: ResolvedTarget, airspace: Airspace) -> float:
+    """The asset's height, not less than what its line's voltage tells; over a stretch of a line not less than its tallest support."""
+    if target.asset is None:
+        return target.height_m
+    if target.is_stretch:
+        return max(target.height_m, tallest_support_m(airspace.network, target.asset, target.course))
+    node = asset_places(airspace.whole_graph).node_of(target.asset)
+    return target.height_m if node is None else float(np.fmax(target.height_m, airspace.whole_graph.node_height_m[node]))
+
+
+@dataclass(frozen=True)
+class Grounding:
+    """Why a UAV stays on the ground."""
+
+    code: str
+    message: str
+
+
+def groundings(uavs: Sequence[UavRequest], airspace: Airspace) -> dict[int, Grounding]:
+    """By their places in the request, the UAVs that cannot take off: retired, in maintenance, or inside a zone."""
+    found: dict[int, Grounding] = {}
+    for number, uav in enumerate(uavs):
+        zone = zone_at(uav.position, airspace)
+        state = None if uav.uav is None else airspace.context.out_of_service.get(uav.uav)
+        if state == RETIRED:
+            found[number] = Grounding("uav_out_of_service", f"{uav.name} is retired and flies no more.")
+        elif state is not None:
+            found[number] = Grounding("uav_out_of_service", f"{uav.name} is in maintenance and does not fly.")
+        elif zone is not None:
+            found[number] = Grounding("uav_inside_zone", f"{uav.name} stands inside {zone} and cannot take off.")
+    return found

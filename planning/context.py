@@ -1,0 +1,112 @@
+"""Everything that a plan is made from, as one value: the map, the rules, the targets on the ground, the fleet, other flights."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from inspection.geodesy import LonLat
+from inspection.network.build.network import Network
+from inspection.network.flown_heights import FlownHeights
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.rules import LinkingRules
+from inspection.network.zones.zone_index import ZoneIndex
+from inspection.zones.reach import BoolArray, ZoneTable
+from inspection.zones.rules import ZoneRules
+from planning.clearance.zone_clearance import Margins
+from planning.problem import Task
+from planning.rules import FlightRules, RoutingRules, SeparationRules
+from planning.separation.separation import TimedRoute
+from planning.trajectory.heights import FloatArray, GroundHeights
+
+CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
+
+
+@dataclass(frozen=True)
+class PlanningRules:
+    """All limits of the settings that a plan keeps."""
+
+    linking: LinkingRules
+    routing: RoutingRules
+    flight: FlightRules
+    zones: ZoneRules
+    heights: FlownHeights  # what flights have over the network: follows from flight and zones
+    separation: SeparationRules
+
+    @property
+    def margins(self) -> Margins:
+        """What finished routes keep from zones."""
+        return Margins(
+            lateral_m=CLEARANCE_KEPT * self.linking.zone_clearance_m,
+            height_m=self.zones.height_margin_m,
+            time_s=self.zones.time_margin_s,
+            terrain_tolerance_m=self.flight.terrain_tolerance_m,
+        )
+
+
+@dataclass(frozen=True)
+class ResolvedTarget:
+    """A target of the request on the ground; `target` is its place in the request.
+
+    `course` has one position for a point and the vertices in the line's direction for a stretch.
+    """
+
+    target: int
+    course: tuple[LonLat, ...]
+    task: Task
+    height_m: float
+    asset: int | None = None
+    kind: str | None = None
+
+    @property
+    def is_stretch(self) -> bool:
+        return len(self.course) > 1
+
+
+@dataclass(frozen=True)
+class OtherFlights:
+    """Routes of other missions, and those of which nobody knows when they are where: mission and UAV."""
+
+    routes: tuple[TimedRoute, ...] = ()
+    untimed: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True)
+class Terrain:
+    """The terrain models. heights_m: of positions (n, 2), lon lat [deg]; of_nodes_m: of all nodes of a graph. Both above sea level [m],
+    NaN where no model reaches."""
+
+    heights_m: GroundHeights
+    of_nodes_m: Callable[[InspectionGraph], FloatArray]
+
+
+def _no_other_flights(window_s: float) -> OtherFlights:
+    return OtherFlights()
+
+
+@dataclass(frozen=True, eq=False)
+class PlanningContext:
+    """network: free of zones; zones: all of them, whenever they are in force. terrain: None without a terrain model.
+
+    cleared: the network cleared of zones at the heights flown; zone_index: all zones, or those of a mask (z,). Both may keep what they
+    have made. targets: those of the request that are still there, deleted_targets the others, by their places in it.
+
+    out_of_service: of stored UAVs by key the state ("retired", "maintenance"); in_air: the keys of those reported to fly.
+    other_flights: those in the air within so many seconds of the departure. map_version: of assets and zones together.
+    """
+
+    rules: PlanningRules
+    network: Network
+    zones: ZoneTable
+    cleared: Callable[[ZoneIndex], InspectionGraph]
+    zone_index: Callable[[BoolArray | None], ZoneIndex]
+    terrain: Terrain | None
+    map_version: int
+    targets: Sequence[ResolvedTarget]
+    deleted_targets: Sequence[int] = ()
+    out_of_service: Mapping[int, str] = field(default_factory=dict)
+    in_air: frozenset[int] = frozenset()
+    other_flights: Callable[[float], OtherFlights] = _no_other_flights
+
+    @property
+    def heights_m(self) -> GroundHeights | None:
+        """Heights of the terrain; None without a model."""
+        return None if self.terrain is None else self.terrain.heights_m
