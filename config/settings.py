@@ -320,6 +320,7 @@ ROUTING_RULES = RoutingRules(
     small_plan_targets=int(number("SPANWISE_SMALL_PLAN_TARGETS", RoutingRules.small_plan_targets)),
     large_plan_search_s=number("SPANWISE_LARGE_PLAN_SEARCH_S", RoutingRules.large_plan_search_s),
 )
+PLAN_CONTEXT_DIR = Path(os.environ["SPANWISE_PLAN_CONTEXT_DIR"]) if os.environ.get("SPANWISE_PLAN_CONTEXT_DIR") else None  # of failed plans
 FLIGHT_RULES = FlightRules(
     clearance_m=number("SPANWISE_CLEARANCE_M", FlightRules.clearance_m),
     transit_agl_m=number("SPANWISE_TRANSIT_AGL_M", FlightRules.transit_agl_m),

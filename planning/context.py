@@ -9,6 +9,7 @@ from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
+from inspection.terrain.tiled_terrain import TiledTerrain
 from inspection.zones.reach import BoolArray, ZoneTable
 from inspection.zones.rules import ZoneRules
 from planning.clearance.zone_clearance import Margins
@@ -16,6 +17,8 @@ from planning.problem import Task
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
 from planning.trajectory.heights import FloatArray, GroundHeights
+
+Box = tuple[float, float, float, float]
 
 CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
 
@@ -72,10 +75,11 @@ class OtherFlights:
 @dataclass(frozen=True)
 class Terrain:
     """The terrain models. heights_m: of positions (n, 2), lon lat [deg]; of_nodes_m: of all nodes of a graph. Both above sea level [m],
-    NaN where no model reaches."""
+    NaN where no model reaches. around: the tiles that touch west, south, east, north [deg]."""
 
     heights_m: GroundHeights
     of_nodes_m: Callable[[InspectionGraph], FloatArray]
+    around: Callable[[Box], TiledTerrain]
 
 
 def _no_other_flights(window_s: float) -> OtherFlights:
@@ -90,7 +94,8 @@ class PlanningContext:
     have made. targets: those of the request that are still there, deleted_targets the others, by their places in it.
 
     out_of_service: of stored UAVs by key the state ("retired", "maintenance"); in_air: the keys of those reported to fly.
-    other_flights: those in the air within so many seconds of the departure. map_version: of assets and zones together.
+    other_flights: those in the air within so many seconds of the departure. graph_version: of the network; map_version: of assets and
+    zones together.
     """
 
     rules: PlanningRules
@@ -99,6 +104,7 @@ class PlanningContext:
     cleared: Callable[[ZoneIndex], InspectionGraph]
     zone_index: Callable[[BoolArray | None], ZoneIndex]
     terrain: Terrain | None
+    graph_version: int
     map_version: int
     targets: Sequence[ResolvedTarget]
     deleted_targets: Sequence[int] = ()

@@ -220,7 +220,7 @@ def _plan(context: PlanningContext, best: CheckedPlan, freest: CheckedPlan, call
         untimed_flights=flown.others.untimed,
         lost_link=lost_link_check(request, flown.routes, context),
         quality=_quality(best, freest),
-        graph_version=found.airspace.graph.version,
+        graph_version=context.graph_version,
         map_version=context.map_version,
         has_terrain=context.terrain is not None,
         solver_calls=calls,

@@ -9,6 +9,7 @@ from django.utils.translation import gettext as _
 from inspection.geodesy import LonLat
 from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read, terrain_at
+from inspection.selectors.terrain import tiles_around
 from missions.hooks.in_air import uavs_in_the_air
 from missions.selectors.fleet import bases_of_organisation, states_out_of_service
 from missions.selectors.flights import flights_at_the_same_time
@@ -40,7 +41,8 @@ def planning_context(
         zones=ground.table,
         cleared=ground.graph,
         zone_index=ground.zones,
-        terrain=None if heights_m is None else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_edition)),
+        terrain=None if heights_m is None else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_edition), tiles_around),
+        graph_version=0 if ground.snapshot is None else ground.snapshot[0],
         map_version=edition[0],
         targets=targets,
         deleted_targets=deleted_targets,

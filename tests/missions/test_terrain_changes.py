@@ -14,8 +14,8 @@ from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import Edition
 from inspection.services import import_terrain
 from inspection.services.imports.terrain import remove_terrain
+from missions.selectors import planning_context
 from missions.services import make_plan
-from missions.services.planning import planner
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
@@ -94,7 +94,7 @@ def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: 
     def changing_at(edition: Edition) -> Any:
         return partial(changing, edition=edition)
 
-    with mock.patch.object(planner, "heights_at", changing_at):
+    with mock.patch.object(planning_context, "heights_at", changing_at):
         plan = make_plan(request=request(here.towers[5]))
     assert len(looked) > 1
     assert TerrainTile.objects.exists()

@@ -44,7 +44,9 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
     "path",
     [
         "missions/services/planning/planner.py",
-        "missions/services/targets/assignment.py",
+        "planning/assignment/assignment.py",
+        "planning/assignment/candidate_plan.py",
+        "planning/planner.py",
         "planning/solver/solver.py",
         "inspection/importers/osm/reader.py",
         "inspection/services/imports/osm.py",

@@ -1,13 +1,20 @@
 """Plans on the map of now: the context read, the plan made, and checked again where the map has changed meanwhile."""
 
+import logging
 from collections.abc import Callable, Mapping
 from functools import wraps
 from time import perf_counter
 from typing import Any, ParamSpec
+from uuid import uuid4
+
+from django.conf import settings
 
 from inspection.selectors.planning import edition_now, planning_read, terrain_at
 from missions.selectors.planning_context import planning_context, read_targets
 from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
+from planning.checks.constraints import ZoneNotAvoided
+from planning.context import PlanningContext
+from planning.context_file import write_context
 from planning.plan_json import plan_to_json
 from planning.planner import ZonesNotSettled, plan, plan_on_map
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
@@ -18,6 +25,10 @@ from workspace.jobs.planning_lock import end_turn, in_turn
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
 ABOVE_ALL_SIZES = "201-"
 P = ParamSpec("P")
+PLANNER_FAULTS = (ZoneNotAvoided, ArithmeticError, AssertionError, LookupError, TypeError, ValueError)
+MAX_KEPT_CONTEXTS = 20  # of plans that failed
+
+logger = logging.getLogger(__name__)
 MAX_CONTEXTS = 5  # that may follow one another while one plan is made
 
 
@@ -57,6 +68,21 @@ def _method_of(plan: Mapping[str, Any]) -> str:
     return str(quality["method"]) if isinstance(quality, Mapping) and "method" in quality else "unknown"
 
 
+def _keep_context(context: PlanningContext, request: PlanRequest) -> None:
+    """Write what a plan that failed was made from, for replay_plan, if the settings name a folder and it holds few yet."""
+    folder = settings.PLAN_CONTEXT_DIR
+    if folder is None or len(list(folder.glob("*.zip"))) >= MAX_KEPT_CONTEXTS:
+        return
+    path = folder / f"{uuid4()}.zip"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_context(path, context, request)
+    except OSError as error:
+        logger.warning("the context of a plan that failed cannot be written: %s", error)
+    else:
+        logger.error("the planner failed; manage.py replay_plan %s makes the plan again", path)
+
+
 @counted
 def make_plan(
     *,
@@ -81,6 +107,9 @@ def make_plan(
                 found = plan(context, request, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
             except ZonesNotSettled as error:
                 raise GraphOutdated from error
+            except PLANNER_FAULTS:
+                _keep_context(context, request)
+                raise
             answer = plan_to_json(found, as_text=as_text)
         end_turn()  # which is the caller's, if it had one already: nobody waits for another turn after the last check
         if edition_now() == ground.edition:

@@ -10,10 +10,10 @@ from django.contrib.gis.gdal import GDALRaster
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
 from missions.services import TargetRequest, make_plan
-from planning.plan import UnassignedTarget
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.explain.energy_shortfall import least_missing
+from planning.plan import UnassignedTarget
 from planning.problem import Objective, Priority
 from planning.request import EndAction, UavRequest
 from tests.inspection import ground
@@ -296,7 +296,8 @@ def test_what_is_not_on_one_route_with_others_is_not_put_down_to_the_wind() -> N
 
 
 def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
-    by_battery, alone = UnassignedTarget(0, "beyond_energy", "It takes 9 Wh more", 9.0), UnassignedTarget(0, "beyond_range", "It is within range alone", 0.0)
+    by_battery = UnassignedTarget(0, "beyond_energy", "It takes 9 Wh more", 9.0)
+    alone = UnassignedTarget(0, "beyond_range", "It is within range alone", 0.0)
     assert least_missing([by_battery], [alone], {}) == least_missing([alone], [by_battery], {}) == [alone]
 
 

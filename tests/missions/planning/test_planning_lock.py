@@ -41,26 +41,26 @@ def has_room() -> bool:
 def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(planning_lock, "TIMEOUT_S", 60.0)
     here = world()
-    inside, most, best_on = [0], [0], planner._Planner.best_on
+    inside, most, plan_of_context = [0], [0], planner.plan
     together = threading.Barrier(PLANNERS)
 
-    def noted(planner: Any, ground: Any) -> Any:
+    def noted(*args: Any, **kwargs: Any) -> Any:
         inside[0] += 1
         most[0] = max(most[0], inside[0])
         time.sleep(0.02)  # room for another one to come in
-        found = best_on(planner, ground)
+        found = plan_of_context(*args, **kwargs)
         inside[0] -= 1
         return found
 
-    def plan() -> float:
+    def plan_length_m() -> float:
         try:
             together.wait(60.0)
             return float(make_plan(request=asked(here))["total_length_m"])
         finally:
             connections.close_all()
 
-    with mock.patch.object(planner._Planner, "best_on", noted), ThreadPoolExecutor(PLANNERS) as planners:
-        lengths_m = [made.result() for made in [planners.submit(plan) for _ in range(PLANNERS)]]
+    with mock.patch.object(planner, "plan", noted), ThreadPoolExecutor(PLANNERS) as planners:
+        lengths_m = [made.result() for made in [planners.submit(plan_length_m) for _ in range(PLANNERS)]]
     assert most == [1]
     assert len(set(lengths_m)) == 1
 
@@ -114,7 +114,7 @@ def ask_slowly(told: list[bool]) -> None:
 @pytest.mark.django_db
 def test_a_plan_that_fails_gives_its_turn_up() -> None:
     here = world()
-    with mock.patch.object(planner._Planner, "best_on", side_effect=RuntimeError), pytest.raises(RuntimeError):
+    with mock.patch.object(planner, "plan", side_effect=RuntimeError), pytest.raises(RuntimeError):
         make_plan(request=asked(here))
     assert has_room()
 
