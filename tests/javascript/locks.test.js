@@ -248,7 +248,7 @@ test("of two UAVs with one name each keeps its own order", () => {
   ]);
 });
 
-/** What the server would refuse of a selection's locks: missions/services/targets/constraints.py. */
+/** What the server would refuse of a selection's locks: planning/assignment/options.py. */
 function contradictionIn({ targets, uavs, locks }) {
   const known = new Map(targets.map((target) => [target.key, target]));
   for (const [index, lock] of locks.entries()) {
