@@ -54,12 +54,7 @@ def rehearsed(visitor: Visitor, planned: str) -> str:
     if not asks(page, f"/missions/{planned}/rehearsals")["results"]:
         body = {"conditions": ["calm", {"battery_percent": 25}]}
         address = f"/missions/{planned}/rehearsals/{posts(page, f'/missions/{planned}/rehearsals', body)['id']}"
-        page.wait_for_function(
-            "async (address) => !['queued', 'running'].includes((await (await fetch(address)).json()).state)",
-            arg=f"/api/v1{address}",
-            timeout=FLIGHT_MS,
-            polling=1000,
-        )
+        expect(opened(page, planned).locator("#rehearsal-sentence")).to_have_count(1, timeout=FLIGHT_MS)
         assert asks(page, address)["state"] == "done"
     page.close()
     return planned
