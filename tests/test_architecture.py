@@ -279,3 +279,9 @@ def test_every_decision_is_in_the_index() -> None:
     assert records
     assert [name for name in records if name not in index] == []
     assert [int(name[:4]) for name in records] == list(range(1, len(records) + 1)), "numbered without a gap"
+
+
+def test_every_setting_is_described() -> None:
+    described = text_of("docs/operations.md", "docs/deployment.md")
+    names = set(re.findall(r"\bSPANWISE_[A-Z_]*[A-Z]\b", (ROOT / "config" / "settings.py").read_text()))
+    assert sorted(name for name in names if f"`{name}`" not in described) == []

@@ -78,14 +78,12 @@ class Day:
         counted = next((line for line in lines if "acknowledged items" in line), "nothing was counted")
         figure = f"{counted}; {held} invariants hold" + (f"; {violated[:4]}, {lines[-3:]}" if violated or told.returncode else "")
         course.tell(
-            "the ledger of the clients against the database", figure, "0 acknowledged items lost, 0 doubled", told.returncode == 0 and held > 0
+            "the clients' ledger against the database", figure, "0 acknowledged items lost, 0 doubled", told.returncode == 0 and held > 0
         )
         whole = played.served().get(ALL)
         if whole is not None:
             figure = f"{whole.failures:,} of {whole.requests:,} requests failed for good"
-            course.tell(
-                "the users of the day", figure + (f": {played.failures()[:3]}" if whole.failures else ""), "0", whole.failures == 0
-            )
+            course.tell("the users of the day", figure + (f": {played.failures()[:3]}" if whole.failures else ""), "0", whole.failures == 0)
 
 
 @contextmanager
