@@ -2,10 +2,7 @@
 
 from typing import Any
 
-from django.db import transaction
 from django.db.models import Case, IntegerField, Q, QuerySet, Value, When
-from django.http import Http404
-from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -22,16 +19,16 @@ from inspection.serializers.assets import (
 from inspection.serializers.edits import AssetInputSerializer
 from inspection.services import delete_asset, save_asset
 from inspection.services.asset_references import REFERENCE_FIELDS, save_asset_reference
-from inspection.views.edits import edits
-from inspection.views.history import answer, asset_now
+from inspection.views.edits import Curated, answer, asset_now, with_values
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
 from workspace.api.external_data import EXTERNAL_ID, asked_external_id
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_flag, changed_since, page_of
 from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
 from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
 from workspace.api.signed_in import SignedInRequest
+from workspace.models import User
 
 BEST_FIRST = ("match_rank", "pk")
 EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
@@ -93,23 +90,24 @@ class AssetList(APIView):
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:
-        body = AssetInputSerializer(data=request.data)
-        body.is_valid(raise_exception=True)
-        values = dict(body.validated_data)
-        reference = _reference_in(values)
-        with edits(request.user, lambda: None), transaction.atomic():
-            asset = save_asset(asset=Asset(**values), actor=request.user)
-            if any(reference.values()):
-                save_asset_reference(asset=asset, actor=request.user, values=reference)
-        response = answer(asset_now(request.user, asset.pk))
-        response.status_code = 201
-        response["Location"] = reverse("api-asset", args=[asset.pk])
-        return response
+        return ASSETS.drawn(request)
 
 
-def _reference_in(values: dict[str, Any]) -> dict[str, Any]:
-    """Take what belongs to the organisation's reference out of the values of an asset."""
-    return {name: values.pop(name) for name in REFERENCE_FIELDS if name in values}
+def _save(asset: Asset, values: dict[str, Any], *, actor: User, expected_revision: int | None) -> Asset:
+    """Store what is true of the asset, and what belongs to the organisation's reference beside it."""
+    reference = {name: values.pop(name) for name in REFERENCE_FIELDS if name in values}
+    is_new = asset.pk is None
+    if values or not reference:
+        save_asset(asset=with_values(asset, values), actor=actor, expected_revision=expected_revision)
+    if any(reference.values()) if is_new else reference:
+        unseen = None if values else expected_revision
+        save_asset_reference(asset=asset, actor=actor, values=reference, expected_revision=unseen)
+    return asset
+
+
+ASSETS = Curated(
+    Asset, AssetInputSerializer, "api-asset", asset_now, save=_save, delete=lambda asset, **by: delete_asset(asset=asset, **by)
+)
 
 
 class AssetDetail(APIView):
@@ -131,21 +129,7 @@ class AssetDetail(APIView):
         responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | EXTERNAL_ID_TAKEN,
     )
     def patch(self, request: SignedInRequest, asset_id: int) -> Response:
-        revision = expected_revision(request)
-        asset = self._asset(asset_id)
-        body = AssetInputSerializer(asset, data=request.data, partial=True)
-        body.is_valid(raise_exception=True)
-        values = dict(body.validated_data)
-        reference = _reference_in(values)
-        for name, value in values.items():
-            setattr(asset, name, value)
-        with edits(request.user, lambda: asset_now(request.user, asset_id)), transaction.atomic():
-            if values or not reference:
-                save_asset(asset=asset, actor=request.user, expected_revision=revision)
-            if reference:
-                unseen = None if values else revision
-                save_asset_reference(asset=asset, actor=request.user, values=reference, expected_revision=unseen)
-        return answer(asset_now(request.user, asset_id))
+        return ASSETS.corrected(request, asset_id)
 
     @extend_schema(
         operation_id="delete_asset",
@@ -155,13 +139,4 @@ class AssetDetail(APIView):
         responses={204: None} | PRECONDITION_ANSWERS,
     )
     def delete(self, request: SignedInRequest, asset_id: int) -> Response:
-        revision = expected_revision(request)
-        with edits(request.user, lambda: asset_now(request.user, asset_id)):
-            delete_asset(asset=self._asset(asset_id), actor=request.user, expected_revision=revision)
-        return Response(status=204)
-
-    def _asset(self, asset_id: int) -> Asset:
-        try:
-            return Asset.objects.get(pk=asset_id)
-        except Asset.DoesNotExist as error:
-            raise Http404 from error
+        return ASSETS.removed(request, asset_id)

@@ -1,18 +1,32 @@
-"""What the doors of assets and zones have in common when somebody writes: who may, and the answer to those who come second."""
+"""What the endpoints of assets and zones share: an answer with its ETag, drawing, correcting and removing, and who came second."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
+from django.db import transaction
+from django.http import Http404
+from django.urls import reverse
 from django.utils.translation import gettext as _
+from rest_framework.response import Response
+from rest_framework.serializers import Serializer
 
+from inspection.models import Asset, NoFlyZone
+from inspection.selectors import asset_with_geometry, references_of, zones
 from inspection.selectors.history import NEWEST_FIRST, changes_of
+from inspection.serializers.assets import asset_detail_feature
+from inspection.serializers.zones import zone_detail_feature
 from inspection.services import StaleRevision, WrongGeometry
 from inspection.services.asset_references import ExternalIdTaken
 from inspection.services.history import CannotUndo
 from workspace.admin_pages.author_names import author_name
 from workspace.api.errors import ApiProblem
+from workspace.api.preconditions import etag_of, expected_revision
+from workspace.api.signed_in import SignedInRequest
 from workspace.models import User
+
+_Row = TypeVar("_Row", Asset, NoFlyZone)
 
 
 @contextmanager
@@ -34,3 +48,75 @@ def edits(user: User, current: Callable[[], dict[str, Any] | None]) -> Iterator[
         raise ApiProblem(400, "invalid_geometry", str(error)) from error
     except CannotUndo as error:
         raise ApiProblem(409, "cannot_undo", str(error)) from error
+
+
+@dataclass(frozen=True)
+class Curated(Generic[_Row]):
+    """One kind of row that curators edit: how it is read, checked, stored and removed."""
+
+    model: type[_Row]
+    serializer: type[Serializer]
+    endpoint: str  # the URL name of one row
+    now: Callable[[User, int], dict[str, Any] | None]
+    save: Callable[..., _Row]  # of a row, values of the request, actor and expected_revision
+    delete: Callable[..., None]  # of a row, actor and expected_revision
+
+    def drawn(self, request: SignedInRequest) -> Response:
+        """Answer a POST of a new row."""
+        body = self.serializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        with edits(request.user, lambda: None), transaction.atomic():
+            row = self.save(self.model(), dict(body.validated_data), actor=request.user, expected_revision=None)
+        response = answer(self.now(request.user, row.pk))
+        response.status_code = 201
+        response["Location"] = reverse(self.endpoint, args=[row.pk])
+        return response
+
+    def corrected(self, request: SignedInRequest, key: int) -> Response:
+        """Answer a PATCH with If-Match."""
+        revision, row = expected_revision(request), self._row(key)
+        body = self.serializer(row, data=request.data, partial=True)
+        body.is_valid(raise_exception=True)
+        with edits(request.user, lambda: self.now(request.user, key)), transaction.atomic():
+            self.save(row, dict(body.validated_data), actor=request.user, expected_revision=revision)
+        return answer(self.now(request.user, key))
+
+    def removed(self, request: SignedInRequest, key: int) -> Response:
+        """Answer a DELETE with If-Match."""
+        revision = expected_revision(request)
+        with edits(request.user, lambda: self.now(request.user, key)):
+            self.delete(self._row(key), actor=request.user, expected_revision=revision)
+        return Response(status=204)
+
+    def _row(self, key: int) -> _Row:
+        try:
+            return self.model._default_manager.get(pk=key)
+        except self.model.DoesNotExist as error:
+            raise Http404 from error
+
+
+def with_values(row: _Row, values: dict[str, Any]) -> _Row:
+    for name, value in values.items():
+        setattr(row, name, value)
+    return row
+
+
+def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:
+    """As the user's organisation sees it."""
+    try:
+        return asset_detail_feature(asset_with_geometry(asset_id), references_of(user.organisation_id, [asset_id]).get(asset_id))
+    except Asset.DoesNotExist:
+        return None
+
+
+def zone_now(user: User, zone_id: int) -> dict[str, Any] | None:
+    try:
+        return zone_detail_feature(zones().get(pk=zone_id))
+    except NoFlyZone.DoesNotExist:
+        return None
+
+
+def answer(feature: dict[str, Any] | None) -> Response:
+    if feature is None:
+        raise Http404
+    return Response(feature, headers=etag_of(feature["properties"]["revision"]))

@@ -10,19 +10,18 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.models import Asset, NoFlyZone
-from inspection.selectors import asset_with_geometry, references_of, zones
 from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_by, changes_of, changes_of_the_ground
-from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
-from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detail_feature
+from inspection.serializers.assets import AssetDetailFeatureSerializer
+from inspection.serializers.zones import ZoneDetailFeatureSerializer
 from inspection.services.facts import differing
 from inspection.services.history import follow_source, revert_asset, revert_zone, undo
-from inspection.views.edits import edits
+from inspection.views.edits import answer, asset_now, edits, zone_now
 from inspection.views.parameters import invalid
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.api.paging import asked_choice, page_of
 from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import AuditEntry, User
@@ -72,27 +71,6 @@ def entry_json(entry: AuditEntry, reader: User) -> dict[str, Any]:
 
 def _for_people(facts: dict[str, Any] | None) -> dict[str, Any] | None:
     return facts and {name: value for name, value in facts.items() if name not in OF_THE_SOURCE}
-
-
-def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:
-    """As the user's organisation sees it."""
-    try:
-        return asset_detail_feature(asset_with_geometry(asset_id), references_of(user.organisation_id, [asset_id]).get(asset_id))
-    except Asset.DoesNotExist:
-        return None
-
-
-def zone_now(zone_id: int) -> dict[str, Any] | None:
-    try:
-        return zone_detail_feature(zones().get(pk=zone_id))
-    except NoFlyZone.DoesNotExist:
-        return None
-
-
-def answer(feature: dict[str, Any] | None) -> Response:
-    if feature is None:
-        raise Http404
-    return Response(feature, headers=etag_of(feature["properties"]["revision"]))
 
 
 def _entry(subject_type: str, subject_id: int, request: Request) -> AuditEntry:
@@ -145,7 +123,7 @@ class HistoryUndo(APIView):
             raise Http404
 
         def now(key: int) -> dict[str, Any] | None:
-            return asset_now(request.user, key) if entry.subject_type == "asset" else zone_now(key)
+            return asset_now(request.user, key) if entry.subject_type == "asset" else zone_now(request.user, key)
 
         with edits(request.user, lambda: now(int(entry.subject_id))):
             row = undo(entry=entry, actor=request.user)
@@ -238,9 +216,9 @@ class ZoneRevert(APIView):
         zone = NoFlyZone.objects.filter(pk=zone_id).first()
         if zone is None:
             raise Http404
-        with edits(request.user, lambda: zone_now(zone_id)):
+        with edits(request.user, lambda: zone_now(request.user, zone_id)):
             revert_zone(zone=zone, entry=entry, actor=request.user, expected_revision=revision)
-        return answer(zone_now(zone_id))
+        return answer(zone_now(request.user, zone_id))
 
 
 def _asset(asset_id: int) -> Asset:

@@ -1,7 +1,5 @@
 """No-fly zones: the list and one of them."""
 
-from django.http import Http404
-from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -12,13 +10,12 @@ from inspection.models import NoFlyZone
 from inspection.serializers.edits import ZoneInputSerializer
 from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFeatureSerializer, zone_feature
 from inspection.services import delete_zone, save_zone
-from inspection.views.edits import edits
-from inspection.views.history import answer, zone_now
+from inspection.views.edits import Curated, answer, with_values, zone_now
 from inspection.views.parameters import BOX, box_of, text_of
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import changed_since, page_of
 from workspace.api.permissions import CURATORS
-from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
+from workspace.api.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS
 from workspace.api.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.api.whole_numbers import WholeNumber
@@ -52,22 +49,25 @@ class ZoneList(APIView):
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:
-        body = ZoneInputSerializer(data=request.data)
-        body.is_valid(raise_exception=True)
-        with edits(request.user, lambda: None):
-            zone = save_zone(zone=NoFlyZone(**body.validated_data), actor=request.user)
-        response = answer(zone_now(zone.pk))
-        response.status_code = 201
-        response["Location"] = reverse("api-zone", args=[zone.pk])
-        return response
+        return ZONES.drawn(request)
+
+
+ZONES = Curated(
+    NoFlyZone,
+    ZoneInputSerializer,
+    "api-zone",
+    zone_now,
+    save=lambda zone, values, **by: save_zone(zone=with_values(zone, values), **by),
+    delete=lambda zone, **by: delete_zone(zone=zone, **by),
+)
 
 
 class ZoneDetail(APIView):
     write_roles = CURATORS
 
     @extend_schema(operation_id="get_zone", summary="One no-fly zone with all its source says", responses=ZoneDetailFeatureSerializer)
-    def get(self, request: Request, zone_id: int) -> Response:
-        return answer(zone_now(zone_id))
+    def get(self, request: SignedInRequest, zone_id: int) -> Response:
+        return answer(zone_now(request.user, zone_id))
 
     @extend_schema(
         operation_id="change_zone",
@@ -78,15 +78,7 @@ class ZoneDetail(APIView):
         responses={200: ZoneDetailFeatureSerializer} | PRECONDITION_ANSWERS,
     )
     def patch(self, request: SignedInRequest, zone_id: int) -> Response:
-        revision = expected_revision(request)
-        zone = self._zone(zone_id)
-        body = ZoneInputSerializer(zone, data=request.data, partial=True)
-        body.is_valid(raise_exception=True)
-        for name, value in body.validated_data.items():
-            setattr(zone, name, value)
-        with edits(request.user, lambda: zone_now(zone_id)):
-            save_zone(zone=zone, actor=request.user, expected_revision=revision)
-        return answer(zone_now(zone_id))
+        return ZONES.corrected(request, zone_id)
 
     @extend_schema(
         operation_id="delete_zone",
@@ -96,13 +88,4 @@ class ZoneDetail(APIView):
         responses={204: None} | PRECONDITION_ANSWERS,
     )
     def delete(self, request: SignedInRequest, zone_id: int) -> Response:
-        revision = expected_revision(request)
-        with edits(request.user, lambda: zone_now(zone_id)):
-            delete_zone(zone=self._zone(zone_id), actor=request.user, expected_revision=revision)
-        return Response(status=204)
-
-    def _zone(self, zone_id: int) -> NoFlyZone:
-        try:
-            return NoFlyZone.objects.get(pk=zone_id)
-        except NoFlyZone.DoesNotExist as error:
-            raise Http404 from error
+        return ZONES.removed(request, zone_id)

@@ -62,6 +62,36 @@ function fill(element, properties, children) {
   return element;
 }
 
+/**
+ * A name and its value for a list of facts (dl); nothing where there is no value.
+ *
+ * @param {string} name
+ * @param {Child} value
+ * @returns {Child[]}
+ */
+export const term = (name, value) =>
+  value === null || value === undefined || value === "" || value === false
+    ? []
+    : [h("dt", {}, name), h("dd", {}, value)];
+
+/**
+ * A choice of one of several, drawn side by side: of each its value and its words.
+ *
+ * @param {string} name of the radio buttons
+ * @param {[string, Child][]} choices
+ * @param {string} chosen
+ * @param {(value: string) => unknown} choose
+ */
+export const segments = (name, choices, chosen, choose) =>
+  choices.map(([value, words]) =>
+    h(
+      "label",
+      {},
+      h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => choose(value) }),
+      h("span", { class: "segment" }, words),
+    ),
+  );
+
 /** @param {string} name of a Lucide icon @param {string} [size] a class */
 export function icon(name, size = "") {
   return svg("svg", { class: `icon ${size}`.trim(), "aria-hidden": "true" }, svg("use", { href: `${SPRITE}#${name}` }));

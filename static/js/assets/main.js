@@ -1,14 +1,12 @@
 /** The page "Assets": find, look, draw, correct. */
 
-import { byId, h } from "../dom.js";
-import { coordinatesOf } from "../ground/record_list.js";
+import { byId, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { t, tn } from "../text.js";
 import { coordinateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
 /** @import { AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
-/** @import { Child } from "../dom.js" */
 /** @import { ShapeKind } from "../draw/types.d.ts" */
 /** @import { RecordFeature, RecordKind } from "../ground/types.d.ts" */
 
@@ -30,13 +28,7 @@ const NEW_NAMES = {
 const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
 /** @type {Record<string, ShapeKind>} */
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
-const PAGE = "60";
-const TYPING_MS = 250;
-
-const filter = { text: "", kind: "", inView: false };
-/** @param {string} name @param {Child} value */
-const term = (name, value) =>
-  value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
+let kind = ""; // that the list is narrowed to
 /** @type {(keyof AssetDetailProperties)[]} */
 const FACTS = ["subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable"];
 /** @param {AssetDetailFeature} feature */
@@ -138,64 +130,25 @@ const ASSETS = {
   title: (feature) => feature.properties.label,
   details,
   form: assetForm,
-  followsView: () => filter.inView,
   row: ({ properties }) => ({
     icon: properties.kind,
     name: properties.label,
     detail: properties.detail || NAMES[properties.kind],
     chip: properties.is_flyable ? "" : t("not flown"),
   }),
-  listQuery(box) {
-    const query = new URLSearchParams({ limit: PAGE });
-    if (filter.text) query.set("text", filter.text);
-    if (filter.kind) query.set("kind", filter.kind);
-    if (filter.inView) query.set("bbox", coordinatesOf(box()));
-    return `/assets?${query}`;
+  narrowed: () => ({ kind }),
+  noneFound: t("Other words, another kind, or a larger part of the map may have it."),
+  noneYet: {
+    words: t("No assets yet."),
+    begin: t("Import an OpenStreetMap file, or download the visible area from OpenStreetMap."),
   },
-  nothing: () =>
-    filter.text || filter.kind || filter.inView
-      ? [
-          h("strong", {}, t("Nothing found.")),
-          h("span", {}, t("Other words, another kind, or a larger part of the map may have it.")),
-        ]
-      : [
-          h("strong", {}, t("No assets yet.")),
-          h("span", {}, t("Import an OpenStreetMap file, or download the visible area from OpenStreetMap.")),
-          h("a", { class: "button", href: "/imports" }, t("Import a file")),
-        ],
 };
 const records = mountRecordPage(ASSETS);
 
-/** @type {ReturnType<typeof setTimeout> | undefined} */
-let timer;
-const text = byId("record-text", HTMLInputElement);
-text.addEventListener("input", () => {
-  filter.text = text.value.trim();
-  clearTimeout(timer);
-  timer = setTimeout(() => records.load(), TYPING_MS);
-});
-const inView = byId("record-in-view", HTMLInputElement);
-inView.addEventListener("change", () => {
-  filter.inView = inView.checked;
-  records.load();
-});
 byId("asset-kinds").append(
-  ...[["", t("All")], ...KINDS].map(([value, words]) =>
-    h(
-      "label",
-      {},
-      h("input", {
-        type: "radio",
-        name: "kind",
-        value,
-        checked: value === "",
-        onchange: () => {
-          filter.kind = value;
-          records.load();
-        },
-      }),
-      h("span", { class: "segment" }, words),
-    ),
-  ),
+  ...segments("kind", [["", t("All")], ...KINDS], "", (value) => {
+    kind = value;
+    records.load();
+  }),
 );
 records.start();

@@ -1,14 +1,13 @@
 /** How a UAV is connected: by which door, when it was heard last, what it says of itself. Asked again while it is looked at. */
 
 import { get } from "../api.js";
-import { h } from "../dom.js";
+import { h, term } from "../dom.js";
 import { t } from "../text.js";
 import { agoText, percentText } from "../units.js";
 import { LINKS } from "./words.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { UavConnection } from "../api_types.d.ts" */
-/** @import { Child } from "../dom.js" */
 
 const ASKED_EVERY_MS = 5_000;
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
@@ -28,8 +27,6 @@ export function heardWords({ heard_at, heard_by, server_time }) {
   };
 }
 
-/** @param {string} name @param {string} value @returns {Child} */
-const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
 /** @param {UavConnection} connection */
 const flightWords = ({ is_in_air, is_armed }) =>
   is_in_air ? t("in the air") : is_armed ? t("armed") : is_armed === false ? t("disarmed") : "";

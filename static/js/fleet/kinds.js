@@ -1,6 +1,6 @@
 /** The three things of the fleet: where each comes from, what its table shows, how it is named and told in full. */
 
-import { h } from "../dom.js";
+import { h, term } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { coordinateText, percentText, powerText, speedText } from "../units.js";
@@ -22,11 +22,6 @@ import {
 
 /** @param {string} words */
 const caption = (words) => words && h("span", { class: "caption" }, words);
-/** @param {string} name @param {Child} value @returns {Child[]} */
-const term = (name, value) =>
-  value === null || value === undefined || value === "" || value === false
-    ? []
-    : [h("dt", {}, name), h("dd", {}, value)];
 
 /**
  * What it is charged to, and what a full one holds; the latter alone where nobody knows the former.

@@ -1,4 +1,4 @@
-/** The list of a record page: what was found, and more of it on demand. */
+/** The list of a record page: what is looked for, what was found, and more of it on demand. */
 
 import { get } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
@@ -7,6 +7,9 @@ import { t, tn } from "../text.js";
 /** @import { Answer } from "../api.js" */
 /** @import { Geometry } from "../map/types.d.ts" */
 /** @import { RecordFeature, RecordKind } from "./types.d.ts" */
+
+const PAGE = "60";
+const TYPING_MS = 250;
 
 /** A box as a query of the API has it. @param {number[]} box */
 export const coordinatesOf = (box) => box.map((degrees) => degrees.toFixed(6)).join(",");
@@ -32,19 +35,51 @@ export class RecordList {
   /** Address of the next page. @type {string | null} */
   #next = null;
   #asked = 0;
+  #text = byId("record-text", HTMLInputElement);
+  #inView = byId("record-in-view", HTMLInputElement);
 
   /** @param {RecordKind<Feature, Row>} kind @param {ListHandlers} on */
   constructor(kind, on) {
     this.#kind = kind;
     this.#on = on;
     byId("record-more").addEventListener("click", () => this.load({ more: true }));
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    let timer;
+    this.#text.addEventListener("input", () => {
+      clearTimeout(timer);
+      timer = setTimeout(() => this.load(), TYPING_MS);
+    });
+    this.#inView.addEventListener("change", () => this.load());
+  }
+
+  /** Whether it shows only what the map shows. */
+  get followsView() {
+    return this.#inView.checked;
+  }
+
+  /** What narrows the list, as parameters of its address. */
+  #narrowed() {
+    const given = {
+      text: this.#text.value.trim(),
+      ...this.#kind.narrowed(),
+      bbox: this.followsView ? coordinatesOf(this.#on.box()) : "",
+    };
+    return Object.entries(given).filter(([, value]) => value);
+  }
+
+  #none() {
+    const { noneFound, noneYet } = this.#kind;
+    if (this.#narrowed().length) return [h("strong", {}, t("Nothing found.")), h("span", {}, noneFound)];
+    const toImports = h("a", { class: "button", href: "/imports" }, t("Import a file"));
+    return [h("strong", {}, noneYet.words), h("span", {}, noneYet.begin), toImports];
   }
 
   /** @param {{ more?: boolean }} [how] whether the next page is added */
   async load({ more = false } = {}) {
     this.#asked += 1;
     const turn = this.#asked;
-    const address = more && this.#next ? this.#next : this.#kind.listQuery(this.#on.box);
+    const query = new URLSearchParams([["limit", PAGE], ...this.#narrowed()]);
+    const address = more && this.#next ? this.#next : `${this.#kind.path}?${query}`;
     try {
       const { data } = /** @type {Answer<{ features: Row[], next: string | null }>} */ (await get(address));
       if (turn !== this.#asked) return;
@@ -78,7 +113,7 @@ export class RecordList {
     const none = byId("record-none");
     const count = this.#rows.length;
     none.hidden = count > 0;
-    if (!count) none.replaceChildren(...this.#kind.nothing());
+    if (!count) none.replaceChildren(...this.#none());
     const found = this.#next ? t("{count} or more found", { count }) : tn(count, "{count} found", "{count} found");
     byId("page-facts").textContent = count ? found : "";
   }

@@ -123,7 +123,7 @@ class RecordPage {
         this.#edit.editor.addTo();
         await this.load();
         map.map.on("moveend", () => {
-          if (this.#kind.followsView() && !this.#views.find.hidden) this.load();
+          if (this.#list.followsView && !this.#views.find.hidden) this.load();
         });
         const id = new URL(location.href).searchParams.get("id");
         if (id && /^\d+$/.test(id)) await this.choose(id);

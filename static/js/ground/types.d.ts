@@ -70,11 +70,12 @@ export interface RecordKind<Feature extends RecordFeature, Row> {
   title(feature: Feature): string;
   details(feature: Feature): (Node | string)[];
   form(feature: Feature | null, choice: string, kept: Facts | null): RecordForm;
-  followsView(): boolean;
   row(feature: Row): ListRow;
-  /** address of the list; `box` is what the map shows */
-  listQuery(box: () => number[]): string;
-  nothing(): (Node | string)[];
+  /** parameters of the list besides a text and what the map shows; "" narrows nothing */
+  narrowed(): Record<string, string>;
+  /** what to do where a search finds nothing, and while there is nothing yet */
+  noneFound: string;
+  noneYet: { words: string; begin: string };
 }
 
 /** An edit that was not saved, as the browser keeps it. */

@@ -1,9 +1,8 @@
 /** The page "No-fly zones": find, look, draw, correct; sets and their sources. */
 
-import { byId, find, h, icon, setChildren } from "../dom.js";
+import { byId, find, h, icon, segments, setChildren, term } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
 import { bandDrawing, heightsText } from "../domain/zone_heights.js";
-import { coordinatesOf } from "../ground/record_list.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
@@ -13,16 +12,10 @@ import { weekDrawing } from "./schedule_editor.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
 /** @import { Limit, ZoneDetailFeature, ZoneFeature, ZoneSet } from "../api_types.d.ts" */
-/** @import { Child } from "../dom.js" */
 /** @import { Facts, RecordFeature, RecordKind } from "../ground/types.d.ts" */
 
-const PAGE = "60";
-const TYPING_MS = 250;
-/** @type {{ text: string, set: ZoneSet | null, inView: boolean }} */
-const filter = { text: "", set: null, inView: false };
-/** @param {string} name @param {Child} value */
-const term = (name, value) =>
-  value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
+/** That the list is narrowed to. @type {ZoneSet | null} */
+let zoneSet = null;
 
 /** @param {ZoneDetailFeature} feature @returns {Facts} */
 function factsOf({ properties, geometry }) {
@@ -130,53 +123,26 @@ const ZONES = {
   title: (feature) => feature.properties.name,
   details,
   form: zoneForm,
-  followsView: () => filter.inView,
   row: ({ properties }) => ({
     icon: "zone",
     name: properties.name,
     detail: heightsText(properties),
     chip: properties.schedule ? t("at times") : "",
   }),
-  listQuery(box) {
-    const query = new URLSearchParams({ limit: PAGE });
-    if (filter.text) query.set("text", filter.text);
-    if (filter.set) query.set("zone_set", String(filter.set.id));
-    if (filter.inView) query.set("bbox", coordinatesOf(box()));
-    return `/zones?${query}`;
+  narrowed: () => ({ zone_set: zoneSet ? String(zoneSet.id) : "" }),
+  noneFound: t("Other words, or a larger part of the map may have it."),
+  noneYet: {
+    words: t("No zones yet."),
+    begin: t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file."),
   },
-  nothing: () =>
-    filter.text || filter.set || filter.inView
-      ? [
-          h("strong", {}, t("Nothing found.")),
-          h("span", {}, t("Other words, or a larger part of the map may have it.")),
-        ]
-      : [
-          h("strong", {}, t("No zones yet.")),
-          h("span", {}, t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.")),
-          h("a", { class: "button", href: "/imports" }, t("Import a file")),
-        ],
 };
 const records = mountRecordPage(ZONES);
 
-/** @type {ReturnType<typeof setTimeout> | undefined} */
-let timer;
-const text = byId("record-text", HTMLInputElement);
-text.addEventListener("input", () => {
-  filter.text = text.value.trim();
-  clearTimeout(timer);
-  timer = setTimeout(() => records.load(), TYPING_MS);
-});
-const inView = byId("record-in-view", HTMLInputElement);
-inView.addEventListener("change", () => {
-  filter.inView = inView.checked;
-  records.load();
-});
-
 /** Shows which set the list is narrowed to. */
 function showSet() {
-  const name = filter.set?.name;
+  const name = zoneSet?.name;
   const clear = () => {
-    filter.set = null;
+    zoneSet = null;
     showSet();
     records.load();
   };
@@ -184,14 +150,14 @@ function showSet() {
   const button = { type: "button", class: "icon-button tight", "aria-label": label, onclick: clear };
   setChildren(
     byId("zone-set-filter"),
-    filter.set && h("span", { class: "chip" }, name, h("button", button, icon("x", "small"))),
+    zoneSet && h("span", { class: "chip" }, name, h("button", button, icon("x", "small"))),
   );
 }
 
 const sets = mountSetsPanel({
   canCurate: records.page.canCurate,
   showZones(set) {
-    filter.set = set;
+    zoneSet = set;
     showSet();
     turnTo("zones");
     records.load();
@@ -212,14 +178,5 @@ function turnTo(tab) {
   } else records.go("find");
   find(document, `input[name=zone-tab][value=${tab}]`, HTMLInputElement).checked = true;
 }
-byId("zone-tabs").append(
-  ...TABS.map(([value, words]) =>
-    h(
-      "label",
-      {},
-      h("input", { type: "radio", name: "zone-tab", value, checked: value === "zones", onchange: () => turnTo(value) }),
-      h("span", { class: "segment" }, words),
-    ),
-  ),
-);
+byId("zone-tabs").append(...segments("zone-tab", TABS, "zones", turnTo));
 records.start();

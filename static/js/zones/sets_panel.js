@@ -1,7 +1,7 @@
 /** Sets and sources: where zones come from, how old they are, earlier states, and what is fetched by itself. */
 
 import { ApiError, follow, get, post } from "../api.js";
-import { byId, h, icon, setChildren } from "../dom.js";
+import { byId, h, icon, setChildren, term } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { countText, whenText } from "../units.js";
@@ -10,9 +10,6 @@ import { askSubscription, openDialog } from "./subscription_dialog.js";
 /** @import { Answer } from "../api.js" */
 /** @import { FetchJob, Proposal, ZoneSet, ZoneSetPage, ZoneSetVersion, ZoneSetVersionPage, ZoneSubscription } from "../api_types.d.ts" */
 /** @import { Child } from "../dom.js" */
-
-/** @param {string} name @param {Child} value */
-const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
 
 /** "from 1 Jan until 31 Dec": what a file states of itself. @param {{ valid_from: string | null, valid_until: string | null }} source */
 export const validityText = ({ valid_from: from, valid_until: until }) =>
