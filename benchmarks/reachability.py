@@ -25,10 +25,9 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
 from inspection.network.build.zone_masking import cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.route_index import route_index
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules
 from planning.energy.conditions import Conditions, WindLayer

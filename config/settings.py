@@ -11,9 +11,8 @@ import dj_database_url
 from config.environment import entries, flag, log_settings, mail_settings, mebibytes, number, secret
 from config.openapi_settings import openapi_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
-from inspection.network.flown_heights import FlownHeights
-from inspection.network.rules import LinkingRules
-from inspection.zones.rules import ZoneRules
+from inspection.network.rules import FlownHeights, LinkingRules
+from inspection.zones.schedule import ZoneRules
 from mavlink.timeouts import CommandRules as VehicleCommandRules
 from mavlink.timeouts import TransferRules
 from missions.command_rules import CommandRules

@@ -14,7 +14,6 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import short_distance_m
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.network.nearness import chord
@@ -22,6 +21,7 @@ from inspection.network.paths.access import MAX_ROUND, band_of_legs, clear_legs
 from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.paths import Travel, travel_between_places
 from inspection.network.route_index import asset_places, node_tree
+from inspection.network.rules import FlownHeights
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.problem import End

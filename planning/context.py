@@ -5,13 +5,12 @@ from dataclasses import dataclass, field
 
 from inspection.geodesy import LonLat
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.terrain.tiled_terrain import TiledTerrain
 from inspection.zones.reach import BoolArray, ZoneTable
-from inspection.zones.rules import ZoneRules
+from inspection.zones.schedule import ZoneRules
 from planning.clearance.zone_clearance import Margins
 from planning.problem import Task
 from planning.rules import FlightRules, RoutingRules, SeparationRules

@@ -13,15 +13,14 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.network.build.zone_masking import cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.snapshot_file import CorruptSnapshot, from_bytes, to_bytes
 from inspection.network.zones.zone_index import ZoneIndex
-from inspection.terrain.height_grid import HeightGrid
+from inspection.terrain.heights import HeightGrid
 from inspection.terrain.tiled_terrain import IntArray, TiledTerrain
 from inspection.zones.reach import BoolArray, Limits, ZoneTable
-from inspection.zones.rules import ZoneRules
+from inspection.zones.schedule import ZoneRules
 from planning.airspace import NEAR_DEG, NEAR_SHARE
 from planning.context import Box, OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
 from planning.request import PlanRequest, request_from_json, request_to_json, task_from_json, task_to_json

@@ -13,8 +13,7 @@ from django.utils.safestring import SafeString
 
 from inspection import services
 from inspection.admin.curated import CuratedAdmin, CuratedForm, expected_revision
-from inspection.admin_json import JSONObjectField, StrictJSONField
-from inspection.admin_map import GeoJSONField
+from inspection.admin_map import GeoJSONField, JSONObjectField, StrictJSONField
 from inspection.importers.osm.tags import MAX_HEIGHT_M
 from inspection.models import Asset, AssetKind, Bridge, DataImport, ImportKind, PowerLine, PowerTower, Railway
 from inspection.selectors import asset_label

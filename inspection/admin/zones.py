@@ -10,8 +10,7 @@ from django.http import HttpRequest
 
 from inspection import services
 from inspection.admin.curated import CommonGroundAdmin, CuratedAdmin, CuratedForm, expected_revision
-from inspection.admin_json import StrictJSONField
-from inspection.admin_map import GeoJSONField
+from inspection.admin_map import GeoJSONField, StrictJSONField
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.imports.subscriptions import change_subscription

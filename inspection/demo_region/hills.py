@@ -4,9 +4,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inspection.demo_region.curves import smooth_path
 from inspection.demo_region.layout import RIVER
-from inspection.demo_region.place import CENTRE, HALF_HEIGHT_M, HALF_WIDTH_M, METRES_PER_DEG_LAT, METRES_PER_DEG_LON, FloatArray
+from inspection.demo_region.place import (
+    CENTRE,
+    HALF_HEIGHT_M,
+    HALF_WIDTH_M,
+    METRES_PER_DEG_LAT,
+    METRES_PER_DEG_LON,
+    FloatArray,
+    smooth_path,
+)
 
 STEP_DEG = 2.0 / 3_600.0  # 2 arc seconds: 56 m by 62 m here
 MARGIN_M = 2_000.0  # how far the terrain reaches beyond the lines

@@ -7,11 +7,10 @@ import numpy as np
 from scipy.sparse.csgraph import depth_first_order, minimum_spanning_tree
 from scipy.spatial.distance import cdist
 
-from inspection.demo_region.curves import spans_between
 from inspection.demo_region.hills import Hills
 from inspection.demo_region.layout import CORRIDORS, SUBSTATIONS, TOWNS, VALLEY_OPERATOR, Corridor, Substation
-from inspection.demo_region.osm_objects import OsmDrawing
-from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, FloatArray
+from inspection.demo_region.osm_file import OsmDrawing
+from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, FloatArray, spans_between
 
 SUPPORTS_WANTED = 3_000
 GANTRY_M = 50.0  # from a substation's middle to where its lines end: all within the graph's crossing radius of one another

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inspection.demo_region.hills import TerrainGrid, make_hills, make_terrain_grid
-from inspection.demo_region.osm_objects import OsmDrawing
+from inspection.demo_region.osm_file import OsmDrawing
 from inspection.demo_region.place import DEFAULT_SEED
 from inspection.demo_region.power import draw_power
 from inspection.demo_region.transport import draw_transport

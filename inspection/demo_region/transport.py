@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 import numpy as np
 import shapely
 
-from inspection.demo_region.curves import distance_along, offset_path, piece_of, point_along, smooth_path
 from inspection.demo_region.layout import (
     BRANCH_JUNCTION_SHARE,
     BRANCH_RAILWAY,
@@ -17,8 +16,8 @@ from inspection.demo_region.layout import (
     TOWNS,
     Course,
 )
-from inspection.demo_region.osm_objects import OsmDrawing
-from inspection.demo_region.place import FloatArray
+from inspection.demo_region.osm_file import OsmDrawing
+from inspection.demo_region.place import FloatArray, distance_along, offset_path, piece_of, point_along, smooth_path
 
 BRIDGES = 60
 BRIDGE_SPACING_M = 150.0  # between the middles of two bridges

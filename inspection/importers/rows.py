@@ -1,6 +1,7 @@
 """What every reader of asset files makes: rows of plain values with a geometry as GeoJSON has it, and the faults that refuse a file."""
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -101,3 +102,25 @@ def unique_names(names: Iterable[str]) -> tuple[str, ...]:
             again += 1
         found.append(name)
     return tuple(found)
+
+
+MAX_FAULTS = 50
+
+
+class TooManyFaults(Exception):
+    pass
+
+
+@dataclass
+class FaultList:
+    faults: list[GeometryFault] = field(default_factory=list)
+
+    @contextmanager
+    def gathering(self) -> Iterator[None]:
+        """Keep a fault of the block and go on after it; stop reading when there are too many."""
+        try:
+            yield
+        except GeometryFault as fault:
+            self.faults.append(fault)
+            if len(self.faults) >= MAX_FAULTS:
+                raise TooManyFaults from fault

@@ -14,7 +14,7 @@ from django.db import transaction
 from inspection.models import MAX_REMOVED_PERCENT, DataImport, ImportProposal, ProposalState
 from inspection.services.imports.uploads import PART_BYTES, UploadTooLarge, check_size_for, store_upload
 from inspection.services.proposals import pipeline
-from inspection.services.proposals.bounds import KINDS
+from inspection.services.proposals.reading import KINDS
 from inspection.tasks import send_job_of
 
 Progress = Callable[[str, float], None]

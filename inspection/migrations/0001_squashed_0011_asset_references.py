@@ -121,7 +121,7 @@ class Migration(migrations.Migration):
                 ('vanished_at', models.DateTimeField(blank=True, help_text='when an import no longer had it', null=True)),
                 ('created_at', models.DateTimeField(db_default=django.db.models.functions.datetime.Now(), editable=False)),
                 ('updated_at', models.DateTimeField(auto_now=True)),
-                ('line', models.ForeignKey(editable=False, help_text='of a support: the line of the highest voltage that it carries; see services/supports.py', null=True, on_delete=django.db.models.deletion.SET_NULL, related_name='supports', to='inspection.asset')),
+                ('line', models.ForeignKey(editable=False, help_text='of a support: the line of the highest voltage that it carries; see services/ground.py', null=True, on_delete=django.db.models.deletion.SET_NULL, related_name='supports', to='inspection.asset')),
                 ('asset_set', models.ForeignKey(blank=True, null=True, on_delete=django.db.models.deletion.SET_NULL, related_name='assets', to='inspection.assetset')),
                 ('data_import', models.ForeignKey(blank=True, null=True, on_delete=django.db.models.deletion.SET_NULL, related_name='assets', to='inspection.dataimport')),
             ],

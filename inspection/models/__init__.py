@@ -1,9 +1,8 @@
 """What exists on the ground, where it comes from, and the graph that connects it."""
 
-from inspection.models.asset_references import AssetReference
-from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
+from inspection.models.assets import Asset, AssetKind, AssetReference, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
 from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
-from inspection.models.graph import GraphSnapshot, Ground
+from inspection.models.graph import GraphSnapshot, Ground, TerrainTile
 from inspection.models.imports import (
     MAX_REMOVED_PERCENT,
     ROW_ACTIONS,
@@ -17,7 +16,6 @@ from inspection.models.imports import (
     Upload,
     UploadPart,
 )
-from inspection.models.terrain import TerrainTile
 from inspection.models.zones import HeightReference, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 
 __all__ = [

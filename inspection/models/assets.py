@@ -9,6 +9,8 @@ from django.db.models import Case, F, Func, Q, Value, When
 from django.db.models.functions import Now, Upper
 
 from inspection.models.imports import DataImport
+from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
+from workspace.models import Organisation
 
 
 class AssetKind(models.TextChoices):
@@ -94,7 +96,7 @@ class Asset(models.Model):
     parts = models.JSONField(default=list, blank=True, editable=False, help_text='the OSM ways on a bridge\'s area: [{"osm_id", "tags"}]')
     line = models.ForeignKey(
         "self", on_delete=models.SET_NULL, null=True, editable=False, related_name="supports",
-        help_text="of a support: the line of the highest voltage that it carries; see services/supports.py",
+        help_text="of a support: the line of the highest voltage that it carries; see services/ground.py",
     )  # fmt: skip
     place_on_line = models.PositiveSmallIntegerField(null=True, editable=False, help_text="counted from 1 in the line's direction")
     places_on_line = models.PositiveSmallIntegerField(null=True, editable=False, help_text="the line's supports")
@@ -179,3 +181,25 @@ class Bridge(Asset):
 
     class Meta:
         proxy = True
+
+
+class AssetReference(models.Model):
+    """An organisation's id and attributes of an asset. Beside the asset's row, so that no import touches them and no other organisation
+    reads them.
+    """
+
+    organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, related_name="asset_references")
+    asset = models.ForeignKey(Asset, on_delete=models.CASCADE, related_name="references")
+    external_id = models.CharField(max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="")
+    attributes = models.JSONField(default=dict, db_default={}, blank=True)
+    updated_at = models.DateTimeField(auto_now=True, db_default=Now())
+
+    class Meta:
+        ordering = ["pk"]
+        constraints = [
+            models.UniqueConstraint(fields=["organisation", "asset"], name="asset_reference_one_each"),
+            models.UniqueConstraint(fields=["organisation", "external_id"], condition=~Q(external_id=""), name="asset_external_id_unique"),
+        ]
+
+    def __str__(self) -> str:
+        return self.external_id or f"attributes of asset {self.asset_id}"

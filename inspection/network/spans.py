@@ -8,8 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import EdgeKind
+from inspection.network.rules import asset_heights_m
 
 BESIDE_M = 25.0  # across the ground: arms of a tower, wires in the wind, and what a UAV strays
 MAX_CELLS = 512  # of the grid, along each side

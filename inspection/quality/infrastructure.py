@@ -1,11 +1,28 @@
-"""What the detectors read: the graph's own arrays, and the few facts besides that tell a gap from an end that is meant."""
+"""What the detectors read, the graph's own arrays and a few facts besides, and what they find: places where the data look wrong."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from inspection.network.infrastructure import Places, Ways
+
+
+@dataclass(frozen=True)
+class Gap:
+    """kind is a value of models.GapKind. cut_off_m is explained in quality/search.py."""
+
+    kind: str
+    key: str  # the same on every run, for as long as the gap is there
+    asset: int
+    position: tuple[float, float]  # lon, lat [deg]
+    geometry: BaseGeometry
+    details: dict[str, Any] = field(default_factory=dict)
+    other_asset: int | None = None
+    cut_off_m: float = 0.0
+
 
 NO_OSM_ID = -1
 

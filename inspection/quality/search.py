@@ -15,14 +15,10 @@ from collections.abc import Callable
 
 from shapely import Point
 
-from inspection.quality.infrastructure import GapGround
-from inspection.quality.issue import Gap
-from inspection.quality.line_ends import line_ends
-from inspection.quality.lone_towers import lone_towers
-from inspection.quality.long_spans import long_spans
-from inspection.quality.missing_supports import missing_supports
+from inspection.quality.infrastructure import Gap, GapGround
+from inspection.quality.lines import impossible_voltages, line_ends
 from inspection.quality.network import Network
-from inspection.quality.voltages import impossible_voltages
+from inspection.quality.supports import lone_towers, long_spans, missing_supports
 
 RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
 

@@ -9,9 +9,9 @@ from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.joining import join_vertices
 from inspection.network.build.network import support_heights_m
-from inspection.network.flown_heights import asset_heights_m
 from inspection.network.infrastructure import Places, Ways
 from inspection.network.inspection_graph import NodeKind
+from inspection.network.rules import asset_heights_m
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -146,3 +146,17 @@ def _one_way(span: IntArray, bearing_deg: FloatArray) -> FloatArray:
                     waiting.append(other)
     opposite: FloatArray = turned % (2 * HALF_TURN_DEG)
     return opposite
+
+
+CATENARY_M = 1_500.0  # horizontal pull over weight by length: usual for aluminium-steel ropes on a mild day without wind
+MAX_SAG_SHARE = 0.5  # of the lower end's height above ground: very long spans are drawn tighter, or stand on towers nobody has mapped
+EARTH_SHARE = 0.85  # an earth wire is drawn tighter than the phases below it
+
+
+def sag_m(length_m: float, lowest_slot_m: float) -> float:
+    """Of a phase, below the straight line between its ends, in the middle.
+
+    lowest_slot_m: above ground, the lower of both ends' lowest slots. A catenary hangs nowhere above the straight line between its ends,
+    so a wire is never higher than planners count it.
+    """
+    return min(length_m**2 / (8.0 * CATENARY_M), MAX_SAG_SHARE * max(lowest_slot_m, 0.0))

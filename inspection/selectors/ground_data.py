@@ -9,8 +9,8 @@ import shapely
 from django.db import connection
 
 from inspection.models import AssetKind
-from inspection.network.flown_heights import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
 from inspection.network.infrastructure import NO_OSM_NODE, GroundData, Places, Ways, Zones
+from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
 from inspection.selectors.ground import ground_revision
 
 READINGS = 3

@@ -15,9 +15,9 @@ from django.utils.translation import gettext_noop
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset, AssetKind, NoFlyZone
-from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.infrastructure import Ways
 from inspection.network.inspection_graph import NodeKind
+from inspection.network.rules import UNTAGGED_HEIGHT_M
 from inspection.scene.overhead import Overhead, overhead
 from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SupportFacts, drawn
 from inspection.selectors.assets import Box, area_of

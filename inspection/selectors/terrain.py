@@ -9,7 +9,7 @@ from django.db.models import Count, Max
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import TerrainTile
 from inspection.selectors.ground import Edition, ground_edition
-from inspection.terrain.height_grid import HeightGrid, unpacked
+from inspection.terrain.heights import HeightGrid, unpacked
 from inspection.terrain.tiled_terrain import IntArray, TerrainHeights, TiledTerrain
 
 TILES_IN_MEMORY = 256  # of 256 KiB each

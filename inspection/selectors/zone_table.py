@@ -14,7 +14,7 @@ from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import NoFlyZone
 from inspection.selectors.ground import ground_edition
 from inspection.selectors.terrain import grids_around, ground_heights_m, terrain_edition
-from inspection.terrain.height_grid import HeightGrid
+from inspection.terrain.heights import HeightGrid
 from inspection.zones.reach import Limits, ZoneTable, agl_band
 
 MAX_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; the ground under a larger zone counts as not known

@@ -9,7 +9,7 @@ from django.contrib.gis.geos import LineString, Polygon
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import NoFlyZone
 from inspection.network.zones.zone_index import MAX_SHRINKING_LAT_DEG, METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, widen
-from inspection.terrain.profile import stretches_inside
+from inspection.terrain.heights import stretches_inside
 
 MAX_ZONES = 200
 

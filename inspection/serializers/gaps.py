@@ -3,16 +3,174 @@
 import json
 from typing import Any
 
+from django.utils.formats import number_format
+from django.utils.translation import gettext as _
+from django.utils.translation import ngettext
+
 from inspection.models import Asset, AssetKind, GapKind, GapState
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.gaps import DrawnGap, GapSummary
 from inspection.serializers.features import collection_serializer, feature_serializer
-from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
 from workspace.models import User
+
+Details = dict[str, Any]
+
+
+def figure(value: float, digits: int = 0) -> str:
+    return number_format(round(value, digits), decimal_pos=digits, use_l10n=True, force_grouping=True)
+
+
+def kilometres(metres: float) -> str:
+    """ "11.3 km", "0.32 km": for spans, which are compared with each other. The space does not break."""
+    return f"{figure(metres / 1_000, 2 if metres < 1_000 else 1)}\N{NO-BREAK SPACE}km"
+
+
+def length(metres: float) -> str:
+    """ "2.6 m", "698 m", "34.2 km"."""
+    if metres < 999.5:
+        return f"{figure(metres, 1 if metres < 20 else 0)}\N{NO-BREAK SPACE}m"
+    return kilometres(metres)
+
+
+def title(kind: str, details: Details) -> str:
+    """A few words; the asset's own name stands beside them."""
+    match kind:
+        case "long_span":
+            return _("Span of %(length)s") % {"length": kilometres(details["span_m"])}
+        case "missing_support":
+            return _counted(
+                ngettext("%(count)s tower missing", "%(count)s towers missing", details["missing_towers"]), details["missing_towers"]
+            )
+        case "line_without_towers":
+            return _("Line without towers")
+        case "tower_on_no_line":
+            return _counted(ngettext("Tower on no line", "%(count)s towers on no line", details["towers"]), details["towers"])
+        case "dead_end":
+            return _("Line ends in nothing")
+        case "ends_apart":
+            return _("Lines %(length)s apart") % {"length": length(details["apart_m"])}
+        case "bridge_without_way":
+            return _("Bridge without a way")
+        case _other:
+            return _voltage_title(details)
+
+
+def _voltage_title(details: Details) -> str:
+    match details["fault"]:
+        case "unusual":
+            return _("Unusual voltage")
+        case "unread":
+            return _("Voltage not readable")
+        case "too_many":
+            return _("%(count)s voltages") % {"count": len(details["voltages_v"])}
+        case _other:
+            return _("Impossible voltage")
+
+
+def sentence(kind: str, details: Details) -> str:
+    """What is wrong, then what follows from it."""
+    return _SENTENCES[kind](details)
+
+
+def _long_span(details: Details) -> str:
+    said = [
+        _("Span of %(length)s; the usual one here is %(usual)s.")
+        % {"length": kilometres(details["span_m"]), "usual": kilometres(details["usual_span_m"])}
+    ]
+    missing = max(1, details["missing_towers"])
+    said.append(_counted(ngettext("About one tower is missing.", "About %(count)s towers are missing.", missing), missing))
+    if details["is_impossible"]:
+        said.append(_("No span in the world is so long."))
+    return " ".join(said)
+
+
+def _missing_support(details: Details) -> str:
+    return _("%(count)s of %(all)s vertices have no tower; %(length)s of the line cannot be picked tower by tower.") % {
+        "count": details["missing_towers"],
+        "all": details["vertices"],
+        "length": length(details["without_tower_m"]),
+    }
+
+
+def _line_without_towers(details: Details) -> str:
+    return _("None of the line's %(count)s vertices has a tower: %(length)s cannot be picked tower by tower.") % {
+        "count": details["vertices"],
+        "length": length(details["line_m"]),
+    }
+
+
+def _tower_on_no_line(details: Details) -> str:
+    near = details["nearest_line_m"]
+    values = {"count": figure(details["towers"]), "length": length(details["row_m"]) if details["towers"] > 1 else ""}
+    if near is not None:
+        values["near"] = length(near)
+    if details["towers"] > 1:
+        if near is None:
+            return _("%(count)s towers in a row of %(length)s carry no line: it may not be mapped.") % values
+        return _("%(count)s towers in a row of %(length)s carry no line; the nearest one is %(near)s away.") % values
+    if near is None:
+        return _("No line passes the tower, and none is within 500 m.")
+    return _("No line passes the tower; the nearest one is %(near)s away.") % values
+
+
+def _dead_end(details: Details) -> str:
+    if details["has_tower"]:
+        said = _("The line ends at a tower, and nothing is within 150 m that it could lead to.")
+    else:
+        said = _("The line ends at a vertex without a tower, and nothing is within 150 m that it could lead to.")
+    near = details["nearest_m"]
+    return said if near is None else f"{said} {_('Another part of the network is %(length)s away.') % {'length': length(near)}}"
+
+
+def _ends_apart(details: Details) -> str:
+    values = {"length": length(details["apart_m"])}
+    if details["is_at_end"]:
+        return _("The line ends %(length)s from the other line's end and does not join it.") % values
+    return _("The line ends %(length)s from another line and does not join it.") % values
+
+
+def _bridge_without_way(details: Details) -> str:
+    return _("Nothing says what the bridge carries: no road, railway, path or water is mapped on it.")
+
+
+def _impossible_voltage(details: Details) -> str:
+    values = {
+        "volts": ", ".join(f"{figure(value)} V" for value in details["voltages_v"]),
+        "count": len(details["voltages_v"]),
+        "tagged": details.get("tagged", ""),
+    }
+    match details["fault"]:
+        case "too_low":
+            return _("%(volts)s: too low for a line on towers. The unit was probably left out.") % values
+        case "too_high":
+            return _("%(volts)s: no line in the world has more than 1,200 kV.") % values
+        case "too_many":
+            return _("%(count)s voltages on one line: %(volts)s.") % values
+        case "unread":
+            return _("The voltage “%(tagged)s” cannot be read.") % values
+        case _other:
+            return _("%(volts)s: no network is known to use it. It may be right all the same.") % values
+
+
+def _counted(words: str, count: int) -> str:
+    return words % {"count": figure(count)}
+
+
+_SENTENCES = {
+    "long_span": _long_span,
+    "missing_support": _missing_support,
+    "line_without_towers": _line_without_towers,
+    "tower_on_no_line": _tower_on_no_line,
+    "dead_end": _dead_end,
+    "ends_apart": _ends_apart,
+    "bridge_without_way": _bridge_without_way,
+    "impossible_voltage": _impossible_voltage,
+}
+
 
 MAX_NOTE_LENGTH = 500
 

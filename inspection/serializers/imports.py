@@ -9,7 +9,7 @@ from inspection.models import MAX_REMOVED_PERCENT, ChangeAction, ImportKind, Imp
 from inspection.selectors.imports import DrawnChange
 from inspection.serializers.features import GeometrySerializer
 from inspection.services.imports.uploads import PART_BYTES
-from inspection.services.proposals.bounds import KINDS
+from inspection.services.proposals.reading import KINDS
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField

@@ -8,9 +8,9 @@ from rest_framework import serializers
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset
-from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.inspection_graph import NodeKind
-from inspection.scene.sag import CATENARY_M, EARTH_SHARE, MAX_SAG_SHARE
+from inspection.network.rules import UNTAGGED_HEIGHT_M
+from inspection.scene.overhead import CATENARY_M, EARTH_SHARE, MAX_SAG_SHARE
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
 from inspection.selectors.scene import Scene, SceneBridge, SceneZone

@@ -1,7 +1,7 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
 from inspection.importers.rows import AssetFileError
-from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.terrain.raster import TerrainFileError
 from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
 from inspection.services.gaps import find_gaps

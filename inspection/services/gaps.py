@@ -10,7 +10,7 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.models import Asset, DataGap, GapSearch, GapState
-from inspection.quality.issue import Gap
+from inspection.quality.infrastructure import Gap
 from inspection.quality.search import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.selectors.ground import ground_edition

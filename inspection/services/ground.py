@@ -1,9 +1,12 @@
-"""The ground's revision: counted up with every change to assets or zones."""
+"""The ground's revision, counted up with every change, and the places of supports on their lines, which follow from one."""
 
+from django.db import connection
 from django.db.models import F
 from django.utils import timezone
 
 from inspection.models import Ground
+from inspection.network.build.joining import TOUCH_M
+from inspection.network.infrastructure import NO_OSM_NODE
 from workspace.leases import lock_until_end
 
 GROUND_LOCK = 0x05A7_0001  # advisory lock: one at a time writes more of the ground than single rows
@@ -22,3 +25,67 @@ def mark_ground_changed() -> int:
     Ground.objects.get_or_create(pk=Ground.SINGLE_ID)
     Ground.objects.filter(pk=Ground.SINGLE_ID).update(revision=F("revision") + 1, changed_at=timezone.now())
     return Ground.objects.values_list("revision", flat=True).get(pk=Ground.SINGLE_ID)
+
+
+REACH_DEG = 1e-4  # more than TOUCH_M is anywhere between the polar circles
+
+# A line that comes by the same support twice counts it once, where it comes first. A support that has vanished keeps what it was:
+# missions still name it.
+#
+# What has no OSM node, because it was drawn, moved by hand or came from another file, is joined where it stands: a support to a vertex
+# within TOUCH_M of it, as in network/build/joining.py. The first condition on the distance, in degrees, is the one that the index knows.
+_NUMBER = f"""
+WITH met AS (
+    SELECT l.id AS line_id, s.id AS support_id, node.vertex
+    FROM inspection_asset l
+    CROSS JOIN LATERAL unnest(l.node_osm_ids) WITH ORDINALITY AS node(osm_id, vertex)
+    JOIN inspection_asset s ON s.kind = 'tower' AND s.osm_type = 'n' AND s.osm_id = node.osm_id AND s.vanished_at IS NULL
+    WHERE l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL
+  UNION ALL
+    SELECT l.id, s.id, (point).path[1]
+    FROM inspection_asset s
+    JOIN inspection_asset l ON l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL
+      AND ST_DWithin(l.geometry, s.geometry, {REACH_DEG})
+    CROSS JOIN LATERAL ST_DumpPoints(l.geometry) AS point
+    WHERE s.kind = 'tower' AND s.vanished_at IS NULL AND (s.osm_id IS NULL OR s.is_edited)
+      AND ST_DistanceSphere((point).geom, s.geometry) <= {TOUCH_M}
+  UNION ALL
+    SELECT l.id, s.id, (point).path[1]
+    FROM inspection_asset l
+    CROSS JOIN LATERAL ST_DumpPoints(l.geometry) AS point
+    JOIN inspection_asset s ON s.kind = 'tower' AND s.vanished_at IS NULL AND ST_DWithin(s.geometry, (point).geom, {REACH_DEG})
+    WHERE l.kind = 'line' AND l.is_flyable AND l.vanished_at IS NULL AND (l.osm_id IS NULL OR l.is_edited)
+      AND COALESCE(l.node_osm_ids[(point).path[1]], {NO_OSM_NODE}) = {NO_OSM_NODE}
+      AND ST_DistanceSphere((point).geom, s.geometry) <= {TOUCH_M}
+), carried AS (
+    SELECT met.line_id, l.max_voltage_v, met.support_id, min(met.vertex) AS vertex
+    FROM met JOIN inspection_asset l ON l.id = met.line_id
+    GROUP BY met.line_id, l.max_voltage_v, met.support_id
+), numbered AS (
+    SELECT line_id, max_voltage_v, support_id, row_number() OVER (PARTITION BY line_id ORDER BY vertex) AS place,
+           count(*) OVER (PARTITION BY line_id) AS places
+    FROM carried
+), chosen AS (
+    SELECT DISTINCT ON (support_id) support_id, line_id, place::smallint AS place, places::smallint AS places
+    FROM numbered ORDER BY support_id, max_voltage_v DESC NULLS LAST, line_id
+)
+UPDATE inspection_asset a
+SET line_id = found.line_id, place_on_line = found.place, places_on_line = found.places
+FROM (
+    SELECT s.id, c.line_id, c.place, c.places
+    FROM inspection_asset s LEFT JOIN chosen c ON c.support_id = s.id
+    WHERE s.kind = 'tower' AND s.vanished_at IS NULL
+) found
+WHERE a.id = found.id AND (a.line_id, a.place_on_line, a.places_on_line) IS DISTINCT FROM (found.line_id, found.place, found.places)
+"""  # noqa: S608 -- put together from constants
+
+
+def number_supports() -> int:
+    """Bring line, place and number of places of every support up to date; return how many rows were not.
+
+    Call it in the transaction that changed supports or lines, under hold_ground. It writes only rows that differ, and of these neither
+    `updated_at` nor what makes a row count as edited.
+    """
+    with connection.cursor() as cursor:
+        cursor.execute(_NUMBER)
+        return int(cursor.rowcount)

@@ -4,8 +4,7 @@ from django.db import IntegrityError, transaction
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset, NoFlyZone
-from inspection.services.asset_references import restore_references
-from inspection.services.curation import delete_asset, delete_zone, save_asset, save_zone
+from inspection.services.curation import delete_asset, delete_zone, restore_references, save_asset, save_zone
 from inspection.services.facts import asset_from_facts, take_asset_facts, take_zone_facts, zone_from_facts
 from inspection.services.ground import hold_ground
 from workspace.models import AuditEntry, User

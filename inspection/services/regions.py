@@ -9,8 +9,7 @@ from django.utils import timezone
 
 from inspection.models import Asset, AssetSet, DataImport
 from inspection.selectors.assets import Box, area_of
-from inspection.services.ground import hold_ground, mark_ground_changed
-from inspection.services.supports import number_supports
+from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from workspace.audit import record_change
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 

@@ -13,7 +13,7 @@ from django.utils.translation import gettext as _
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset, AssetKind, DataGap, OsmType
 from inspection.network.infrastructure import NO_OSM_NODE
-from inspection.quality.lone_towers import course_of_row
+from inspection.quality.lines import MAX_V, MAX_VALUES
 from inspection.quality.repair import (
     NoSuchVertex,
     end_moved_to,
@@ -25,7 +25,7 @@ from inspection.quality.repair import (
     vertex_at,
     with_vertices,
 )
-from inspection.quality.voltages import MAX_V, MAX_VALUES
+from inspection.quality.supports import course_of_row
 from inspection.services.curation import PLACED
 
 MAX_TOWERS = 500  # along one span

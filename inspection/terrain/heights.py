@@ -1,8 +1,14 @@
 """One height in three references: above ground, above sea level, above take-off. What is not known is NaN, never a number."""
 
-import numpy as np
+import zlib
+from dataclasses import dataclass
+from math import ceil
 
-from inspection.geodesy.wgs84 import FloatArray
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from inspection.geodesy.wgs84 import FloatArray, distance_m
 
 REFERENCES = ("AGL", "AMSL", "RELATIVE")
 
@@ -33,3 +39,114 @@ def _zero_of(reference: str, ground_amsl_m: FloatArray, take_off_amsl_m: float) 
     if reference == "RELATIVE":
         return np.full_like(ground_amsl_m, take_off_amsl_m)
     raise UnknownReference(f"A height is counted from {', '.join(REFERENCES)}, not from {reference!r}.")
+
+
+MAX_SAMPLES = 5_000
+MIN_STEP_M = 1.0
+SAME_PLACE_M = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Samples:
+    """distance_m of shape (n,) along the line, positions of shape (n, 2), lon lat [deg]; every vertex of the line is one of them."""
+
+    distance_m: FloatArray
+    positions: FloatArray
+
+
+def samples_along(line: FloatArray, step_m: float) -> Samples:
+    """Places on the line of shape (k, 2), k ≥ 2, straight in longitude and latitude between vertices, no farther apart than step_m.
+
+    The step is widened where that would be more than MAX_SAMPLES.
+    """
+    lengths_m = distance_m(line[:-1], line[1:])
+    step_m = max(step_m, MIN_STEP_M, float(lengths_m.sum()) / max(MAX_SAMPLES - len(line), 1))
+    distances, places = [np.zeros(1)], [line[:1]]
+    before_m = 0.0
+    for start, end, length_m in zip(line[:-1], line[1:], lengths_m.tolist(), strict=True):
+        shares = np.arange(1, max(1, ceil(length_m / step_m)) + 1) / max(1, ceil(length_m / step_m))
+        distances.append(before_m + shares * length_m)
+        places.append(start + shares[:, None] * (end - start))
+        before_m += length_m
+    return Samples(np.concatenate(distances), np.concatenate(places))
+
+
+def stretches_inside(line: FloatArray, area: shapely.Geometry) -> list[tuple[float, float]]:
+    """From where to where along the line [m] it lies in the area; stretches that meet at a vertex are one."""
+    legs = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
+    lengths_m = distance_m(line[:-1], line[1:])
+    before_m = np.concatenate([[0.0], np.cumsum(lengths_m)])
+    shapely.prepare(area)
+    found: list[tuple[float, float]] = []
+    for leg in np.flatnonzero(shapely.intersects(legs, area) & (lengths_m > 0)).tolist():
+        for part in shapely.get_parts(shapely.intersection(shapely.LineString(line[leg : leg + 2]), area)).tolist():
+            ends = shapely.get_coordinates(part)[[0, -1]] - line[leg]
+            along = line[leg + 1] - line[leg]
+            shares = np.sort(np.clip(ends @ along / (along @ along), 0.0, 1.0))
+            from_m, to_m = (float(before_m[leg] + share * lengths_m[leg]) for share in shares)
+            if found and from_m - found[-1][1] < SAME_PLACE_M:
+                found[-1] = found[-1][0], max(to_m, found[-1][1])
+            else:
+                found.append((from_m, to_m))
+    return found
+
+
+BLOCK_SIZE = 256
+MIN_HEIGHT_M, MAX_HEIGHT_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void
+NO_WEIGHT = 1e-6  # of a post: less than this is the rounding of a position, a micrometre of height
+
+
+@dataclass(frozen=True, eq=False)
+class HeightGrid:
+    """heights_m[row, column] stands at (west + column * step_lon, north - row * step_lat); NaN is void. float32, metres."""
+
+    west_deg: float
+    north_deg: float
+    step_lon_deg: float
+    step_lat_deg: float
+    heights_m: NDArray[np.float32]
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """West, south, east, north of the outermost posts [deg]."""
+        rows, columns = self.heights_m.shape
+        east, south = self.west_deg + (columns - 1) * self.step_lon_deg, self.north_deg - (rows - 1) * self.step_lat_deg
+        return (self.west_deg, south, east, self.north_deg)
+
+    def sample(self, positions: FloatArray) -> FloatArray:
+        """Bilinear heights [m] at positions of shape (n, 2), lon lat [deg]; NaN outside the grid and beside a void.
+
+        Beside a void means that a post with weight is void: on a post itself its own height is enough.
+        """
+        rows, columns = self.heights_m.shape
+        x = (positions[:, 0] - self.west_deg) / self.step_lon_deg
+        y = (self.north_deg - positions[:, 1]) / self.step_lat_deg
+        tolerance = 1e-9 * (abs(self.west_deg) + 360.0) / min(self.step_lon_deg, self.step_lat_deg)  # rounding of the file's own origin
+        inside = (x >= -tolerance) & (y >= -tolerance) & (x <= columns - 1 + tolerance) & (y <= rows - 1 + tolerance)
+        heights = np.full(len(positions), np.nan)
+        if not inside.any():
+            return heights
+        x, y = np.clip(x[inside], 0.0, columns - 1.0), np.clip(y[inside], 0.0, rows - 1.0)
+        column, row = np.minimum(x.astype(np.intp), max(columns - 2, 0)), np.minimum(y.astype(np.intp), max(rows - 2, 0))
+        right, down = np.minimum(column + 1, columns - 1), np.minimum(row + 1, rows - 1)
+        east, south = x - column, y - row
+        total = np.zeros(len(x))
+        corners = (
+            (row, column, (1 - east) * (1 - south)), (row, right, east * (1 - south)),
+            (down, column, (1 - east) * south), (down, right, east * south),
+        )  # fmt: skip
+        for at_row, at_column, weight in corners:
+            total += np.where(weight > NO_WEIGHT, self.heights_m[at_row, at_column].astype(np.float64) * weight, 0.0)
+        heights[inside] = total
+        return heights
+
+
+def packed(heights: NDArray[np.float32]) -> bytes:
+    """Little-endian float32, row by row, zlib."""
+    return zlib.compress(np.ascontiguousarray(heights, dtype="<f4").tobytes(), level=6)
+
+
+def unpacked(data: bytes, rows: int, columns: int) -> NDArray[np.float32]:
+    """The inverse of packed; never unpacks more than the block has."""
+    text = zlib.decompressobj().decompress(data, rows * columns * 4)
+    return np.frombuffer(text, dtype="<f4").reshape(rows, columns).astype(np.float32)

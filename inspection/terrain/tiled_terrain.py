@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.terrain.height_grid import NO_WEIGHT, HeightGrid
+from inspection.terrain.heights import NO_WEIGHT, HeightGrid
 
 _EDGE_DEG = 1e-9
 

@@ -18,7 +18,7 @@ from inspection.serializers.assets import (
 )
 from inspection.serializers.edits import AssetInputSerializer
 from inspection.services import delete_asset, save_asset
-from inspection.services.asset_references import REFERENCE_FIELDS, save_asset_reference
+from inspection.services.curation import REFERENCE_FIELDS, save_asset_reference
 from inspection.views.edits import Curated, answer, asset_now, with_values
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
 from workspace.api.external_data import EXTERNAL_ID, asked_external_id

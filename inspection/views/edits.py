@@ -18,7 +18,7 @@ from inspection.selectors.history import NEWEST_FIRST, changes_of
 from inspection.serializers.assets import asset_detail_feature
 from inspection.serializers.zones import zone_detail_feature
 from inspection.services import StaleRevision, WrongGeometry
-from inspection.services.asset_references import ExternalIdTaken
+from inspection.services.curation import ExternalIdTaken
 from inspection.services.history import CannotUndo
 from workspace.admin_pages.author_names import author_name
 from workspace.api.errors import ApiProblem

@@ -28,8 +28,7 @@ from inspection.serializers.terrain import (
     zone_margins_json,
 )
 from inspection.services.imports.terrain import remove_terrain
-from inspection.terrain.heights import amsl_m, counted_from
-from inspection.terrain.profile import samples_along
+from inspection.terrain.heights import amsl_m, counted_from, samples_along
 from inspection.views.parameters import LON_LAT, invalid
 from workspace.api.permissions import CURATORS
 from workspace.api.signed_in import SignedInRequest

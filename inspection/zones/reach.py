@@ -9,8 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from inspection.zones.activity import Span, active_spans
-from inspection.zones.rules import ZoneRules
-from inspection.zones.schedule import Schedule
+from inspection.zones.schedule import Schedule, ZoneRules
 
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]

@@ -7,6 +7,7 @@ Source: EUROCAE ED-318, limitedApplicability; ED-269, applicability.
 """
 
 import re
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
 
@@ -114,3 +115,13 @@ def _time_of_day(value: Any, place: str) -> str | None:
     if not 0 <= utc < _MINUTES_A_DAY:
         raise GeometryFault(place, f"{value} is on another day in UTC; write the days and times in UTC")
     return f"{utc // 60:02}:{utc % 60:02}:{second:02}Z"
+
+
+@dataclass(frozen=True)
+class ZoneRules:
+    time_margin_s: float = 300.0  # before a zone begins to apply and after it has ended
+    height_margin_m: float = 10.0  # below a zone's lower limit and above its upper one
+
+    def __post_init__(self) -> None:
+        if not (self.time_margin_s >= 0 and self.height_margin_m >= 0):
+            raise ValueError(f"margins ({self.time_margin_s} s, {self.height_margin_m} m) are at least 0")

@@ -8,8 +8,7 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
 
-from inspection.serializers.schedule_words import schedule_sentence
-from inspection.serializers.zones import ScheduleField
+from inspection.serializers.zones import ScheduleField, schedule_sentence
 from inspection.zones.activity import Span
 from missions.fields import PositionField
 from missions.models import END_ACTIONS

@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.along_paths import chain_arrays
 from inspection.network.paths.contracted_graph import NumberArray

@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from planning.energy.conditions import air_density
 from planning.energy.leg_cost import Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
 from planning.energy.path_cost import Air

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.along_paths import Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along

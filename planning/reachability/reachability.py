@@ -16,7 +16,6 @@ from scipy.spatial import cKDTree
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph, NodeKind
 from inspection.network.legs import Attachments, joined
 from inspection.network.nearness import chord
@@ -25,6 +24,7 @@ from inspection.network.paths.contracted_graph import CORE
 from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.one_to_all import Crossroads, crossroads, spread
 from inspection.network.route_index import node_tree, route_index
+from inspection.network.rules import asset_heights_m
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
 from planning.energy.conditions import Conditions

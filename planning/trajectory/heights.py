@@ -8,8 +8,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
-from inspection.network.flown_heights import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V, UNTAGGED_HEIGHT_M
 from inspection.network.inspection_graph import NodeKind
+from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V, UNTAGGED_HEIGHT_M
 from inspection.terrain.heights import amsl_m, counted_from
 from planning.rules import FlightRules
 from planning.trajectory.waypoints import RoutePoints, Waypoints

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from planning.energy.conditions import Conditions, wind_in_table
 from planning.energy.performance import Performance
 from planning.energy.power import MIN_HEADWAY_MPS, TOO_STRONG, ground_and_air_speed

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from planning.energy.conditions import Conditions, air_density, wind_in_table
 from planning.energy.leg_cost import (
     J_PER_WH,

@@ -16,7 +16,7 @@ from inspection.network.build.network import network
 from inspection.network.inspection_graph import EdgeKind
 from inspection.network.rules import LinkingRules
 from inspection.network.spans import hung_between
-from inspection.scene.sag import CATENARY_M
+from inspection.scene.overhead import CATENARY_M
 from inspection.selectors import scene as selector
 from inspection.selectors.ground_data import ground_data
 from inspection.selectors.terrain import ground_heights_m

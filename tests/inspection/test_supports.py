@@ -6,7 +6,7 @@ from django.utils import timezone
 
 from inspection.models import Asset, AssetKind, Ground
 from inspection.services import delete_asset, import_osm, save_asset
-from inspection.services.supports import number_supports
+from inspection.services.ground import number_supports
 from tests.accounts.users import somebody
 from tests.inspection.ground import line, tower
 from tests.inspection.imports.osm_files import small_line, write_osm

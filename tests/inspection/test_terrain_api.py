@@ -16,8 +16,7 @@ from inspection.selectors import ground_revision
 from inspection.services import import_terrain
 from inspection.services.proposals import terrain
 from inspection.services.proposals.reading import FileRefused, Provenance, Reading
-from inspection.terrain.heights import REFERENCES, UnknownReference, amsl_m, counted_from
-from inspection.terrain.profile import MAX_SAMPLES, samples_along
+from inspection.terrain.heights import MAX_SAMPLES, REFERENCES, UnknownReference, amsl_m, counted_from, samples_along
 from tests.accounts.users import client_of, somebody
 from tests.inspection.importers.terrain.tiffs import write_hgt
 from tests.inspection.imports.test_terrain_import import geotiff, plane, post

@@ -12,9 +12,8 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
 from inspection.network.build.zone_masking import cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, NodeKind
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.assignment_costs import Finish, flight_costs

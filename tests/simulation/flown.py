@@ -14,8 +14,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.zones.reach import Limits as ZoneLimits
 from inspection.zones.reach import ZoneTable, agl_band
-from inspection.zones.rules import ZoneRules
-from inspection.zones.schedule import Schedule
+from inspection.zones.schedule import Schedule, ZoneRules
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind

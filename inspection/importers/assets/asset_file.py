@@ -17,8 +17,7 @@ from inspection.importers.assets.geopackage import geopackage_source
 from inspection.importers.assets.kml import kml_source
 from inspection.importers.assets.reference_systems import ROUGH_M, ToWgs84, name_of_system, system_of_code
 from inspection.importers.assets.shapefiles import shapefile_source
-from inspection.importers.faults import MAX_FAULTS
-from inspection.importers.rows import MAX_ROWS, AssetFileError, Cell, RawRow, Source, refused
+from inspection.importers.rows import MAX_FAULTS, MAX_ROWS, AssetFileError, Cell, RawRow, Source, refused
 
 MAX_VERTICES = 2_000_000
 MAX_PARTS = 5_000  # lines of one row

@@ -1,8 +1,18 @@
 """Asking Overpass for an area's infrastructure: the question, and how large an area may be."""
 
+import io
+import json
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
 from math import isfinite, radians, sin
+from pathlib import Path
+from typing import Any, TextIO
 
+import osmium
+from osmium.osm import mutable
+
+from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, open_unpacked
 from inspection.importers.osm.records import Extent
 
 EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
@@ -56,3 +66,166 @@ def complaint(tail: str) -> str:
 
 def _is_finite_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+
+
+MAX_ELEMENT_CHARACTERS = 16 * 1024 * 1024
+MAX_REMARK_CHARACTERS = 10_000
+_CHUNK = 1024 * 1024
+_MEMBER_TYPES = {"node": "n", "way": "w", "relation": "r"}
+_SPACE = " \t\r\n"
+
+
+class _NotANumber(Exception):
+    pass
+
+
+def _refuse_constant(text: str) -> float:
+    raise _NotANumber(text)
+
+
+_DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
+
+
+def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | None:
+    """Write the elements of an Overpass answer to a PBF file and return the age that it states for its data.
+
+    Raises OsmFileError with the place of the first fault.
+    """
+    writer = osmium.SimpleWriter(osmium.io.File(str(target), "pbf"), overwrite=True)
+    try:
+        with open_unpacked(source, file_format) as file:
+            scanner = _Scanner(io.TextIOWrapper(file, encoding="utf-8-sig"))
+            timestamp = _timestamp(scanner.text_before_elements())
+            for index, element in enumerate(scanner.elements()):
+                _write(writer, element, f"elements[{index}]")
+            if fault := complaint(scanner.text_after_elements()):
+                raise OsmFileError(f"Overpass did not give all of it: {fault}. Take a smaller area.")
+    except UnicodeDecodeError as error:
+        raise OsmFileError("The JSON is not UTF-8.") from error
+    finally:
+        writer.close()
+    return timestamp
+
+
+@dataclass
+class _Scanner:
+    """A window on the text that moves on, so that one element at a time is in memory."""
+
+    file: TextIO
+    window: str = field(default="", init=False)
+
+    def text_before_elements(self) -> str:
+        while '"elements"' not in self.window:
+            if len(self.window) > MAX_ELEMENT_CHARACTERS or not self._read_on():
+                raise OsmFileError('This JSON is no Overpass answer: it has no "elements".')
+        before, self.window = self.window.split('"elements"', 1)
+        return before
+
+    def elements(self) -> Iterator[Any]:
+        if self._next_character() != ":" or self._next_character() != "[":
+            raise OsmFileError('The "elements" of this JSON are no list.')
+        if self._peek() == "]":
+            return
+        index = 0
+        while True:
+            yield self._element(index)
+            index += 1
+            mark = self._next_character()
+            if mark == "]":
+                return
+            if mark != ",":
+                raise OsmFileError(f"The JSON breaks off or is damaged after elements[{index - 1}].")
+
+    def text_after_elements(self) -> str:
+        """What follows the list, as far as a remark may stand there."""
+        while len(self.window) < MAX_REMARK_CHARACTERS and self._read_on():
+            pass
+        return self.window[:MAX_REMARK_CHARACTERS]
+
+    def _read_on(self) -> bool:
+        text = self.file.read(max(_CHUNK, len(self.window)))
+        self.window += text
+        return bool(text)
+
+    def _peek(self) -> str:
+        self.window = self.window.lstrip(_SPACE)
+        while not self.window and self._read_on():
+            self.window = self.window.lstrip(_SPACE)
+        return self.window[:1]
+
+    def _next_character(self) -> str:
+        character = self._peek()
+        self.window = self.window[1:]
+        return character
+
+    def _element(self, index: int) -> Any:
+        if self._peek() != "{":
+            raise OsmFileError(f"elements[{index}] is no object.")
+        while True:
+            try:
+                element, end = _DECODER.raw_decode(self.window)
+            except _NotANumber as error:
+                raise OsmFileError(f"elements[{index}] has {error}, which is no number.") from error
+            except RecursionError as error:
+                raise OsmFileError(f"elements[{index}] is nested too deeply.") from error
+            except ValueError as error:
+                if len(self.window) > MAX_ELEMENT_CHARACTERS:
+                    raise OsmFileError(f"elements[{index}] is damaged or longer than {MAX_ELEMENT_CHARACTERS} characters.") from error
+                if not self._read_on():
+                    raise OsmFileError(f"elements[{index}] is damaged or cut off: {error}") from error
+            else:
+                self.window = self.window[end:]
+                return element
+
+
+def _timestamp(preamble: str) -> str | None:
+    """osm3s.timestamp_osm_base, from an object that breaks off where the elements begin."""
+    try:
+        stated = _DECODER.decode(preamble.rstrip().rstrip(",") + "}")["osm3s"]["timestamp_osm_base"]
+    except (ValueError, KeyError, TypeError, RecursionError, _NotANumber):
+        return None
+    return stated if isinstance(stated, str) else None
+
+
+def _write(writer: Any, element: dict[str, Any], place: str) -> None:
+    try:
+        kind = element.get("type")
+        if kind not in _MEMBER_TYPES:
+            return  # areas, counts and remarks carry no infrastructure
+        osm_id = _whole(element["id"])
+        tags = {_text(key): _text(value) for key, value in element.get("tags", {}).items()}
+        if kind == "node":
+            writer.add_node(mutable.Node(id=osm_id, location=_location(element), tags=tags))
+        elif kind == "way":
+            refs = [_whole(ref) for ref in element.get("nodes", [])]
+            for ref, point in zip(refs, element.get("geometry", []), strict=False):  # "out geom" states the nodes' places in the way
+                if point is not None:
+                    writer.add_node(mutable.Node(id=ref, location=_location(point)))
+            writer.add_way(mutable.Way(id=osm_id, nodes=refs, tags=tags))
+        else:
+            members = [
+                (_MEMBER_TYPES[member["type"]], _whole(member["ref"]), _text(member.get("role", "")))
+                for member in element.get("members", [])
+            ]
+            writer.add_relation(mutable.Relation(id=osm_id, members=members, tags=tags))
+    except (KeyError, TypeError, ValueError, AttributeError, RuntimeError) as error:
+        raise OsmFileError(f"{place} is no OSM element: {error}") from error
+
+
+def _text(value: Any) -> str:
+    """Without null characters: libosmium keeps texts as C strings."""
+    return str(value).replace("\0", "")
+
+
+def _whole(value: Any) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or abs(value) >= 2**62:
+        raise ValueError(f"{str(value)[:40]} is no id")
+    return value
+
+
+def _location(holder: dict[str, Any]) -> tuple[float, float]:
+    lon, lat = holder["lon"], holder["lat"]
+    for value, bound in ((lon, 180.0), (lat, 90.0)):
+        if not isinstance(value, int | float) or isinstance(value, bool) or not isfinite(value) or abs(value) > bound:
+            raise ValueError(f"position {str(lon)[:20]}, {str(lat)[:20]} is not on earth")
+    return float(lon), float(lat)

@@ -16,10 +16,9 @@ from shapely import LineString, Point
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.importers.osm import tags as meaning
-from inspection.importers.osm.areas import BrokenArea, polygon_of_relation, polygon_of_ring
-from inspection.importers.osm.bridges import BridgeArea, BridgeWay, bridges_of
+from inspection.importers.osm.bridges import BridgeArea, BridgeWay, BrokenArea, bridges_of, polygon_of_relation, polygon_of_ring
 from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, Progress, examine
-from inspection.importers.osm.overpass_json import rewrite_as_pbf
+from inspection.importers.osm.overpass import rewrite_as_pbf
 from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure

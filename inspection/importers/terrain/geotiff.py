@@ -9,11 +9,16 @@ from numpy.typing import NDArray
 from pyproj import CRS
 from pyproj.exceptions import CRSError
 
-from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.raster import Kind, Window, window_of
-from inspection.importers.terrain.tiff_directory import TiffDirectory
-from inspection.importers.terrain.tiff_unpacking import NAMES, NONE, READ, unpacked_part, without_predictor
-from inspection.importers.terrain.vertical_datum import datum_of_codes, metres_of_unit, refuse_if_ellipsoidal
+from inspection.importers.terrain.raster import (
+    Kind,
+    TerrainFileError,
+    Window,
+    datum_of_codes,
+    metres_of_unit,
+    refuse_if_ellipsoidal,
+    window_of,
+)
+from inspection.importers.terrain.tiff import NAMES, NONE, READ, TiffDirectory, unpacked_part, without_predictor
 
 MAX_POSTS = 200_000_000
 MAX_PARTS = 1_000_000

@@ -9,10 +9,9 @@ from pyproj.exceptions import ProjError
 from pyproj.transformer import TransformerGroup
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
-from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.geotiff import MAX_POSTS, GeoTiff
-from inspection.importers.terrain.raster import Kind, Raster, Window
-from inspection.terrain.height_grid import HeightGrid
+from inspection.importers.terrain.raster import Kind, Raster, TerrainFileError, Window
+from inspection.terrain.heights import HeightGrid
 
 SAME_DEG = 2e-5  # some 2 m: ETRS89 and its like are taken for WGS 84
 DEGREE_M = 111_320.0  # of latitude

@@ -14,12 +14,10 @@ import numpy as np
 
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.rows import AssetFileError
-from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.geotiff import GeoTiff
-from inspection.importers.terrain.raster import Raster, Window, window_of
+from inspection.importers.terrain.raster import Raster, TerrainFileError, Window, datum_named, window_of
 from inspection.importers.terrain.resampling import DEGREE_M, placed
-from inspection.importers.terrain.tiff_directory import TIFF_STARTS
-from inspection.importers.terrain.vertical_datum import datum_named
+from inspection.importers.terrain.tiff import TIFF_STARTS
 
 VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
 VOID = -32768

@@ -6,11 +6,16 @@ Both envelopes in use are read: {"title", "description", "features": [...]} and 
 from typing import Any
 
 from inspection.geodesy.geometry_validator import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
-from inspection.importers.faults import FaultList
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
-from inspection.importers.zones.height_bands import height_band
-from inspection.importers.zones.records import ZoneRecord
-from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+from inspection.importers.rows import FaultList
+from inspection.importers.zones.records import (
+    MAX_IDENTIFIER,
+    MAX_NAME,
+    ZoneRecord,
+    checked_radius_m,
+    checked_text,
+    enclosing_polygon,
+    height_band,
+)
 from inspection.zones.schedule import checked_schedule
 
 _OWN_FIELDS = {"identifier", "name", "restriction", "geometry", "applicability"}

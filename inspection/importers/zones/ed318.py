@@ -6,12 +6,17 @@ Source: EUROCAE ED-318 and its published JSON schema. Feeds in use nest more tha
 from typing import Any
 
 from inspection.geodesy.geometry_validator import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
-from inspection.importers.faults import FaultList
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
+from inspection.importers.rows import FaultList
 from inspection.importers.zones.geojson import is_hidden, left_out
-from inspection.importers.zones.height_bands import height_band
-from inspection.importers.zones.records import ZoneRecord
-from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+from inspection.importers.zones.records import (
+    MAX_IDENTIFIER,
+    MAX_NAME,
+    ZoneRecord,
+    checked_radius_m,
+    checked_text,
+    enclosing_polygon,
+    height_band,
+)
 from inspection.zones.schedule import checked_schedule, moment_of
 
 TYPES = ("USPACE", "PROHIBITED", "REQ_AUTHORIZATION", "CONDITIONAL", "NO_RESTRICTION")

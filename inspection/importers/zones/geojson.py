@@ -5,11 +5,16 @@ from typing import Any
 from shapely import MultiPolygon
 
 from inspection.geodesy.geometry_validator import MAX_POLYGONS, GeometryFault, VertexBudget, checked_area, checked_position
-from inspection.importers.faults import FaultList
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
-from inspection.importers.zones.height_bands import height_band
-from inspection.importers.zones.records import ZoneRecord
-from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+from inspection.importers.rows import FaultList
+from inspection.importers.zones.records import (
+    MAX_IDENTIFIER,
+    MAX_NAME,
+    ZoneRecord,
+    checked_radius_m,
+    checked_text,
+    enclosing_polygon,
+    height_band,
+)
 
 _WGS84_NAMES = ("CRS84", "EPSG::4326", "EPSG:4326", "OGC:CRS84")
 _TITLES = ("name", "Name", "title")

@@ -8,14 +8,13 @@ from math import isfinite
 from typing import Any
 
 from inspection.geodesy.geometry_validator import GeometryFault, TooMuch
-from inspection.importers.faults import MAX_FAULTS, FaultList, TooManyFaults
+from inspection.importers.rows import MAX_FAULTS, FaultList, TooManyFaults
 from inspection.importers.strict_json import JsonFault, can_be_stored, parse_strict_json
 from inspection.importers.zones.ed269 import is_ed269, zones_of_ed269
 from inspection.importers.zones.ed318 import is_ed318, stated_validity, text_of, zones_of_ed318
 from inspection.importers.zones.geojson import zones_of_geojson
 from inspection.importers.zones.openair import looks_like_openair, zones_of_openair
-from inspection.importers.zones.records import UnreadRecord, ZoneRecord
-from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME
+from inspection.importers.zones.records import MAX_IDENTIFIER, MAX_NAME, UnreadRecord, ZoneRecord
 
 MAX_LOOKED_AT = 20_000  # parts of one zone
 _PLACE = re.compile(r"(features|UASZoneList)\[(\d+)\]")

@@ -7,9 +7,8 @@ import shapely
 
 from inspection.network.build.network import network
 from inspection.network.build.zone_masking import ClearedGraph, cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.infrastructure import GroundData, Zones
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 
 

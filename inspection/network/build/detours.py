@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 from inspection.network.build.edges import NO_ASSET, Edges, component_labels
 from inspection.network.build.flown_nodes import FlownNodes
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind
 from inspection.network.nearness import on_unit_sphere
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_detours import Errand, WayRound, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.network.flown_heights import FlownHeights, asset_heights_m
+from inspection.network.rules import FlownHeights, asset_heights_m
 from inspection.network.zones.zone_index import ZoneIndex
 
 FloatArray = NDArray[np.float64]

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.rules import asset_heights_m
 
 FloatArray = NDArray[np.float64]
 

@@ -9,10 +9,9 @@ from inspection.network.build.edges import Edges, cheapest_per_pair, component_l
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.build.links import bridge_links, crossing_links, railway_crossing_links
 from inspection.network.build.railway_points import railway_points
-from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.infrastructure import GroundData, Places, Ways
 from inspection.network.inspection_graph import EdgeKind, NodeKind, read_only
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import UNTAGGED_HEIGHT_M, LinkingRules
 
 NO_PLACES = Places(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
 

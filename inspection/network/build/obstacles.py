@@ -8,7 +8,7 @@ import shapely
 from numpy.typing import NDArray
 
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import FlownHeights
+from inspection.network.rules import FlownHeights
 from inspection.network.spans import BESIDE_M, hung_between
 from inspection.network.zones.zone_index import ZoneIndex, plane_scale
 

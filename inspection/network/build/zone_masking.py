@@ -11,9 +11,8 @@ from inspection.network.build.flown_nodes import FlownNodes
 from inspection.network.build.links import bridge_to_tower_links, railway_to_tower_links
 from inspection.network.build.network import Network, Nodes, put_together
 from inspection.network.build.obstacles import low_ceilings, too_tall_walls, with_walls
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 
 NO_VERSION = 0  # until the graph is stored

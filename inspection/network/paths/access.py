@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import short_distance_m
-from inspection.network.flown_heights import FlownHeights, asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachments, joined
 from inspection.network.nearness import chord
@@ -14,6 +13,7 @@ from inspection.network.paths.contracted_graph import CORE, FloatArray, NumberAr
 from inspection.network.paths.hub_labels import IntArray
 from inspection.network.paths.node_tree import around_in_tree, nearest_in_tree, point_on_sphere
 from inspection.network.route_index import node_tree, route_index
+from inspection.network.rules import FlownHeights, asset_heights_m
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
 

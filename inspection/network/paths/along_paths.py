@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.contracted_graph import FloatArray, NumberArray
 from inspection.network.paths.hub_labels import IntArray

@@ -9,7 +9,7 @@ from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy.geometry_validator import GeometryFault, checked_area, checked_geometry, checked_position
 from inspection.geodesy.wgs84 import WGS84, path_length_m
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
+from inspection.importers.zones.records import checked_radius_m, enclosing_polygon
 from inspection.models import AssetKind
 
 SHAPES = {

@@ -21,10 +21,9 @@ from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
 from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 from inspection.models import ROW_ACTIONS, Asset, ChangeAction, DataImport, ImportKind
-from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from inspection.services.imports.asset_merge import UNCHANGED, Merge, Sample, Source, staging
 from inspection.services.proposals.reading import Provenance
-from inspection.services.supports import number_supports
 from workspace.models import User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"

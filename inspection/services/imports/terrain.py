@@ -8,15 +8,13 @@ from typing import Any
 from django.contrib.gis.geos import Polygon
 from django.db import transaction
 
-from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.raster import blocks_of
-from inspection.importers.terrain.survey import Survey
+from inspection.importers.terrain.raster import Survey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import TerrainFile, datum_of, opened_terrain
 from inspection.models import DataImport, ImportKind, TerrainTile
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Provenance
-from inspection.terrain.height_grid import HeightGrid, packed
+from inspection.terrain.heights import HeightGrid, packed
 from workspace.audit import record_change
 from workspace.models import User
 

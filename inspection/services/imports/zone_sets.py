@@ -10,8 +10,7 @@ import shapely
 from django.db import connection, transaction
 from django.db.models import Max
 
-from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
-from inspection.importers.zones.texts import MAX_IDENTIFIER
+from inspection.importers.zones.records import MAX_IDENTIFIER, HeightBand, UnreadRecord, ZoneRecord
 from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.facts import zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed

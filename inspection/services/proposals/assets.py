@@ -11,8 +11,7 @@ from django.db import transaction
 
 from inspection.importers.assets.asset_file import AssetFile
 from inspection.importers.assets.mapping import Tally
-from inspection.importers.assets.suggestion import suggested_mapping
-from inspection.importers.assets.survey import Survey, survey_of
+from inspection.importers.assets.survey import Survey, suggested_mapping, survey_of
 from inspection.importers.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, AssetSet, DataImport
 from inspection.services.facts import ASSET_FACTS, differing
@@ -20,6 +19,7 @@ from inspection.services.imports.asset_merge import UNCHANGED, Merge
 from inspection.services.imports.assets import (
     EXPLANATIONS,
     UnfinishedMapping,
+    count_of_ids,
     counts_of,
     import_assets,
     opened,
@@ -30,7 +30,6 @@ from inspection.services.imports.assets import (
     told,
     with_what_is_known,
 )
-from inspection.services.imports.external_ids import count_of_ids
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 

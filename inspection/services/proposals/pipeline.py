@@ -30,8 +30,7 @@ from inspection.services.ground import hold_ground
 from inspection.services.imports.overpass import fetch_area
 from inspection.services.imports.uploads import UploadRefused, upload_as_file
 from inspection.services.proposals import assets, osm, terrain, zones
-from inspection.services.proposals.bounds import reasons_against
-from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
+from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading, reasons_against
 from workspace.jobs.services import cancel_job, create_job, finish_job
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
 

@@ -8,16 +8,13 @@ import numpy as np
 import shapely
 from django.contrib.gis.geos import MultiPolygon, Polygon
 
-from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.raster import blocks_of
-from inspection.importers.terrain.survey import Survey
+from inspection.importers.terrain.raster import DatumFault, Survey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import NEEDS_DATUM, datum_of, opened_terrain
-from inspection.importers.terrain.vertical_datum import DatumFault
 from inspection.models import ROW_ACTIONS, ChangeAction, DataImport, TerrainTile
 from inspection.selectors.terrain import ground_truth
 from inspection.services.imports.terrain import facts_of, import_terrain, imports_of_name, same_import, sha256_of
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
-from inspection.terrain.height_grid import HeightGrid
+from inspection.terrain.heights import HeightGrid
 from workspace.models import User
 
 SUBJECT = "terrain"

@@ -11,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from inspection.demo_region import write_osm_file
-from inspection.demo_region.osm_objects import OsmDrawing
+from inspection.demo_region.osm_file import OsmDrawing
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
 from tests.browser.regions import region

@@ -13,7 +13,7 @@ import pytest
 import shapely
 
 from inspection.demo_region import BASES, DemoRegion, make_region, write_osm_file
-from inspection.demo_region.osm_objects import FIRST_ID, OsmWay
+from inspection.demo_region.osm_file import FIRST_ID, OsmWay
 from inspection.demo_region.place import METRES_PER_DEG_LAT, METRES_PER_DEG_LON
 from inspection.geodesy import LonLat, distance_m
 

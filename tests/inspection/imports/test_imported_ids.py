@@ -10,7 +10,7 @@ from inspection.importers.assets.mapping import MAX_EXTERNAL_ID
 from inspection.models import Asset, AssetReference, DataImport
 from inspection.selectors import ground_revision
 from inspection.services import AssetFileError, import_assets
-from inspection.services.asset_references import save_asset_reference
+from inspection.services.curation import save_asset_reference
 from inspection.services.imports.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.accounts.users import client_of, somebody

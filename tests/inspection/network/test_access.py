@@ -5,8 +5,8 @@ import pytest
 from shapely import box
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.paths.access import MAX_ROUND, clear_legs
+from inspection.network.rules import FlownHeights
 from inspection.network.zones.zone_index import ZoneIndex
 from tests.inspection.network.drawn_graphs import drawn_graph
 

@@ -8,9 +8,8 @@ from inspection.network.build.detours import ALL_PAIRS, _pairs
 from inspection.network.build.edges import component_labels
 from inspection.network.build.network import network
 from inspection.network.build.zone_masking import ClearedGraph, cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex, zones_of_graph
 from tests.inspection.network.drawn_ground import Spot, ground, lonlat, places, square, ways, zone
 

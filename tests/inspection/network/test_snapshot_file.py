@@ -11,20 +11,19 @@ import numpy as np
 import pytest
 from shapely import box
 
-from inspection.network import array_folder
-from inspection.network.array_folder import MANIFEST
+from inspection.network import snapshot_file
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachment
 from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import asset_places, build_route_index, node_tree, route_index
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.snapshot_file import (
     CLEARED,
     KEPT_CLEARED,
     KEPT_NETWORKS,
+    MANIFEST,
     NETWORKS,
     CorruptSnapshot,
     from_bytes,
@@ -200,7 +199,7 @@ def test_files_that_are_exchanged_while_they_are_read_are_not_taken(tmp_path: Pa
             store(tmp_path, replace(GRAPH, position=GRAPH.position + 0.5))
         return np.load(path, mmap_mode="r")
 
-    monkeypatch.setattr(array_folder, "_mapped", exchange)
+    monkeypatch.setattr(snapshot_file, "_mapped", exchange)
     assert stored(tmp_path, GRAPH) is None
 
 

@@ -14,9 +14,8 @@ from shapely.geometry.base import BaseGeometry
 from inspection.network.build.build import build
 from inspection.network.build.network import Network, network
 from inspection.network.build.zone_masking import cleared
-from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph
-from inspection.network.rules import LinkingRules
+from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 from tests.inspection.network.drawn_ground import ground, places, square, ways, zone
 

@@ -42,7 +42,7 @@ def state_of(gap):
 
 
 def test_quillmoor_has_the_gaps_that_were_drawn(region_file):
-    """What inspection/demo_region/quillmoor_power.py draws as faulty is found, each at its place."""
+    """What inspection/demo_region/quillmoor.py draws as faulty is found, each at its place."""
     import_osm(path=region_file("quillmoor.osm.pbf"))
     find_gaps()
     assert counts() == {

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from inspection.network.build.edges import component_labels
-from inspection.quality.infrastructure import GapGround
-from inspection.quality.issue import Gap
-from inspection.quality.lone_towers import course_of_row
+from inspection.quality.infrastructure import Gap, GapGround
 from inspection.quality.network import Network
 from inspection.quality.search import search
-from inspection.serializers.gap_words import sentence, title
+from inspection.quality.supports import course_of_row
+from inspection.serializers.gaps import sentence, title
 from tests.inspection.quality.drawn import at, ground, row
 
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.terrain.height_grid import HeightGrid, packed, unpacked
+from inspection.terrain.heights import HeightGrid, packed, unpacked
 
 
 def grid(rows, west=9.0, north=47.0, step=0.001):

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.zones.reach import Limits, ZoneTable, agl_band
-from inspection.zones.rules import ZoneRules
+from inspection.zones.schedule import ZoneRules
 
 INF = math.inf
 

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 from inspection.geodesy.geometry_validator import GeometryFault
-from inspection.serializers.schedule_words import schedule_sentence
+from inspection.serializers.zones import schedule_sentence
 from inspection.zones.schedule import checked_schedule
 
 

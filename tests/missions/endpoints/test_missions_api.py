@@ -11,7 +11,7 @@ from django.db import connections
 from django.test import Client
 
 from inspection.services import mark_ground_changed
-from inspection.services.supports import number_supports
+from inspection.services.ground import number_supports
 from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan

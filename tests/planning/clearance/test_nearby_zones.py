@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from inspection.zones.reach import Limits, ZoneTable
-from inspection.zones.rules import ZoneRules
+from inspection.zones.schedule import ZoneRules
 from planning.clearance.nearby_zones import zones_near
 from planning.clearance.zone_clearance import FlownRoute, Margins, breaches
 

@@ -10,8 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, path_length_m
-from inspection.geodesy.local_frame import LocalFrame
-from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.local_frame import LocalFrame, short_vector_m
 from inspection.geodesy.wgs84 import WGS84
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance

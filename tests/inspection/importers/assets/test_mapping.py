@@ -8,8 +8,7 @@ import pytest
 from inspection.importers.assets.asset_file import RowFaults, opened_asset_file
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.assets.mapping import AssetRecord, Tally, checked_mapping, records_of
-from inspection.importers.assets.suggestion import suggested_mapping
-from inspection.importers.assets.survey import Survey, survey_of
+from inspection.importers.assets.survey import Survey, suggested_mapping, survey_of
 from inspection.importers.rows import AssetFileError
 from tests.inspection.importers.assets.made_files import geojson, line, point
 

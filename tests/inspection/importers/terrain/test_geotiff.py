@@ -10,11 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.geotiff import MAX_PART_BYTES, GeoTiff
-from inspection.importers.terrain.raster import Kind
+from inspection.importers.terrain.raster import Kind, TerrainFileError
 from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
-from inspection.importers.terrain.tiff_unpacking import LZW, PACKBITS, unpacked_part
+from inspection.importers.terrain.tiff import LZW, PACKBITS, unpacked_part
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 
 MIB = 1024 * 1024

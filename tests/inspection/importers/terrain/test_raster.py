@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from inspection.importers.terrain.raster import Kind, Window, blocks_of, window_of
-from inspection.importers.terrain.survey import Survey
+from inspection.importers.terrain.raster import Kind, Survey, Window, blocks_of, window_of
 
 
 class Drawn:

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 from pyproj import Transformer
 
-from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.raster import Kind, blocks_of
-from inspection.importers.terrain.survey import Survey
+from inspection.importers.terrain.raster import Kind, Survey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import opened_terrain
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.terrain.raster import DatumFault, TerrainFileError, datum_named
 from inspection.importers.terrain.terrain_file import HgtRaster, datum_of, opened_terrain
-from inspection.importers.terrain.vertical_datum import DatumFault, datum_named
 from tests.inspection.importers.terrain.tiffs import write_geotiff, write_hgt
 
 SIZE = 1201 * 1201 * 2

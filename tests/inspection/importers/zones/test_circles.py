@@ -7,7 +7,7 @@ import shapely
 from inspection.geodesy import LonLat
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.geodesy.wgs84 import WGS84
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
+from inspection.importers.zones.records import checked_radius_m, enclosing_polygon
 
 
 @pytest.mark.parametrize(

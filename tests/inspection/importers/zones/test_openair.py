@@ -11,8 +11,17 @@ import shapely
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
-from inspection.importers.zones.openair import MAX_DISTANCE_M, arc, arc_between, area_of_all_loops, circle_ring
-from inspection.importers.zones.openair_values import NAUTICAL_MILE_M, height_of, length_m_of, position_of
+from inspection.importers.zones.openair import (
+    MAX_DISTANCE_M,
+    NAUTICAL_MILE_M,
+    arc,
+    arc_between,
+    area_of_all_loops,
+    circle_ring,
+    height_of,
+    length_m_of,
+    position_of,
+)
 from inspection.importers.zones.zone_file import ZoneFile, ZoneFileError, read_zones
 
 CENTRE = LonLat(14.5, 50.1)
