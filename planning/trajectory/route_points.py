@@ -213,14 +213,13 @@ def without_idle_points(waypoints: Waypoints) -> Waypoints:
     is_idle = (points.kind == PASS) & (points.target == NONE)
     is_idle[list(points.task)] = False
     kept[is_idle & same[:-1] & same[1:]] = False
+    where, agl_m, idle = np.cumsum(~same).tolist(), points.agl_m.tolist(), is_idle.tolist()  # points of one place have one number
     before = None  # the last that is kept
     for place in np.flatnonzero(kept).tolist():
-        has_repeat = (
-            before is not None and same[before + 1 : place + 1].all() and abs(points.agl_m[before] - points.agl_m[place]) <= SAME_HEIGHT_M
-        )
-        if has_repeat and is_idle[place]:
+        has_repeat = before is not None and where[before] == where[place] and abs(agl_m[before] - agl_m[place]) <= SAME_HEIGHT_M
+        if has_repeat and idle[place]:
             kept[place] = False
-        elif has_repeat and before is not None and is_idle[before]:
+        elif has_repeat and before is not None and idle[before]:
             kept[before], before = False, place
         else:
             before = place
