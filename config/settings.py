@@ -96,7 +96,6 @@ INSTALLED_APPS = [
 MIDDLEWARE = [
     "config.request_instrumentation.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
-    "missions.views.fast_path_middleware.PlansShortWay",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",

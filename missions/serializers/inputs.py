@@ -8,6 +8,7 @@ from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.geodesy import LonLat
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.models import END_ACTIONS, Objective, TargetPriority, Uav
 from missions.reason_texts import fault_texts
@@ -60,6 +61,7 @@ from planning.request import GO_ON, EndAction, LostLinkRequest, lost_link_from_j
 from workspace.api import strict_serializers as serializers
 from workspace.api.external_data import AttributesField, ExternalIdField
 from workspace.api.fields import FiniteFloatField
+from workspace.models import Organisation
 
 
 class TaskSerializer(KnownFieldsSerializer):
@@ -67,10 +69,6 @@ class TaskSerializer(KnownFieldsSerializer):
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
-
-    def to_task(self, value: dict[str, Any]) -> Task:
-        kind = TaskKind(value["kind"])
-        return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
 
 
 class WindLayerSerializer(KnownFieldsSerializer):
@@ -314,7 +312,7 @@ def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
     values = known | {field: uav[field] for field in uav if field != "id"}
     return UavRequest(
         name=values["name"],
-        position=PositionField().to_internal_value(list(values["position"])),
+        position=LonLat(*values["position"]),
         max_range_m=values["max_range_m"],
         cruise_speed_mps=values["cruise_speed_mps"],
         end_action=EndAction(values["end_action"]),
@@ -334,13 +332,18 @@ def _target_request(target: dict[str, Any]) -> TargetRequest:
         asset=target.get("asset"),
         position=target.get("position"),
         stretch=(stretch[0], stretch[1]) if stretch else None,
-        task=TaskSerializer().to_task(task) if task else None,
+        task=_task(task) if task else None,
         priority=priority_from_json(target.get("priority", TargetPriority.NORMAL)),
         uav=target.get("uav") or "",
         sensor=target.get("sensor") or "",
         external_id=target.get("external_id", ""),
         attributes=target.get("attributes", {}),
     )
+
+
+def _task(value: dict[str, Any]) -> Task:
+    kind = TaskKind(value["kind"])
+    return Task(kind, value.get("hold_s", DEFAULT_HOLD_S[kind]))
 
 
 class PlanInputSerializer(OptionsSerializer):
@@ -360,10 +363,14 @@ class PlanInputSerializer(OptionsSerializer):
             raise serializers.ValidationError({place: [fault] for place, fault in fault_texts(error).items()}) from error
         return attrs
 
-    def to_request(self) -> PlanRequest:
-        """A plan for a certain time is kept apart from what the organisation has in the air then."""
-        asked = plan_request(self.validated_data)
-        return asked if asked.departs_at is None else replace(asked, organisation=self.context["organisation"].pk)
+    @classmethod
+    def read_request(cls, body: Any, organisation: Organisation) -> PlanRequest:
+        """Return what a body asks for. Raises ValidationError.
+
+        A plan for a certain time is kept apart from what the organisation has in the air then.
+        """
+        asked = plan_request(cls.read(body, organisation=organisation))
+        return asked if asked.departs_at is None else replace(asked, organisation=organisation.pk)
 
 
 class GivenToMissionSerializer(OptionsSerializer):

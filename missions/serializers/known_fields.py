@@ -1,33 +1,101 @@
 """Requests whose fields are all known: a name that is mistyped is told instead of passed over."""
 
-from collections.abc import Collection, Mapping
+import threading
+from collections.abc import Callable, Collection, Mapping
 from difflib import get_close_matches
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
+from django.core.exceptions import ValidationError as DjangoValidationError
 from django.utils.translation import gettext as _
 from rest_framework import serializers
+from rest_framework.fields import empty, get_error_detail
 
 MAX_TOLD = 10
 MAX_REPORTED_LENGTH = 80
 UNKNOWN_TOLD = "unknown_fields_told"
 
+_of_thread = threading.local()  # `serializers`: by class, whose fields are made
+
+
+class _Read(NamedTuple):
+    """A field that a body may name; `validate` is the serializer's own `validate_...` for it."""
+
+    field: serializers.Field
+    validate: Callable[[Any], Any] | None
+    may_be_missing: bool
+
 
 class KnownFieldsSerializer(serializers.Serializer):
-    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only."""
+    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only.
+
+    Fields that the body does not name, and that need not be there, cost nothing.
+    """
 
     refuses_other_fields = True
 
+    @classmethod
+    def read(cls, body: Any, **context: Any) -> Any:
+        """Return the values of a request's body. Raises ValidationError.
+
+        A serializer's fields cost more to make than to read with: each thread makes those of a class once.
+        """
+        known: dict[type, Any] = _of_thread.__dict__.setdefault("serializers", {})
+        if cls not in known:
+            known[cls] = cls()
+        known[cls]._context = dict(context)
+        try:
+            return known[cls].run_validation(body)
+        except serializers.ValidationError:  # REST framework keeps some messages in the language in which a field first wrote them
+            serializer = cls(data=body, context=dict(context))
+            serializer.is_valid(raise_exception=True)
+            return serializer.validated_data
+
     def to_internal_value(self, data: Any) -> Any:
-        if isinstance(data, Mapping):
-            unknown = [str(name)[:MAX_REPORTED_LENGTH] for name in data if name not in self.fields]
-            if unknown:
-                context = self.context
-                told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []
-                full = unknown[: max(0, MAX_TOLD - len(told))]
-                told += full
-                words = {name: [_words(name, self.fields)] for name in full}
-                raise serializers.ValidationError(words or {unknown[0]: [_("There is no such field.")]})
-        return super().to_internal_value(data)
+        if not isinstance(data, Mapping):
+            return super().to_internal_value(data)
+        if not self._reads.keys() >= data.keys():
+            self._refuse_unknown(data)
+        values: dict[str, Any] = {}
+        faults: dict[str, Any] = {}
+        for name, (field, validate, may_be_missing) in self._reads.items():
+            if (may_be_missing and name not in data) or field.read_only:
+                continue
+            try:
+                value = field.run_validation(data.get(name, empty))
+                values[name] = value if validate is None else validate(value)
+            except serializers.ValidationError as error:
+                faults[name] = error.detail
+            except DjangoValidationError as error:
+                faults[name] = get_error_detail(error)
+            except serializers.SkipField:
+                pass
+        if faults:
+            raise serializers.ValidationError(faults)
+        return values
+
+    def run_validators(self, value: Any) -> None:
+        if self.validators:
+            super().run_validators(value)
+
+    @cached_property
+    def _reads(self) -> dict[str, _Read]:
+        return {
+            name: _Read(field, getattr(self, f"validate_{name}", None), not field.required and field.default is empty)
+            for name, field in self.fields.items()
+            if not field.read_only
+        }
+
+    def _refuse_unknown(self, data: Mapping[Any, Any]) -> None:
+        unknown = [str(name)[:MAX_REPORTED_LENGTH] for name in data if name not in self.fields]
+        if not unknown:
+            return
+        context = self.context
+        told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []
+        full = unknown[: max(0, MAX_TOLD - len(told))]
+        told += full
+        words = {name: [_words(name, self.fields)] for name in full}
+        raise serializers.ValidationError(words or {unknown[0]: [_("There is no such field.")]})
 
 
 def _words(unknown: str, names: Collection[str]) -> str:

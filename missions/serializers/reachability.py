@@ -8,7 +8,7 @@ from inspection.geodesy import LonLat
 from missions.reason_texts import fault_texts
 from missions.selectors.fleet import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
-from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
+from missions.services import BaseRequest, InvalidRequest, with_bases
 from missions.services.planning.reachability import CODES, NO_UAV
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
@@ -60,10 +60,6 @@ class ReachabilityInputSerializer(OptionsSerializer):
         except InvalidRequest as error:
             raise serializers.ValidationError({place: [fault] for place, fault in fault_texts(error).items()}) from error
         return attrs
-
-    def to_request(self) -> PlanRequest:
-        request: PlanRequest = self.validated_data["request"]
-        return request
 
 
 class ReachableFlightSerializer(serializers.Serializer):

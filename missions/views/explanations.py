@@ -88,11 +88,9 @@ class WhyTarget(_Explanation):
     )
     def post(self, request: SignedInRequest) -> Response:
         organisation = request.user.organisation
-        body = explanations.WhyTargetInputSerializer(data=request.data, context={"organisation": organisation})
-        body.is_valid(raise_exception=True)
-        asked = plan_request(body.validated_data)
+        values = explanations.WhyTargetInputSerializer.read(request.data, organisation=organisation)
         with api_problems():
-            answer = services.explain_unreached_target(request=asked, target=body.validated_data["target"], organisation=organisation)
+            answer = services.explain_unreached_target(request=plan_request(values), target=values["target"], organisation=organisation)
         return Response(explanations.TargetExplanationSerializer(answer).data)
 
 
@@ -104,9 +102,7 @@ class WhyRoute(_Explanation):
         responses=explanations.RouteExplanationSerializer,
     )
     def post(self, request: SignedInRequest) -> Response:
-        body = explanations.WhyRouteInputSerializer(data=request.data, context={"organisation": request.user.organisation})
-        body.is_valid(raise_exception=True)
-        values = body.validated_data
+        values = explanations.WhyRouteInputSerializer.read(request.data, organisation=request.user.organisation)
         with api_problems():
             answer = services.explain_route(
                 request=plan_request(values), routes=values["routes"], uav=values["uav"], is_by_length=values["shortest_ways"]
@@ -123,9 +119,9 @@ class LaterDeparture(_Explanation):
         responses=explanations.LaterDepartureSerializer,
     )
     def post(self, request: SignedInRequest) -> Response:
-        body = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
-        body.is_valid(raise_exception=True)
-        asked = replace(body.to_request(), organisation=request.user.organisation_id)  # with a departure it is kept apart from others
+        organisation = request.user.organisation
+        asked = plan_request(PlanInputSerializer.read(request.data, organisation=organisation))
+        asked = replace(asked, organisation=organisation.pk)  # with a departure it is kept apart from others
         if not is_small(len(asked.targets)):
             raise ApiProblem(400, "too_many_targets", _("Departures are compared for few targets: pick those that are left out."))
         with api_problems():

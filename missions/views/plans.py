@@ -4,7 +4,6 @@ from typing import Any
 from uuid import UUID
 
 from django.conf import settings
-from django.http import HttpRequest, HttpResponseBase
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
@@ -13,11 +12,9 @@ from rest_framework.views import APIView
 
 from missions import services
 from missions.serializers.inputs import PlanInputSerializer
-from missions.serializers.plain_request import plain_request
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.services.planning.reachability import reachability
-from missions.views.fast_path import small_plan
 from missions.views.problems import api_problems
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
@@ -62,23 +59,15 @@ class Reachability(APIView):
         responses=ReachabilitySerializer,
     )
     def post(self, request: SignedInRequest) -> Response:
-        body = ReachabilityInputSerializer(data=request.data, context={"organisation": request.user.organisation})
-        body.is_valid(raise_exception=True)
-        values = body.validated_data
+        values = ReachabilityInputSerializer.read(request.data, organisation=request.user.organisation)
         with api_problems():
-            return Response(reachability(request=body.to_request(), starts=values["starts"], box=values.get("box")))
+            return Response(reachability(request=values["request"], starts=values["starts"], box=values.get("box")))
 
 
 class PlanList(APIView):
     renderer_classes = [FastJSONRenderer]
     throttle_classes = [ScopedRate]
     throttle_scope = "plans"
-
-    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        answer = (
-            small_plan(request, throttle_scope=self.throttle_scope) if request.META.get("HTTP_COOKIE") else None
-        )  # else: the middleware
-        return super().dispatch(request, *args, **kwargs) if answer is None else answer
 
     @extend_schema(
         operation_id="make_plan",
@@ -99,18 +88,12 @@ class PlanList(APIView):
     def _answer(self, request: SignedInRequest) -> Response:
         if not is_small(_target_count(request.data)):
             refuse_too_many_jobs(request.user)
-        asked = plain_request(request.data) or _read(request)
+        asked = PlanInputSerializer.read_request(request.data, request.user.organisation)
         with api_problems():
             if is_small(len(asked.targets)):
                 return Response(services.make_plan(request=asked, as_text=True))
             services.resolved_targets(asked.targets)  # says at once what a worker would find wrong later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
-
-
-def _read(request: SignedInRequest) -> services.PlanRequest:
-    serializer = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
-    serializer.is_valid(raise_exception=True)
-    return serializer.to_request()
 
 
 def is_small(targets: int) -> bool:

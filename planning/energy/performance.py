@@ -162,7 +162,7 @@ def performance_to_json(performance: Performance) -> dict[str, Any]:
 def performance_from_json(value: Any) -> Performance:
     """A performance from the API's keys; what is null or left out is as it is by default. Raises InvalidPerformance."""
     if value is None:
-        return Performance()
+        return BY_DEFAULT
     if not isinstance(value, Mapping):
         raise InvalidPerformance("performance", "must be an object")
     read: dict[str, Any] = {}
@@ -177,9 +177,12 @@ def performance_from_json(value: Any) -> Performance:
             read[key] = float(entry)
         except OverflowError:
             raise InvalidPerformance(key, "is too large") from None
-    return Performance(**read)
+    return Performance(**read) if read else BY_DEFAULT
 
 
 def _check(value: float | None, low: float, high: float, place: str) -> None:
     if value is not None and not low <= value <= high:
         raise InvalidPerformance(place, f"must be from {low:g} to {high:g}", (low, high))
+
+
+BY_DEFAULT = Performance()

@@ -131,7 +131,7 @@ def test_who_has_enough_large_plans_is_told_before_any_work(here: World, client:
     settings.MAX_OPEN_PLANS = 2
     with mock.patch("workspace.tasks.current_app.send_task"):
         assert [post(client, "plans", body(here)).status_code for _ in range(2)] == [202, 202]
-        with mock.patch("missions.views.plans.PlanInputSerializer", side_effect=AssertionError("worked on")):
+        with mock.patch("missions.views.plans.PlanInputSerializer.read", side_effect=AssertionError("worked on")):
             refused = post(client, "plans", body(here))
         assert (refused.status_code, refused.json()["error"]["code"]) == (429, "too_many_jobs")
         assert int(refused["Retry-After"]) > 0

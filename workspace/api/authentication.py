@@ -1,16 +1,15 @@
 """Who is asking: bearer tokens for programs, and what a role may do in the admin."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 from django.conf import settings
 from django.contrib.auth.backends import ModelBackend
 from django.db import DEFAULT_DB_ALIAS
 from django.db.models import Model
-from django.http import HttpRequest
 from django.utils.translation import gettext as _
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
-from rest_framework.authentication import BaseAuthentication, SessionAuthentication, get_authorization_header
+from rest_framework.authentication import BaseAuthentication, get_authorization_header
 from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
 
@@ -51,66 +50,43 @@ def reader_of_token(token: bytes) -> User | None:
     return found.user if found is not None and may_read else None
 
 
-class Holder(NamedTuple):
-    """Whom a token or a session belongs to, as far as the plainest requests need to know."""
-
-    key: int
-    role: Role
-    scopes: list[str] | None = None  # of the token; None: all of the role
-
-
-def holder_of(authorization: str) -> Holder | None:
-    """Who asks with this header, whose use is noted; None where BearerTokenAuthentication has to look itself."""
-    scheme, *rest = authorization.encode("latin-1", "replace").strip().split(b" ", 1)
-    rows = _rows_of(_HOLDER, b"".join(rest).strip()) if scheme.lower() == b"bearer" else []
-    if not rows:
-        return None
-    token_key, last_used_at, holder, role, scopes = rows[0]
-    note_use(token=token_key, last_used_at=last_used_at)
-    return Holder(holder, Role(role), scopes)
-
-
-def holder_of_session(request: HttpRequest) -> Holder | None:
-    """Who has signed in and asks with the CSRF token of their page; None, or an APIException, where SessionAuthentication has to look."""
-    if not isinstance(request.user, User) or not request.user.is_active:
-        return None
-    SessionAuthentication().enforce_csrf(request)  # type: ignore[arg-type] # it hands any request to Django's own check
-    return Holder(request.user.pk, Role(request.user.role))
-
-
 def _valid_token(token: bytes) -> ApiToken | None:
-    rows = _rows_of(_VALID_TOKEN, token)
+    if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
+        return None
+    rows = prepared_rows(_VALID_TOKEN, [hash_token(token.decode("ascii"))])
     return _token_of(rows[0]) if rows else None
 
 
-def _rows_of(statement: str, token: bytes) -> list[tuple[Any, ...]]:
-    if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
-        return []
-    return prepared_rows(statement, [hash_token(token.decode("ascii"))])
+# What nearly every request of a program asks of these rows; whatever else is asked of them is fetched then.
+_LOADED: dict[type[Model], tuple[str, ...]] = {
+    ApiToken: ("id", "user_id", "scopes", "last_used_at"),
+    User: ("id", "username", "is_active", "organisation_id", "role", "is_installation_operator", "is_service", "language"),
+    Organisation: ("id", "name"),
+}
 
 
 def _columns(model: type[Model], table: str) -> str:
-    return ", ".join(f'{table}."{field.column}"' for field in model._meta.concrete_fields)
+    return ", ".join(f'{table}."{name}"' for name in _LOADED[model])
 
 
 def _token_of(row: tuple[Any, ...]) -> ApiToken:
     """The token with its user and organisation, from the columns of all three."""
     found: list[Any] = []
-    for model in (ApiToken, User, Organisation):
-        names = [field.attname for field in model._meta.concrete_fields]
+    for model, names in _LOADED.items():
         found.append(model.from_db(DEFAULT_DB_ALIAS, names, row[: len(names)]))
         row = row[len(names) :]
-    token, token.user, token.user.organisation = found[0], found[1], found[2]
+    token, token.user, token.user.organisation = found
     return token
 
 
-# Each request of a program begins with one of these: they are prepared once per connection, and say with the same words what is valid.
-_HELD = "workspace_apitoken AS token JOIN workspace_user AS holder ON holder.id = token.user_id"
-_VALID = "token.token_sha256 = %s AND token.revoked_at IS NULL AND token.expires_at > statement_timestamp() AND holder.is_active"
+# Each request of a program begins with this: it is prepared once per connection.
 _VALID_TOKEN = f"""
     SELECT {_columns(ApiToken, "token")}, {_columns(User, "holder")}, {_columns(Organisation, "organisation")}
-    FROM {_HELD} JOIN workspace_organisation AS organisation ON organisation.id = holder.organisation_id WHERE {_VALID}"""  # noqa: S608
-_HOLDER = f"SELECT token.id, token.last_used_at, holder.id, holder.role, token.scopes FROM {_HELD} WHERE {_VALID}"  # noqa: S608
+    FROM workspace_apitoken AS token
+    JOIN workspace_user AS holder ON holder.id = token.user_id
+    JOIN workspace_organisation AS organisation ON organisation.id = holder.organisation_id
+    WHERE token.token_sha256 = %s AND token.revoked_at IS NULL AND token.expires_at > statement_timestamp()
+    AND holder.is_active"""  # noqa: S608
 
 
 class BearerTokenScheme(OpenApiAuthenticationExtension):
@@ -129,6 +105,11 @@ class RoleBackend(ModelBackend):
     def user_can_authenticate(self, user: Any) -> bool:
         """Whether somebody may sign in as this user, and keep a session: nobody as a service account."""
         return not user.is_service and super().user_can_authenticate(user)
+
+    def get_user(self, user_id: int) -> User | None:
+        """Whose session it is, with their organisation, which nearly every answer asks for."""
+        user = User.objects.select_related("organisation").filter(pk=user_id).first()
+        return user if user is not None and self.user_can_authenticate(user) else None
 
     def has_perm(self, user_obj: Any, perm: str, obj: Any = None) -> bool:
         return self.has_module_perms(user_obj, perm.partition(".")[0])

@@ -14,6 +14,13 @@ from workspace.api.errors import PROBLEM_JSON
 class ProblemNegotiation(DefaultContentNegotiation):
     """Accept's `application/problem+json` is for errors alone (workspace/api/errors.py): a client that names only it takes any answer."""
 
+    def select_renderer(self, request: Request, renderers: Any, format_suffix: str | None = None) -> Any:
+        """The first one at once for whoever takes anything, or names just it."""
+        first = renderers[0]
+        if format_suffix is None and request.META.get("HTTP_ACCEPT", "*/*") in ("*/*", first.media_type):
+            return first, first.media_type
+        return super().select_renderer(request, renderers, format_suffix)
+
     def get_accept_list(self, request: Request) -> list[str]:
         accepted = super().get_accept_list(request)
         return [entry for entry in accepted if entry.partition(";")[0].strip().lower() != PROBLEM_JSON] or ["*/*"]

@@ -1,8 +1,6 @@
-"""The short way of a small plan: the view's own answers, the view's own refusals."""
+"""A small plan is answered by the one view: who may ask, how often, in which form, and what is refused."""
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import timedelta
 from typing import Any
 from unittest import mock
@@ -15,7 +13,6 @@ from django.utils import timezone, translation
 
 from inspection.models import GraphSnapshot
 from missions import services
-from missions.views.fast_path import small_plan
 from tests.accounts.users import somebody
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
@@ -25,9 +22,7 @@ from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, Role, User
 
 pytestmark = pytest.mark.django_db
-SHORT_WAYS = ("missions.views.fast_path_middleware.small_plan", "missions.views.plans.small_plan")
 CSRF_TOKEN = "k" * 32
-TOLD = ("Content-Type", "Cache-Control", "Vary", "X-Frame-Options", "X-Content-Type-Options")
 
 
 @pytest.fixture
@@ -40,82 +35,74 @@ def program_of(user: User) -> Client:
     return Client(headers={"Authorization": f"Bearer {token}"}, raise_request_exception=False)
 
 
+def session_of(user: User) -> Client:
+    """A browser whose CSRF token is asked for, with a cookie for one."""
+    client = Client(enforce_csrf_checks=True, raise_request_exception=False)
+    client.force_login(user)
+    client.cookies[settings.CSRF_COOKIE_NAME] = CSRF_TOKEN
+    return client
+
+
 def asked(client: Client, body: Any, **options: Any) -> Any:
     return client.post("/api/v1/plans", body, content_type="application/json", **options)
 
 
-def both_ways(client: Client, body: Any, **options: Any) -> tuple[Any, Any, bool]:
-    """The answer, the answer of the view alone, and whether the short way was gone."""
-    taken = []
-
-    def noted(*args: Any, **kwargs: Any) -> Any:
-        taken.append(small_plan(*args, **kwargs))
-        return taken[-1]
-
-    with mock.patch(SHORT_WAYS[0], noted), mock.patch(SHORT_WAYS[1], noted):
-        first = asked(client, body, **options)
-    with the_view_alone():
-        second = asked(client, body, **options)
-    return first, second, any(answer is not None for answer in taken)
+def status_of(client: Client, here: World, **options: Any) -> int:
+    return int(asked(client, plan_body(here.towers[2]), **options).status_code)
 
 
-@contextmanager
-def the_view_alone() -> Iterator[None]:
-    with mock.patch(SHORT_WAYS[0], return_value=None), mock.patch(SHORT_WAYS[1], return_value=None):
-        yield
-
-
-def test_the_answer_is_the_views_byte_for_byte(here: World) -> None:
-    client = program_of(somebody(Role.OPERATOR))
-    bodies = [
+def test_programs_and_people_get_the_same_plan(here: World) -> None:
+    operator = somebody(Role.OPERATOR)
+    program, person = program_of(operator), session_of(operator)
+    for body in (
         plan_body(here.towers[2], here.towers[4]),
         plan_body(here.towers[1], {"position": [10.0, 56.3]}),  # the second is too far away: said in words
         plan_body(here.line),
         plan_body(here.towers[0], objective="makespan", return_to_start=True),
-    ]
-    for body in bodies:
-        short, long, _ = both_ways(client, body)
-        assert short.status_code == long.status_code == 200, short.content
-        assert short.content == long.content
-        assert {name: short[name] for name in short.headers if name not in ("Allow", "X-Request-ID")} == {
-            name: long[name] for name in long.headers if name not in ("Allow", "Vary", "X-Request-ID")
-        }
-    assert both_ways(client, bodies[0])[2]
+    ):
+        first, second = asked(program, body), asked(person, body, headers={"X-CSRFToken": CSRF_TOKEN})
+        assert first.status_code == second.status_code == 200, first.content
+        assert first.content == second.content
+
+
+def test_the_headers_of_a_plan(here: World) -> None:
+    operator = somebody(Role.OPERATOR)
+    for answer in (
+        asked(program_of(operator), plan_body(here.towers[2])),
+        asked(session_of(operator), plan_body(here.towers[2]), headers={"X-CSRFToken": CSRF_TOKEN}),
+    ):
+        assert answer["Content-Type"] == "application/json"
+        assert answer["Content-Length"] == str(len(answer.content))
+        assert answer["X-Frame-Options"] == "DENY"
+        assert answer["X-Content-Type-Options"] == "nosniff"
+    assert answer["Cache-Control"] == "no-store"
 
 
 @pytest.mark.parametrize(
-    "body",
+    ("body", "place"),
     [
-        b"",
-        b"{",
-        b"[]",
-        b'{"uavs": NaN}',
-        b'\xff{"uavs": []}',
-        json.dumps({"uavs": [], "targets": []}).encode(),
-        json.dumps({"uavs": [{"name": "A", "position": [10, 91]}], "targets": [{"position": [10, 56]}]}).encode(),
-        json.dumps({"uavs": [{"name": "A", "position": [10, 56]}], "targets": [{"asset": 999_999_999}]}).encode(),
-        b" " * 70_000 + b"{}",
+        (b"", "uavs"),
+        (b"{", None),
+        (b"[]", ""),
+        (b'{"uavs": NaN}', None),
+        (b'\xff{"uavs": []}', None),
+        (json.dumps({"uavs": [], "targets": []}).encode(), "uavs"),
+        (json.dumps({"uavs": [{"name": "A", "position": [10, 91]}], "targets": [{"position": [10, 56]}]}).encode(), "uavs.0.position"),
+        (json.dumps({"uavs": [{"name": "A", "position": [10, 56]}], "targets": [{"asset": 999_999_999}]}).encode(), "targets.0.asset"),
+        (b" " * 70_000 + b"{}", "uavs"),
     ],
     ids=["empty", "half", "list", "nan", "no utf-8", "nobody", "north of the pole", "unknown asset", "long"],
 )
-def test_what_is_wrong_is_said_by_the_view(here: World, body: bytes) -> None:
-    short, long, gone = both_ways(program_of(somebody(Role.OPERATOR)), body)
-    assert not gone
-    assert short.status_code == long.status_code == 400
-    assert short.content == long.content
-
-
-def test_the_headers_are_the_views(here: World) -> None:
-    first, second, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
-    assert gone
-    told = {*first.headers, *second.headers} - {"X-Request-ID", "Allow"}
-    assert {name: first.headers.get(name) for name in told} == {name: second.headers.get(name) for name in told}
+def test_what_is_wrong_is_said_by_its_place(here: World, body: bytes, place: str | None) -> None:
+    answer = asked(program_of(somebody(Role.OPERATOR)), body)
+    assert answer.status_code == 400
+    error = answer.json()["error"]
+    assert error["message"]
+    assert error["details"] is None if place is None else place in error["details"]
 
 
 def test_another_hosts_name_is_refused(here: World) -> None:
-    first, second, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Host": "elsewhere.example"})
-    assert not gone
-    assert first.status_code == second.status_code == 400
+    assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Host": "elsewhere.example"}) == 400
 
 
 def test_a_plan_is_made_in_the_language_that_is_asked_for(here: World) -> None:
@@ -128,80 +115,52 @@ def test_a_plan_is_made_in_the_language_that_is_asked_for(here: World) -> None:
 
     with mock.patch.object(services, "make_plan", noted):
         for language in ("de", "en"):
-            _, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Accept-Language": language})
-            assert gone
-    assert languages == ["de", "de", "en", "en"]
+            assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Accept-Language": language}) == 200
+    assert languages == ["de", "en"]
+
+
+def test_what_is_wrong_is_said_in_the_language_of_each_request(here: World) -> None:
+    client, body = program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2], uavs=[{"name": "x" * 101, "position": [10, 56]}])
+    said = [asked(client, body, headers={"Accept-Language": language}).json()["error"]["details"] for language in ("de", "en", "de")]
+    assert said[0] == said[2] != said[1]
+    assert said[1] == {"uavs.0.name": ["Ensure this field has no more than 100 characters."]}
 
 
 def test_requests_are_counted_by_the_address_they_came_to(here: World) -> None:
-    answer, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
-    assert gone
+    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
     assert answer.resolver_match.route == "api/v1/plans"
 
 
 @pytest.mark.parametrize("role", Role)
-def test_a_role_may_plan_the_short_way_if_the_view_lets_it(here: World, role: Role) -> None:
-    short, long, gone = both_ways(program_of(somebody(role)), plan_body(here.towers[2]))
-    assert short.status_code == long.status_code == (200 if role in (Role.OPERATOR, Role.ADMINISTRATOR) else 403)
-    assert gone == (short.status_code == 200)
-
-
-def refused(client: Client, here: World) -> int:
-    short, long, gone = both_ways(client, plan_body(here.towers[2]))
-    assert not gone
-    assert short.status_code == long.status_code
-    return short.status_code
+def test_operators_and_administrators_may_plan(here: World, role: Role) -> None:
+    assert status_of(program_of(somebody(role)), here) == (200 if role in (Role.OPERATOR, Role.ADMINISTRATOR) else 403)
 
 
 def test_no_token_no_plan(here: World) -> None:
-    user = somebody(Role.OPERATOR)
-    client = program_of(user)
-    assert asked(client, plan_body(here.towers[2])).status_code == 200
+    client = program_of(somebody(Role.OPERATOR))
+    assert status_of(client, here) == 200
     ApiToken.objects.update(expires_at=timezone.now())
-    assert refused(client, here) == 401
+    assert status_of(client, here) == 401
     ApiToken.objects.update(expires_at=timezone.now() + timedelta(days=1), revoked_at=timezone.now())
-    assert refused(client, here) == 401
+    assert status_of(client, here) == 401
     ApiToken.objects.update(revoked_at=None)
     User.objects.update(is_active=False)
-    assert refused(client, here) == 401
+    assert status_of(client, here) == 401
     for header in ("Bearer", "Bearer ", "Bearer spw_ünknown", "Basic spw_x", "Bearer " + 300 * "x"):
-        assert refused(Client(headers={"Authorization": header}), here) == 401
-    assert refused(Client(), here) == 401
-
-
-def session_of(user: User) -> Client:
-    """A browser whose CSRF token is asked for, with a cookie for one."""
-    client = Client(enforce_csrf_checks=True, raise_request_exception=False)
-    client.force_login(user)
-    client.cookies[settings.CSRF_COOKIE_NAME] = CSRF_TOKEN
-    return client
-
-
-def test_a_session_with_its_csrf_token_has_the_views_answer(here: World) -> None:
-    client = session_of(somebody(Role.OPERATOR))
-    first, second, gone = both_ways(client, plan_body(here.towers[2], here.towers[4]), headers={"X-CSRFToken": CSRF_TOKEN})
-    assert gone
-    assert first.status_code == second.status_code == 200
-    assert first.content == second.content
-    assert {name: first[name] for name in TOLD} == {name: second[name] for name in TOLD}
+        assert status_of(Client(headers={"Authorization": header}), here) == 401
+    assert status_of(Client(), here) == 401
 
 
 @pytest.mark.parametrize("token", [None, "", "another" + 25 * "x", 40 * "x"])
-def test_a_session_without_its_csrf_token_is_refused_as_by_the_view(here: World, token: str | None) -> None:
-    client = session_of(somebody(Role.OPERATOR))
-    headers = {} if token is None else {"X-CSRFToken": token}
-    first, second, gone = both_ways(client, plan_body(here.towers[2]), headers=headers)
-    assert not gone
-    assert first.status_code == second.status_code == 403
-    assert first.json() == second.json()
+def test_a_session_without_its_csrf_token_is_refused(here: World, token: str | None) -> None:
+    answer = asked(session_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={} if token is None else {"X-CSRFToken": token})
+    assert answer.status_code == 403
+    assert answer.json()["error"]["code"] == "permission_denied"
 
 
 def test_a_session_of_another_site_is_refused(here: World) -> None:
-    client = session_of(somebody(Role.OPERATOR))
     headers = {"X-CSRFToken": CSRF_TOKEN, "Origin": "https://elsewhere.example"}
-    first, second, gone = both_ways(client, plan_body(here.towers[2]), headers=headers)
-    assert not gone
-    assert first.status_code == second.status_code == 403
+    assert status_of(session_of(somebody(Role.OPERATOR)), here, headers=headers) == 403
 
 
 def test_a_session_that_may_not_plan_is_refused(here: World) -> None:
@@ -209,23 +168,35 @@ def test_a_session_that_may_not_plan_is_refused(here: World) -> None:
     left = session_of(operator)
     User.objects.filter(pk=operator.pk).update(is_active=False)
     for client, status in ((session_of(viewer), 403), (left, 401)):
-        first, second, gone = both_ways(client, plan_body(here.towers[2]), headers={"X-CSRFToken": CSRF_TOKEN})
-        assert not gone
-        assert first.status_code == second.status_code == status
+        assert status_of(client, here, headers={"X-CSRFToken": CSRF_TOKEN}) == status
 
 
-def test_a_key_and_a_preference_are_for_the_view(here: World) -> None:
-    client = program_of(somebody(Role.OPERATOR))
-    for headers in ({"Idempotency-Key": "k1"}, {"Idempotency-Key": ""}, {"Prefer": "wait=5"}, {"Accept": "text/html"}, {"Accept": ""}):
-        assert not both_ways(client, plan_body(here.towers[2]), headers=headers)[2]
+def test_a_key_is_answered_once(here: World) -> None:
+    client, body = program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2])
+    first, second = (asked(client, body, headers={"Idempotency-Key": "k1"}) for _ in range(2))
+    assert (first.status_code, second.status_code) == (200, 200)
+    assert second["Idempotency-Replayed"] == "true"
+    assert first.json() == second.json()
+    assert status_of(client, here, headers={"Idempotency-Key": ""}) == 400
+    assert asked(client, plan_body(here.towers[3]), headers={"Idempotency-Key": "k1"}).status_code == 422
+
+
+def test_a_small_plan_is_waited_for_by_nobody(here: World) -> None:
+    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Prefer": "wait=5"})
+    assert answer.status_code == 200
+    assert "Preference-Applied" not in answer
+
+
+@pytest.mark.parametrize(("accept", "status"), [("text/html", 406), ("", 200), ("application/json;q=0.5, text/html", 200)])
+def test_the_form_of_an_answer_is_agreed_on(here: World, accept: str, status: int) -> None:
+    assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Accept": accept}) == status
 
 
 @pytest.mark.parametrize("after", ["\xa0", "\x85", "\x1c", "\x1f", "x"])
 def test_a_token_with_anything_after_it_is_another_one_and_blanks_are_nothing(here: World, after: str) -> None:
     token = create_api_token(user=somebody(Role.OPERATOR), name="load", expires_at=timezone.now() + timedelta(days=1))
-    assert refused(Client(headers={"Authorization": f"Bearer {token}{after}"}), here) == 401
-    padded = Client(headers={"Authorization": f"  bearer   {token}  "})
-    assert both_ways(padded, plan_body(here.towers[2]))[0].status_code == 200
+    assert status_of(Client(headers={"Authorization": f"Bearer {token}{after}"}), here) == 401
+    assert status_of(Client(headers={"Authorization": f"  bearer   {token}  "}), here) == 200
 
 
 def test_the_use_of_a_token_is_noted(here: World) -> None:
@@ -233,13 +204,11 @@ def test_the_use_of_a_token_is_noted(here: World) -> None:
     assert ApiToken.objects.get().last_used_at is not None
 
 
-def test_both_ways_count_as_one(here: World) -> None:
+def test_who_asks_too_often_is_told_when_to_ask_again(here: World) -> None:
     client = program_of(somebody(Role.OPERATOR))
     forget_counts()
     with mock.patch.object(ScopedRate, "THROTTLE_RATES", {"plans": "4/hour"}):
-        statuses = [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
-        with the_view_alone():
-            statuses += [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
+        statuses = [status_of(client, here) for _ in range(4)]
         answer = asked(client, plan_body(here.towers[2]))
     forget_counts()
     assert statuses == [200] * 4
@@ -247,19 +216,15 @@ def test_both_ways_count_as_one(here: World) -> None:
     assert 0 < int(answer["Retry-After"]) <= 3600
 
 
-def test_without_a_network_the_view_says_so(here: World) -> None:
+def test_without_a_network_there_is_no_plan(here: World) -> None:
     GraphSnapshot.objects.all().delete()
-    short, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
-    assert not gone
-    assert (short.status_code, short.json()["error"]["code"]) == (503, "no_graph")
+    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert (answer.status_code, answer.json()["error"]["code"]) == (503, "no_graph")
 
 
-@pytest.mark.parametrize("where", ["missions.views.fast_path.holder_of", "missions.services.planning.planner.edition_now"])
-def test_without_the_database_the_view_says_so(here: World, where: str) -> None:
+@pytest.mark.parametrize("where", ["workspace.api.authentication.prepared_rows", "missions.services.planning.planner.edition_now"])
+def test_without_the_database_there_is_no_plan(here: World, where: str) -> None:
     client = program_of(somebody(Role.OPERATOR))
     with mock.patch(where, side_effect=OperationalError("away")):
-        _, _, gone = both_ways(client, plan_body(here.towers[2]))
-    with mock.patch("workspace.api.authentication.prepared_rows", side_effect=OperationalError("away")):
         answer = asked(client, plan_body(here.towers[2]))
-    assert not gone
     assert (answer.status_code, answer.json()["error"]["code"]) == (503, "database_away")

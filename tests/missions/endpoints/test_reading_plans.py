@@ -1,12 +1,14 @@
-"""The quick reader of small plans takes nothing that the serializer would refuse or read otherwise."""
+"""A serializer whose fields are made once in a thread reads each body as a new one does."""
 
 import random
 from typing import Any
 
 import pytest
+from django.utils import translation
+from rest_framework.exceptions import ValidationError
 
 from missions.serializers.inputs import PlanInputSerializer
-from missions.serializers.plain_request import plain_request
+from planning.problem import Objective
 from tests.accounts.users import somebody
 from tests.missions.api import TERN, plan_body
 
@@ -24,9 +26,17 @@ UAV_FIELDS = ["id", "name", "position", "max_range_m", "cruise_speed_mps", "end_
 TARGET_FIELDS = ["asset", "position", "stretch", "task", "other"]
 
 
-def read_slowly(body: Any, organisation: Any) -> Any:
+def read_by_a_new_one(body: Any, organisation: Any) -> Any:
+    """Values and faults."""
     serializer = PlanInputSerializer(data=body, context={"organisation": organisation})
-    return serializer.to_request() if serializer.is_valid() else None
+    return (serializer.validated_data, None) if serializer.is_valid() else (None, serializer.errors)
+
+
+def read(body: Any, organisation: Any) -> Any:
+    try:
+        return PlanInputSerializer.read(body, organisation=organisation), None
+    except ValidationError as error:
+        return None, error.detail
 
 
 def odd_body(draw: random.Random) -> dict[str, Any]:
@@ -44,21 +54,28 @@ def odd_body(draw: random.Random) -> dict[str, Any]:
     return body
 
 
-def test_what_the_quick_reader_takes_the_serializer_reads_the_same() -> None:
+def test_each_body_is_read_as_by_a_new_serializer() -> None:
     draw, organisation, taken = random.Random(3), somebody().organisation, 0
-    for _ in range(1_500):
+    for number in range(1_500):
         body = odd_body(draw)
-        quick = plain_request(body)
-        if quick is not None:
-            taken += 1
-            assert quick == read_slowly(body, organisation), body
-    assert taken > 300
+        with translation.override(("en", "de")[number % 2]):
+            found = read(body, organisation)
+            assert found == read_by_a_new_one(body, organisation), body
+        taken += found[0] is not None
+    assert 300 < taken < 1_200
 
 
 @pytest.mark.parametrize("body", [None, [], "x", 3, {}, {"uavs": []}])
-def test_the_quick_reader_leaves_what_is_no_request_to_the_serializer(body: Any) -> None:
-    assert plain_request(body) is None
+def test_what_is_no_request_is_refused(body: Any) -> None:
+    values, faults = read(body, None)
+    assert values is None
+    assert faults == read_by_a_new_one(body, None)[1]
 
 
-def test_an_ordinary_small_plan_is_read_quickly() -> None:
-    assert plain_request(plan_body({"asset": 3}, {"asset": 4})) is not None
+def test_nothing_of_a_body_stays_for_the_next() -> None:
+    organisation = somebody().organisation
+    PlanInputSerializer.read(
+        plan_body({"asset": 3}, objective="makespan", return_to_start=True, charging_w=90.0), organisation=organisation
+    )
+    asked = PlanInputSerializer.read_request({"uavs": [TERN], "targets": [{"asset": 3}]}, organisation)
+    assert (asked.objective, asked.return_to_start, asked.charging_w) == (Objective.TOTAL, False, None)
