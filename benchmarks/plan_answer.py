@@ -16,6 +16,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import cycle
 from pathlib import Path
 from typing import Any
@@ -60,20 +61,20 @@ def environ(body: bytes, headers: dict[str, str]) -> dict[str, Any]:
     } | headers
 
 
-def serve(ground: Path) -> None:
+def serve(ground: Path, threads: int) -> None:
     """Answer "token 20" on standard input with the milliseconds of processor time of each of 20 answers."""
     from config.wsgi import application  # noqa: PLC0415 - of the checkout that is measured, in its process alone
 
     bodies = cycle([json.dumps(body | {"targets": body["targets"][:TARGETS]}).encode() for body in _missions(ground)[:MISSIONS]])
     senders = {"token": _programs(ground), "session": _people()}
     ask = _asker(application)
-    for line in sys.stdin:
-        kind, count = line.split()
-        requests = [environ(next(bodies), next(senders[kind])) for _ in range(int(count))]
-        began_s = time.process_time()
-        for request in requests:
-            ask(request)
-        print(1_000 * (time.process_time() - began_s) / len(requests), flush=True)
+    with ThreadPoolExecutor(threads) as pool:
+        for line in sys.stdin:
+            kind, count = line.split()
+            requests = [environ(next(bodies), next(senders[kind])) for _ in range(int(count))]
+            began_s = time.process_time()
+            list(pool.map(ask, requests))
+            print(1_000 * (time.process_time() - began_s) / len(requests), flush=True)
 
 
 def _missions(ground: Path) -> list[dict[str, Any]]:
@@ -118,10 +119,10 @@ def _asker(application: Callable[..., Any]) -> Callable[[dict[str, Any]], None]:
 class Measured:
     """The WSGI application of one checkout, in a process of its own."""
 
-    def __init__(self, checkout: Path, environment: dict[str, str], ground: Path) -> None:
+    def __init__(self, checkout: Path, environment: dict[str, str], ground: Path, threads: int) -> None:
         self.ms: dict[str, list[float]] = {kind: [] for kind in KINDS}
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "benchmarks.plan_answer", "--serve", str(ground)],
+            [sys.executable, "-m", "benchmarks.plan_answer", "--serve", str(ground), "--threads", str(threads)],
             env=environment | {"PYTHONPATH": str(checkout)},
             cwd=checkout,
             stdin=subprocess.PIPE,
@@ -143,10 +144,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--beside", type=Path, help="another checkout, with this file in it")
     parser.add_argument("--rounds", type=int, default=200)
+    parser.add_argument("--threads", type=int, default=1, help="that answer at once; a web program has 4")
     parser.add_argument("--serve", type=Path, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.serve:
-        serve(options.serve)
+        serve(options.serve, options.threads)
         return
     checkouts = [PROJECT_DIR] if options.beside is None else [options.beside.resolve(), PROJECT_DIR]
     alone = dict.fromkeys(("live", "uav-link", "gateway", "estimator", "simulator", "beat"), 0)
@@ -154,7 +156,7 @@ def main() -> None:
     with Installation(state_directory() / "load", {"web": 1} | alone | workers) as installation:
         ground = bring_ground(installation)
         installation.stop("web-1")
-        measured = [Measured(checkout, installation.environment(), ground) for checkout in checkouts]
+        measured = [Measured(checkout, installation.environment(), ground, options.threads) for checkout in checkouts]
         try:
             for number in range(options.rounds + 1):
                 for kind in KINDS:

@@ -6,19 +6,27 @@ transactions it goes to the server with libpq's own call, which costs half of a 
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import sha256
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import psycopg
-from django.db import InterfaceError, OperationalError, connection
+from django.db import DEFAULT_DB_ALIAS, InterfaceError, OperationalError, connection, connections
+from django.db.backends.base.base import BaseDatabaseWrapper
 from psycopg import pq
 from psycopg.adapt import PyFormat, Transformer
 
 from workspace.jobs.planning_lock import waiting
 
-_known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = WeakKeyDictionary()  # names of statements its server has
+
+@dataclass(frozen=True, eq=False)
+class _Prepared:
+    """What one connection keeps: how its values are read and written, and the names of the statements its server has."""
+
+    server: psycopg.Connection[Any]
+    transformer: Transformer
+    known: set[bytes]
 
 
 def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
@@ -36,21 +44,29 @@ def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[
 
 
 def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
-    connection.ensure_connection()
-    server: psycopg.Connection[Any] = connection.connection
-    with connection.wrap_database_errors:
+    own = connections[DEFAULT_DB_ALIAS]  # of this thread: each look through `connection` searches for it
+    own.ensure_connection()
+    server: psycopg.Connection[Any] = own.connection
+    with own.wrap_database_errors:
         if server.autocommit and server.pgconn.transaction_status == pq.TransactionStatus.IDLE:
-            return _rows_at_once(server, statement, parameters)
+            return _rows_at_once(_prepared_of(own), statement, parameters)
         with psycopg.Cursor(server) as cursor:  # which begins the transaction where it has not begun
             cursor.execute(statement, parameters, prepare=True)
             return cursor.fetchall() if cursor.pgresult and cursor.pgresult.nfields else []
 
 
-def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
+def _prepared_of(own: BaseDatabaseWrapper) -> _Prepared:
+    held: _Prepared | None = getattr(own, _HELD, None)
+    if held is None or held.server is not own.connection:
+        held = _Prepared(own.connection, Transformer(own.connection), set())
+        setattr(own, _HELD, held)
+    return held
+
+
+def _rows_at_once(prepared: _Prepared, statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
+    server, transformer, known = prepared.server, prepared.transformer, prepared.known
     name = _name(statement)
-    transformer = Transformer(server)
     values = transformer.dump_sequence(parameters, [PyFormat.TEXT] * len(parameters))
-    known = _known.setdefault(server, set())
     result = None
     if name in known:
         result = waiting(server.pgconn.exec_prepared, name, values)
@@ -67,6 +83,7 @@ def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: S
     return transformer.load_rows(0, result.ntuples, tuple)
 
 
+_HELD = "spanwise_prepared"  # attribute of Django's connection
 _NOT_PREPARED = b"26000"  # invalid_sql_statement_name: somebody made the server forget: DEALLOCATE ALL
 _TYPES_CHANGED = b"0A000"  # feature_not_supported: "cached plan must not change result type"
 

@@ -74,9 +74,15 @@ class KnownFieldsSerializer(serializers.Serializer):
             raise serializers.ValidationError(faults)
         return values
 
-    def run_validators(self, value: Any) -> None:
-        if self.validators:
-            super().run_validators(value)
+    def run_validation(self, data: Any = empty) -> Any:
+        """As REST framework's, which looks for what is not there: no object is empty, and there are no validators of a whole one."""
+        if not isinstance(data, dict):
+            return super().run_validation(data)
+        values = self.to_internal_value(data)
+        try:
+            return self.validate(values)
+        except (serializers.ValidationError, DjangoValidationError) as error:
+            raise serializers.ValidationError(serializers.as_serializer_error(error)) from error
 
     @cached_property
     def _reads(self) -> dict[str, _Read]:

@@ -9,7 +9,7 @@ from django.db.models import Model
 from django.utils.translation import gettext as _
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
-from rest_framework.authentication import BaseAuthentication, get_authorization_header
+from rest_framework.authentication import BaseAuthentication
 from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
 
@@ -24,7 +24,7 @@ class BearerTokenAuthentication(BaseAuthentication):
     """`Authorization: Bearer spw_…`. The answer never tells whether a token is unknown, expired or revoked."""
 
     def authenticate(self, request: Request) -> tuple[User, ApiToken] | None:
-        scheme, *rest = get_authorization_header(request).strip().split(b" ", 1)
+        scheme, *rest = request.META.get("HTTP_AUTHORIZATION", "").encode("latin-1", "replace").strip().split(b" ", 1)
         if scheme.lower() != b"bearer":
             return None
         found = _valid_token(b"".join(rest).strip())

@@ -31,7 +31,7 @@ def idempotent(handler: Handler) -> Handler:
 
     @wraps(handler)
     def answer_once(view: Any, request: SignedInRequest, *args: Any, **kwargs: Any) -> Response:
-        key = request.headers.get("Idempotency-Key")
+        key = request.META.get("HTTP_IDEMPOTENCY_KEY")
         if key is None:
             return handler(view, request, *args, **kwargs)
         if not (0 < len(key) <= MAX_KEY_LENGTH and key.isascii() and key.isprintable()):

@@ -50,7 +50,8 @@ def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters
     """What a body says. Raises ParseError."""
     rules: dict[str, Any] = {"parse_constant": _refuse_constant, "parse_float": _finite_float} if finite_only else {}
     try:
-        value = json.loads(body.decode(), **rules)
+        text = body.decode()
+        value = json.loads(text, **rules)
     except UnicodeDecodeError as error:
         raise ParseError(_("The body is not UTF-8 at byte %(start)s.") % {"start": error.start}) from error
     except RecursionError as error:
@@ -59,7 +60,10 @@ def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters
         ) from error
     except ValueError as error:
         raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
-    _check(value, _UNSTORABLE if takes_control_characters else _REFUSED)
+    refused = _UNSTORABLE if takes_control_characters else _REFUSED
+    may_be_deep = text.count("[") + text.count("{") > MAX_NESTING_DEPTH
+    if may_be_deep or "\\" in text or refused.search(text):
+        _check(value, refused)
     return value
 
 

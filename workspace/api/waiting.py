@@ -19,7 +19,7 @@ _WAIT = re.compile(r"""(?:^|[,;])\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=$|[,;])""", re
 
 def preferred_wait_s(request: Request) -> int | None:
     """The whole seconds that the request would wait, no more than the settings allow; None without the preference."""
-    found = _WAIT.search(request.headers.get("Prefer", ""))
+    found = _WAIT.search(request.META.get("HTTP_PREFER", ""))
     return min(int(found[1]), int(settings.MAX_WAIT_S)) if found else None
 
 

@@ -1,6 +1,7 @@
 """Middleware: each request in the language and the time zone of whoever asks, and a note that they were here."""
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from datetime import timedelta
 from zoneinfo import available_timezones
 
@@ -30,7 +31,7 @@ class PreferencesMiddleware:
         zone = user.time_zone if user and not request.path.startswith("/api/") else ""
         with (
             translation.override(own_language or translation.get_language_from_request(request)),
-            timezone.override(zone if zone in TIME_ZONES else None),
+            timezone.override(zone) if zone in TIME_ZONES else nullcontext(),
         ):
             response = self.get_response(request)
         if user is not None and "Cache-Control" not in response:
