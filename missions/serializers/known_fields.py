@@ -27,10 +27,7 @@ class _Read(NamedTuple):
 
 
 class KnownFieldsSerializer(serializers.Serializer):
-    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only.
-
-    Fields that the body does not name, and that need not be there, cost nothing.
-    """
+    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only."""
 
     refuses_other_fields = True
 
@@ -52,6 +49,7 @@ class KnownFieldsSerializer(serializers.Serializer):
             return serializer.validated_data
 
     def to_internal_value(self, data: Any) -> Any:
+        """As REST framework's, but fields that the body does not name, and that need not be there, cost nothing."""
         if not isinstance(data, Mapping):
             return super().to_internal_value(data)
         if not self._reads.keys() >= data.keys():
@@ -59,7 +57,7 @@ class KnownFieldsSerializer(serializers.Serializer):
         values: dict[str, Any] = {}
         faults: dict[str, Any] = {}
         for name, (field, validate, may_be_missing) in self._reads.items():
-            if (may_be_missing and name not in data) or field.read_only:
+            if may_be_missing and name not in data:
                 continue
             try:
                 value = field.run_validation(data.get(name, empty))
