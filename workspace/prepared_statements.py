@@ -14,7 +14,7 @@ from typing import Any
 import psycopg
 from django.db import DEFAULT_DB_ALIAS, InterfaceError, OperationalError, connection, connections
 from django.db.backends.base.base import BaseDatabaseWrapper
-from psycopg import pq
+from psycopg import abc, pq
 from psycopg.adapt import PyFormat, Transformer
 
 from workspace.jobs.planning_lock import waiting
@@ -25,7 +25,7 @@ class _Prepared:
     """What one connection keeps: how its values are read and written, and the names of the statements its server has."""
 
     server: psycopg.Connection[Any]
-    transformer: Transformer
+    transformer: abc.Transformer
     known: set[bytes]
 
 
