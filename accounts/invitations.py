@@ -8,6 +8,8 @@ from django.conf import settings
 from django.core.mail import send_mail
 from django.db import transaction
 from django.db.models import Q, QuerySet
+from django.http import HttpRequest
+from django.http.request import split_domain_port
 from django.template.loader import render_to_string
 from django.utils import timezone
 from django.utils.translation import gettext as _
@@ -133,3 +135,19 @@ def _record(invitation: Invitation, actor: User | None, action: str) -> None:
         before=before,
         after=after,
     )
+
+
+OWN_MACHINE = {"127.0.0.1", "localhost", "[::1]"}
+
+
+def public_address(request: HttpRequest) -> str:
+    """Scheme and host, as `SPANWISE_PUBLIC_ADDRESS` has it.
+
+    Without it the host that was asked for, which is one of `SPANWISE_ALLOWED_HOSTS`: its port counts on one's own machine alone, since
+    whoever asks could name another program's.
+    """
+    if settings.PUBLIC_ADDRESS:
+        return str(settings.PUBLIC_ADDRESS)
+    host = request.get_host()
+    name = split_domain_port(host)[0]
+    return f"{'https' if request.is_secure() else 'http'}://{host if name in OWN_MACHINE else name}"

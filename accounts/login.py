@@ -2,17 +2,44 @@
 
 import time
 from dataclasses import dataclass
+from datetime import timedelta
+from typing import Any
 
+from django.conf import settings
 from django.contrib.auth import login
 from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 from django.shortcuts import resolve_url
+from django.utils import timezone
 from django.utils.crypto import constant_time_compare
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse
+from rest_framework.request import Request
 
 from accounts.second_factors import has_second_factor, is_required_of
-from accounts.sign_in_log import record_sign_in
-from workspace.models import SignInOutcome, User
+from workspace.api.errors import ApiProblem
+from workspace.models import SignInEntry, SignInOutcome, User
 from workspace.sessions.browser_sessions import note_session
-from workspace.sessions.trusted_devices import remember
+from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of, remember
+
+HELD_BACK_INTERVAL_S = 60  # of one name from one network: a flood of tries is no flood of rows
+
+
+def record_sign_in(request: HttpRequest, outcome: SignInOutcome, *, user: User | None = None, name: str = "") -> None:
+    """Of a name that nobody has only the try is kept: people type passwords there."""
+    address = address_of(request)
+    if outcome == SignInOutcome.HELD_BACK and not is_first_in(HELD_BACK_INTERVAL_S, name, network_of(address)):
+        return
+    if user is None and name:
+        user = User.objects.filter(username=name).first()
+    agent = "".join(character for character in request.headers.get("User-Agent", "") if character.isprintable())
+    SignInEntry.objects.create(user=user, outcome=outcome, address=address[:45], user_agent=agent[:200])
+
+
+def forget_old_sign_ins() -> int:
+    kept_since = timezone.now() - timedelta(days=settings.SIGN_IN_LOG_DAYS)
+    deleted, _ = SignInEntry.objects.filter(recorded_at__lt=kept_since).delete()
+    return deleted
+
 
 BACKEND = "workspace.api.authentication.RoleBackend"
 HALF_IN = "workspace.half_in"  # in the session: who has shown the password, when, and where they wanted to go
@@ -57,3 +84,22 @@ def sign_in(request: HttpRequest, response: HttpResponse, user: User) -> None:
     note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
     record_sign_in(request, SignInOutcome.SIGNED_IN, user=user)
     remember(request, response, user.username)
+
+
+PROVED_AT = "workspace.proved_at"  # in the session, beside its beginning
+PROOF_S = 15 * 60
+PASSWORD_NEEDED = OpenApiResponse(description="`password_needed`: say it at `/account/proof`.")
+
+
+def note_proof(session: Any) -> None:
+    """Somebody has just shown their password in this session."""
+    session[PROVED_AT] = time.time()
+
+
+def require_proof(request: Request) -> None:
+    """Raises ApiProblem 403 `password_needed` unless the password was shown within 15 min: by signing in, or by saying it again."""
+    row = getattr(request.session, "in_use", None)
+    since_sign_in_s = PROOF_S + 1.0 if row is None else (timezone.now() - row.began_at).total_seconds()
+    since_proof_s = time.time() - request.session.get(PROVED_AT, 0.0)
+    if min(since_sign_in_s, since_proof_s) > PROOF_S:
+        raise ApiProblem(403, "password_needed", _("Say your password again for this."))

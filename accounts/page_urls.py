@@ -13,7 +13,7 @@ from accounts.pages.password import (
 from accounts.pages.second_factors import CodePage, NewCodesPage, RemovePage, SetUpPage
 from accounts.pages.sign_in import SignInPage, SignOutPage
 from accounts.pages.users import AccountPage, AdministrationPage, InvitationPage
-from workspace.offline_pages import OfflinePage, service_worker
+from workspace.pages import OfflinePage, service_worker
 
 urlpatterns = [
     path("service-worker.js", service_worker, name="service-worker"),

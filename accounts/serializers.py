@@ -9,8 +9,7 @@ from django.utils.translation import gettext as _
 
 from accounts.invitations import MAX_DAYS, state_of
 from accounts.invitations import InvitationState as State
-from accounts.service_accounts import name_of
-from accounts.services import revision_of_person
+from accounts.services import name_of, revision_of_person
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
 from workspace.models import (

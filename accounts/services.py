@@ -6,14 +6,14 @@ from collections.abc import Iterable
 from datetime import datetime, timedelta
 from typing import Any
 
-from django.db import transaction
-from django.db.models import F
+from django.db import IntegrityError, transaction
+from django.db.models import Count, F, Max, Q, QuerySet
 from django.utils import timezone
 
 from accounts.users import save_person
 from workspace.api_tokens import create_api_token
 from workspace.audit import person_facts, record_change
-from workspace.models import ApiToken, User
+from workspace.models import ApiToken, Role, User
 
 MAX_TOKENS = 50  # of one person, valid at the same time
 CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")
@@ -120,3 +120,37 @@ def _record_token(token: ApiToken, actor: User, action: str, facts: dict[str, An
 
 def _seconds(time: datetime) -> str:
     return time.isoformat(timespec="seconds")
+
+
+class NameTaken(ValueError):
+    """The organisation has a service account of this name."""
+
+
+def service_accounts_of(actor: User) -> QuerySet[User]:
+    """Those of the actor's organisation, with `valid_tokens` and `last_used_at`."""
+    valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
+    own = User.objects.filter(organisation_id=actor.organisation_id, is_service=True)
+    return own.annotate(valid_tokens=Count("api_tokens", filter=valid), last_used_at=Max("api_tokens__last_used_at"))
+
+
+def name_of(account: User) -> str:
+    return account.username.split(":", 2)[2]
+
+
+def make_service_account(*, actor: User, name: str, role: Role) -> User:
+    """Raises NameTaken."""
+    username = f"service:{actor.organisation_id}:{name}"
+    if User.objects.filter(username__iexact=username).exists():
+        raise NameTaken
+    account = User(username=username, role=role, organisation_id=actor.organisation_id, is_service=True)
+    account.set_unusable_password()
+    try:
+        with transaction.atomic():
+            return save_person(user=account, actor=actor)
+    except IntegrityError as error:  # two at the same moment
+        raise NameTaken from error
+
+
+def tokens_of(account: User) -> QuerySet[ApiToken]:
+    """Those that work first, then the newest."""
+    return account.api_tokens.select_related("user").order_by(F("revoked_at").desc(nulls_first=True), "-created_at")

@@ -2,12 +2,12 @@
 
 from celery import shared_task
 
-from accounts import second_factors, sign_in_log
+from accounts import login, second_factors
 
 
 @shared_task(time_limit=30, soft_time_limit=25)
 def forget_old_sign_ins() -> None:
-    sign_in_log.forget_old_sign_ins()
+    login.forget_old_sign_ins()
 
 
 @shared_task(time_limit=60, soft_time_limit=50)

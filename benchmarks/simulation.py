@@ -23,8 +23,7 @@ from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Weather
 from simulation.flight.plant import PHYSICS_HZ
-from simulation.flight.route_file import RouteFile
-from simulation.flight.route_flight import RouteFlight, fly_route
+from simulation.flight.route_flight import RouteFile, RouteFlight, fly_route
 from simulation.flight.uav import SimulatedUav
 
 HOME = LonLat(9.0, 47.0)

@@ -13,10 +13,9 @@ from inspection.services.imports.uploads import forget_old_uploads as forget_upl
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from workspace.api.errors import DATABASE_UNAVAILABLE
-from workspace.jobs.fair_queue import next_waiting, start_fair_job
 from workspace.jobs.job_watch import JobWatch
 from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
-from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job
+from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, next_waiting, start_fair_job
 from workspace.models import Job
 from workspace.tasks import send_job, send_job_on_commit
 

@@ -10,7 +10,7 @@ from inspection.geodesy import LonLat
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
 from inspection.network.build.obstacles import too_tall_walls, with_walls
-from inspection.network.by_length import by_length
+from inspection.network.export import by_length
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray, ZoneTable

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inspection.network.paths.passed import passed_on
+from inspection.network.paths.along_paths import passed_on
 from planning.assignment.routing_input import RoutingInput
 from planning.problem import End, Objective, Problem, Routes
 from planning.solver.search import Progress

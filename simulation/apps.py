@@ -13,5 +13,5 @@ class SimulationConfig(AppConfig):
         from missions.hooks.approval import register_check  # noqa: PLC0415 (models are there by then)
         from missions.hooks.events import register_sources  # noqa: PLC0415
 
-        register_check("simulation.services.green_verdict.reasons_without_rehearsal")
+        register_check("simulation.services.rehearsals.reasons_without_rehearsal")
         register_sources("simulation.simulation_selectors.EVENT_SOURCES")

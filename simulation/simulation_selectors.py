@@ -7,8 +7,8 @@ from uuid import UUID
 from django.db.models import QuerySet
 
 from missions.hooks.events import EventKind, MissionEvent, Place, Source
-from simulation.end_reasons import reason_words
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
+from simulation.vehicle_models import reason_words
 from workspace.models import Organisation
 
 

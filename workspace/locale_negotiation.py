@@ -5,6 +5,7 @@ from typing import Any
 
 from django.http import HttpRequest
 from django.utils import translation
+from django.utils.formats import number_format
 
 from workspace.models import User
 
@@ -20,3 +21,8 @@ def language_of_socket(user: User, scope: Mapping[str, Any]) -> str:
     told = dict(scope.get("headers", [])).get(b"accept-language", b"")
     request.META["HTTP_ACCEPT_LANGUAGE"] = told.decode("latin-1")
     return language_of_request(user, request)
+
+
+def number_text(value: float, decimals: int = 0) -> str:
+    """ "1,234.5", in German "1.234,5"."""
+    return str(number_format(round(value, decimals), decimal_pos=decimals, use_l10n=True, force_grouping=True))

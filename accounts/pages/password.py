@@ -12,11 +12,9 @@ from django.urls import reverse_lazy
 from django.utils import translation
 from django.utils.translation import gettext as _
 
-from accounts.invitations import mail_leaves_here
-from accounts.public_address import public_address
+from accounts.invitations import mail_leaves_here, public_address
 from accounts.services import revoke_tokens
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
-from workspace.sessions.trusted_devices import remember
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, remember, take_turn
 
 logger = logging.getLogger(__name__)
 

@@ -14,10 +14,8 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
 
 from accounts import second_factors
-from accounts.login import sign_in, who_is_half_in
-from accounts.one_time_codes import address_for_apps, new_seed
-from accounts.second_factors import TooManyCodes, WrongCode
-from accounts.sign_in_log import record_sign_in
+from accounts.login import record_sign_in, sign_in, who_is_half_in
+from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, new_seed
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.field_encryption import CannotUnseal, seal, unseal
 from workspace.models import SignInOutcome, User

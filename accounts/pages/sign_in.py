@@ -9,11 +9,9 @@ from django.http import HttpRequest, HttpResponse
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 
-from accounts.login import let_in
-from accounts.sign_in_log import record_sign_in
+from accounts.login import let_in, record_sign_in
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import HeldBack, address_of, try_to_sign_in
-from workspace.sessions.trusted_devices import mark_of
+from workspace.sessions.sign_in_attempts import HeldBack, address_of, mark_of, try_to_sign_in
 
 
 class SignInForm(AuthenticationForm):

@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
+from accounts.login import PASSWORD_NEEDED, record_sign_in, require_proof
 from accounts.serializers import (
     AccountChangeSerializer,
     AccountSerializer,
@@ -21,7 +21,6 @@ from accounts.serializers import (
     TokenSerializer,
     with_secret,
 )
-from accounts.sign_in_log import record_sign_in
 from workspace.api.errors import ApiProblem
 from workspace.api.paging import page_of
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone

@@ -7,8 +7,8 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from accounts import service_accounts, services
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
+from accounts import services
+from accounts.login import PASSWORD_NEEDED, require_proof
 from accounts.serializers import (
     NewTokenSerializer,
     ServiceAccountChangeSerializer,
@@ -33,7 +33,7 @@ MAX_SHOWN_TOKENS = 200
 
 def _account(request: SignedInRequest, account_id: int) -> User:
     try:
-        return service_accounts.service_accounts_of(request.user).get(pk=account_id)
+        return services.service_accounts_of(request.user).get(pk=account_id)
     except User.DoesNotExist as error:
         raise Http404 from error
 
@@ -56,7 +56,7 @@ class ServiceAccountList(APIView):
         responses=ServiceAccountPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        page = page_of(request, service_accounts.service_accounts_of(request.user), order=("username",))
+        page = page_of(request, services.service_accounts_of(request.user), order=("username",))
         return Response({"results": ServiceAccountSerializer(page.rows, many=True).data, "next": page.next})
 
     @extend_schema(
@@ -72,8 +72,8 @@ class ServiceAccountList(APIView):
         body.is_valid(raise_exception=True)
         name, role = body.validated_data["name"], Role(body.validated_data["role"])
         try:
-            account = service_accounts.make_service_account(actor=request.user, name=name, role=role)
-        except service_accounts.NameTaken as error:
+            account = services.make_service_account(actor=request.user, name=name, role=role)
+        except services.NameTaken as error:
             raise ApiProblem(409, "name_taken", _("There is a service account of this name.")) from error
         return _answer(request, account.pk, status=201)
 
@@ -101,7 +101,7 @@ class ServiceAccountDetail(APIView):
             services.change_person(user_id=account.pk, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
         except services.ChangedMeanwhile as error:
             current = ServiceAccountSerializer(_account(request, account_id)).data
-            words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=service_accounts.name_of(account))
+            words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=services.name_of(account))
             raise ApiProblem(412, "changed", words, details={"current": current}) from error
         return _answer(request, account_id)
 
@@ -117,7 +117,7 @@ class ServiceAccountTokens(APIView):
         responses=TokenListSerializer,
     )
     def get(self, request: SignedInRequest, account_id: int) -> Response:
-        tokens = service_accounts.tokens_of(_account(request, account_id))[:MAX_SHOWN_TOKENS]
+        tokens = services.tokens_of(_account(request, account_id))[:MAX_SHOWN_TOKENS]
         return Response({"results": TokenSerializer(tokens, many=True).data})
 
     @extend_schema(
@@ -147,7 +147,7 @@ class ServiceAccountToken(APIView):
         operation_id="revoke_service_account_token", summary="Revoke a token of an account for a program", responses=TokenSerializer
     )
     def delete(self, request: SignedInRequest, account_id: int, token_id: int) -> Response:
-        token = service_accounts.tokens_of(_account(request, account_id)).filter(pk=token_id).first()
+        token = services.tokens_of(_account(request, account_id)).filter(pk=token_id).first()
         if token is None:
             raise Http404
         return Response(TokenSerializer(services.revoke_token(token=token, actor=request.user)).data)

@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.reauthentication import PASSWORD_NEEDED, note_proof, require_proof
+from accounts.login import PASSWORD_NEEDED, note_proof, require_proof
 from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
 from accounts.views.account import check_password
 from workspace.api.errors import ApiProblem

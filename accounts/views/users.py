@@ -14,8 +14,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import invitations, second_factors, services
-from accounts.invitations import InvitationState
-from accounts.public_address import public_address
+from accounts.invitations import InvitationState, public_address
 from accounts.serializers import (
     InvitationInputSerializer,
     InvitationPageSerializer,

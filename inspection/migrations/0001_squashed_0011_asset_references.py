@@ -181,7 +181,7 @@ class Migration(migrations.Migration):
                 ('id', models.PositiveSmallIntegerField(default=1, primary_key=True, serialize=False)),
                 ('ground_revision', models.PositiveBigIntegerField()),
                 ('ground_changed_at', models.DateTimeField(help_text='two grounds may have the same revision', null=True)),
-                ('recipe', models.PositiveSmallIntegerField(help_text='of quality/search.py')),
+                ('recipe', models.PositiveSmallIntegerField(help_text='of quality/repair.py')),
                 ('found', models.PositiveIntegerField()),
                 ('search_s', models.FloatField()),
                 ('searched_at', models.DateTimeField()),

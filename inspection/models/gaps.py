@@ -61,7 +61,7 @@ class GapSearch(models.Model):
     id = models.PositiveSmallIntegerField(primary_key=True, default=SINGLE_ID)
     ground_revision = models.PositiveBigIntegerField()
     ground_changed_at = models.DateTimeField(null=True, help_text="two grounds may have the same revision")
-    recipe = models.PositiveSmallIntegerField(help_text="of quality/search.py")
+    recipe = models.PositiveSmallIntegerField(help_text="of quality/repair.py")
     found = models.PositiveIntegerField()
     search_s = models.FloatField()
     searched_at = models.DateTimeField()

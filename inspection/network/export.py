@@ -1,12 +1,14 @@
 """The graph in formats that other programs read: GraphML and GeoJSON."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import networkx as nx
 import numpy as np
 
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
+from inspection.network.route_index import OncePerGraph, asset_places, node_tree
 
 
 def to_networkx(graph: InspectionGraph) -> "nx.Graph[int]":
@@ -47,3 +49,13 @@ def _edge_attributes(graph: InspectionGraph) -> Iterator[dict[str, Any]]:
     for kind, length_m, cost_m, asset in zip(*columns, strict=True):
         attributes = {"kind": EdgeKind(kind).name.lower(), "length_m": length_m, "weighted_cost_m": cost_m}
         yield attributes if asset < 0 else attributes | {"asset": asset}
+
+
+def _by_length(graph: InspectionGraph) -> InspectionGraph:
+    shortest = replace(graph, cost=graph.length_m)
+    node_tree.remember(shortest, node_tree(graph))  # the nodes are the same
+    asset_places.remember(shortest, asset_places(graph))
+    return shortest
+
+
+by_length = OncePerGraph(_by_length)

@@ -12,7 +12,7 @@ from inspection.network.infrastructure import Places, Ways
 
 @dataclass(frozen=True)
 class Gap:
-    """kind is a value of models.GapKind. cut_off_m is explained in quality/search.py."""
+    """kind is a value of models.GapKind. cut_off_m is explained in quality/repair.py."""
 
     kind: str
     key: str  # the same on every run, for as long as the gap is there

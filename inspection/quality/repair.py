@@ -1,11 +1,16 @@
 """New courses of lines: an end that moves, vertices that are added, places for towers that are missing."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from shapely import Point
 
 from inspection.geodesy import distance_m
 from inspection.geodesy.wgs84 import FloatArray
+from inspection.quality.infrastructure import Gap, GapGround
+from inspection.quality.lines import impossible_voltages, line_ends
+from inspection.quality.network import Network
+from inspection.quality.supports import lone_towers, long_spans, missing_supports
 
 Position = tuple[float, float]  # lon, lat [deg]
 
@@ -92,3 +97,37 @@ def through(course: Sequence[Position], place: Position, taken: FloatArray) -> l
 
 def _position(point: FloatArray) -> Position:
     return (round(float(point[0]), 7), round(float(point[1]), 7))
+
+
+RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
+
+
+def bridges_without_way(ground: GapGround) -> list[Gap]:
+    return [
+        Gap(
+            kind="bridge_without_way",
+            key=f"bridge_without_way {bridge.key}",
+            asset=bridge.asset,
+            position=bridge.position,
+            geometry=Point(bridge.position),
+        )
+        for bridge in ground.bridges_without_way
+    ]
+
+
+def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> list[Gap]:
+    """Every gap of the ground, the one that cuts off most first; equal grounds give equal lists, each key once."""
+    tell = progress or (lambda message: None)
+    tell("joining lines")
+    network = Network(ground)
+    found: list[Gap] = []
+    for words, detector in (
+        ("long spans", long_spans), ("vertices without a tower", missing_supports), ("towers on no line", lone_towers),
+        ("ends of lines", line_ends),
+    ):  # fmt: skip
+        tell(words)
+        found += detector(network)
+    tell("bridges and voltages")
+    found += bridges_without_way(ground) + impossible_voltages(ground)
+    by_key = {gap.key: gap for gap in reversed(found)}
+    return sorted(by_key.values(), key=lambda gap: (-gap.cut_off_m, -gap.details.get("missing_towers", 0), gap.key))

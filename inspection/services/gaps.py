@@ -11,7 +11,7 @@ from django.utils import timezone
 
 from inspection.models import Asset, DataGap, GapSearch, GapState
 from inspection.quality.infrastructure import Gap
-from inspection.quality.search import RECIPE, search
+from inspection.quality.repair import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.selectors.ground import ground_edition
 from workspace.audit import record_change

@@ -23,7 +23,7 @@ from planning.trajectory.heights import with_heights
 from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
 from planning.trajectory.obstacles import too_low
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 NEAR_DEG = 0.002
 AT_DEG = 1e-5  # a metre

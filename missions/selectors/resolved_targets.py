@@ -19,7 +19,7 @@ from planning.reasons import Reason
 from planning.request import InvalidRequest, TargetRequest
 from planning.trajectory.heights import FloatArray, asset_height_m
 from planning.trajectory.stretches import PlaceOnLine, nearest_on_line, stretch_between
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
 LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}

@@ -11,7 +11,7 @@ from django.utils.translation import gettext as _
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Uav, UavState
 from missions.selectors.fleet import FIGURES, figures_of
 from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it leaves the UAV on the ground

@@ -8,7 +8,7 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from accounts.reauthentication import PASSWORD_NEEDED, require_proof
+from accounts.login import PASSWORD_NEEDED, require_proof
 from missions import services
 from missions.models import CredentialKind
 from missions.selectors import fleet

@@ -10,7 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import NodeKind
-from inspection.network.paths.passed import BEND, passed_on
+from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.spans import spans_of
 from planning.airspace import zone_at
 from planning.assignment.routing_input import RoutingInput

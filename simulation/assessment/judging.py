@@ -9,14 +9,11 @@ import numpy as np
 from inspection.zones.reach import ZoneTable
 from mavlink.approved_route import FrozenRoute
 from planning.energy.conditions import Conditions
-from simulation.assessment.finding import Facts, Finding, Level, level_of
 from simulation.assessment.flown import Ending, FloatArray, FlownRoute
-from simulation.assessment.following import Following, following_of
-from simulation.assessment.limits import Limits
+from simulation.assessment.following import Following, Visit, following_of, visits_of
+from simulation.assessment.limits import Facts, Finding, Level, Limits, level_of
 from simulation.assessment.meeting import Meeting, meetings_of
-from simulation.assessment.obstacles import Approach, Standing, lowest_of, nearest_standing
-from simulation.assessment.reaching import Visit, visits_of
-from simulation.assessment.zone_approach import ZoneApproach, zone_approaches
+from simulation.assessment.obstacles import Approach, Standing, ZoneApproach, lowest_of, nearest_standing, zone_approaches
 
 MEETING_STEP_S = 0.2
 AS_PLANNED = 1.05  # of the planned energy

@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from typing import Any
 
-from simulation.assessment.finding import Finding
 from simulation.assessment.flown import FlownTrack
 from simulation.assessment.following import Error
 from simulation.assessment.judging import RouteVerdict, TargetVerdict, Verdict
+from simulation.assessment.limits import Finding
 from simulation.assessment.meeting import Meeting
-from simulation.assessment.obstacles import Approach
-from simulation.assessment.zone_approach import ZoneApproach
+from simulation.assessment.obstacles import Approach, ZoneApproach
 
 METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS, ANGLE_DIGITS = 2, 1, 1, 7, 1
 ANGLES = ("roll_deg", "pitch_deg", "heading_deg")

@@ -2,13 +2,13 @@
 
 import math
 
+from simulation.flight.airframe import OwnAction
 from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.manoeuvre_context import Cockpit
 from simulation.flight.manoeuvres import Hold, Land, Manoeuvre, Return
 from simulation.flight.mission import Mission
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
-from simulation.flight.settings import OwnAction
 from simulation.flight.states import Mode, Severity
 
 STRENGTH = {Mode.RETURN: 1, Mode.LAND: 2}  # what is under way is not given up for less

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from simulation.flight.airframe import Airframe
+from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.camera import Camera
 from simulation.flight.course import Vector, Via, course
 from simulation.flight.events import Event, Said
@@ -13,7 +13,6 @@ from simulation.flight.faults import Faults
 from simulation.flight.guidance import Gate, Guidance
 from simulation.flight.orders import Above, Place
 from simulation.flight.plant import Ground
-from simulation.flight.settings import Settings
 from simulation.flight.states import Haven, Severity
 
 

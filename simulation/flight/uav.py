@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
-from simulation.flight.airframe import Airframe
+from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body
 from simulation.flight.camera import Camera
@@ -17,7 +17,6 @@ from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, Ta
 from simulation.flight.mission import Mission, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
 from simulation.flight.plant import FlatGround, Ground
-from simulation.flight.settings import Settings
 from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, Severity, UavState
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from planning.energy.performance import Performance
 from planning.energy.power import power_w
+from simulation.flight.airframe import AIRFRAMES, Airframe
 
 AS_FAST_SHARE = 0.8  # of the planned speed
 
@@ -41,3 +42,14 @@ def nearest_airframe(performance: Performance, speed_mps: float, candidates: Ite
         return by_mass if own_min is None else math.hypot(by_mass, math.log(candidate.endurance_min / own_min))
 
     return min(candidates, key=differs).code
+
+
+HOVER_MIN = {"iris": 20.0, "inspector": 36.0}  # as their model files have it
+
+
+def _candidate(airframe: Airframe) -> Candidate:
+    worked_out = endurance_min(Performance(battery_wh=airframe.battery_wh, mass_kg=airframe.mass_kg))
+    return Candidate(airframe.code, airframe.mass_kg, HOVER_MIN.get(airframe.code) or worked_out or 0.0, airframe.max_speed_mps)
+
+
+CANDIDATES = tuple(_candidate(AIRFRAMES[code]) for code in sorted(AIRFRAMES))

@@ -9,11 +9,11 @@ from drf_spectacular.utils import extend_schema_field
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
-from simulation.end_reasons import reason_words
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
+from simulation.vehicle_models import reason_words
 from workspace.api import strict_serializers as serializers
 
 SPEEDS = (1, 2, 5, 10)
@@ -30,7 +30,7 @@ NOT_OF_THE_FLEET = gettext_lazy(
 
 @extend_schema_field({"oneOf": [{"type": "string"}, {"type": "object", "additionalProperties": {}}]})
 class ConditionsField(serializers.JSONField):
-    """A name, or an object; read by simulation.views.skies."""
+    """A name, or an object; read by simulation.views.rehearsals."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)

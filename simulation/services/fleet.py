@@ -7,8 +7,7 @@ from missions.models import MissionUav, UavType
 from planning.energy.performance import PERFORMANCE_KEYS, performance_from_json
 from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe
-from simulation.rehearsing.airframe_choice import nearest_airframe
-from simulation.rehearsing.candidates import CANDIDATES
+from simulation.rehearsing.airframe_choice import CANDIDATES, nearest_airframe
 
 CHOSEN, NEAREST = "chosen", "nearest"  # why it flies: said for the type, or the nearest by speed, mass and endurance
 

@@ -10,32 +10,35 @@ from uuid import UUID
 from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read
 from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
+from missions.services.commands.refused import Reason, Refused
 from missions.services.missions import note
-from simulation.assessment.finding import Finding, Level, worst
 from simulation.assessment.flown import FlownRoute
 from simulation.assessment.judging import Verdict, judge, wind_finding
-from simulation.assessment.limits import Limits, limits_to_json
+from simulation.assessment.limits import Finding, Level, Limits, limits_to_json, worst
 from simulation.assessment.stored import track_to_json, verdict_to_json
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said
 from simulation.flight.states import Mode, Outcome, Severity, UavState
 from simulation.flight.uav import SimulatedUav
-from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
+from simulation.models import Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack, VerdictLevel
 from simulation.rehearsing.flying import MakeVehicle, Start, Vehicle, fly
 from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.sky_weather import weather_of
-from simulation.rehearsing.weather_scenario import Sky, sky_from_json, sky_to_json
+from simulation.rehearsing.weather_scenario import Named, Sky, named_sky, sky_from_json, sky_to_json
+from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.fleet import StandIn, stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan, surroundings_of
-from simulation.vehicle_protocol.havens import havens_of
+from simulation.vehicle_protocol.fence import havens_of
+from workspace.audit import record_change
 from workspace.jobs.services import cancel_job, create_job_within, finish_job
-from workspace.models import Job, User
+from workspace.models import Job, Organisation, User
 
 REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
 REHEARSE = "simulation.tasks.rehearse_mission"
@@ -281,3 +284,49 @@ def _forget_old(mission: Mission) -> None:
     keys = list(Rehearsal.objects.filter(mission=mission).order_by("-created_at").values_list("pk", flat=True)[KEPT:])
     for old in Rehearsal.objects.filter(pk__in=keys).exclude(job__state__in=("queued", "running")).select_related("job"):
         old.delete()
+
+
+def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
+    """Why a mission may not be approved yet, and what to do; none where nobody asks for a rehearsal."""
+    if not requires_green(mission.organisation_id):
+        return []
+    try:
+        plan = plan_to_fly(mission)
+    except Refused as refused:
+        return list(refused.reasons)
+    newest = newest_finished(mission.pk, plan.content_sha256)
+    if newest is None:
+        if rehearsals_of_mission(mission.organisation, mission.pk).exclude(level="").exists():
+            words = _("The plan has changed since it was rehearsed. Rehearse it again: your organisation approves only what has passed.")
+            return [Reason("rehearsal_outdated", words)]
+        return [Reason("not_rehearsed", _("Rehearse the mission first: your organisation approves only what has passed."))]
+    if newest.level == VerdictLevel.FAIL:
+        words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
+        return [Reason("rehearsal_failed", words)]
+    if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
+        words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")
+        return [Reason("rehearsal_without_planned_conditions", words)]
+    if not newest.runs.filter(conditions=sky_to_json(named_sky(Named.AS_PLANNED, plan.conditions))).exists():
+        words = _("The mission is planned for other wind or temperature than it was rehearsed in. Rehearse it again.")
+        return [Reason("rehearsal_in_other_air", words)]
+    if not _is_on_this_ground(newest, plan):
+        words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
+        return [Reason("rehearsal_on_other_ground", words)]
+    return []
+
+
+def _is_on_this_ground(rehearsal: Rehearsal, plan: PlanToFly) -> bool:
+    """Whatever has changed elsewhere since. The revision does not tell: a newer network of the same ground has other towers and wires."""
+    return rehearsal.ground_sha256 == ground_of_plan(plan, planning_read().ground())
+
+
+def set_rule(*, organisation: Organisation, actor: User, requires: bool) -> RehearsalRule:
+    with transaction.atomic():
+        before = requires_green(organisation.pk)
+        rule, _made = RehearsalRule.objects.update_or_create(organisation=organisation, defaults={"requires_green": requires})
+        if before != requires:
+            record_change(
+                organisation=organisation, actor=actor, action="changed", subject_type="rehearsal rule", subject_id=organisation.pk,
+                before={"requires_green": before}, after={"requires_green": requires},
+            )  # fmt: skip
+    return rule

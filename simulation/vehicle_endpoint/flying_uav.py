@@ -9,9 +9,9 @@ from simulation.flight.faults import Faults, Weather
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_endpoint.radio import Radio
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from simulation.vehicle_protocol.signed_link import SignedLink
-from simulation.vehicle_protocol.stations import Outgoing, Station
+from simulation.vehicle_protocol.streams import Outgoing, Station
 
 
 @dataclass

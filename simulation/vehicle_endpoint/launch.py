@@ -12,7 +12,7 @@ from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 
 MAX_SYSTEM_ID = 250  # those above are ground stations
 METRES_PER_DEGREE = 111_195.0

@@ -7,7 +7,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.vehicle_protocol.item_rules import ABOVE_SEA, PLACED_FRAMES
-from simulation.vehicle_protocol.stations import Outgoing, Station
+from simulation.vehicle_protocol.streams import Outgoing, Station
 
 E7 = 1e7
 NO_PLACE_E7 = 2**31 - 1  # of COMMAND_INT: as NaN in COMMAND_LONG

@@ -13,22 +13,18 @@ from mavlink.frames import Message
 from mavlink.mission_items import position_e7
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight import events
-from simulation.flight.settings import Settings
+from simulation.flight.airframe import Settings
 from simulation.flight.states import Refused, Severity, UavState
 from simulation.vehicle_protocol import requests
 from simulation.vehicle_protocol.command_door import NotFinite, acknowledgement, command_of
-from simulation.vehicle_protocol.fence import fence_of
-from simulation.vehicle_protocol.fence_watch import MODES, FenceAction, FenceWatch
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.havens import havens_of
+from simulation.vehicle_protocol.fence import MODES, FenceAction, FenceWatch, fence_of, havens_of
 from simulation.vehicle_protocol.mission_server import MissionServer
-from simulation.vehicle_protocol.mode_numbers import AUTO
+from simulation.vehicle_protocol.mode_numbers import AUTO, Flavour
 from simulation.vehicle_protocol.parameters import parameters_of, settings_at_start
 from simulation.vehicle_protocol.pilot import DENIED, FAILED, UNSUPPORTED, Pilot
 from simulation.vehicle_protocol.reports import REPORTS, Report, heartbeat, mission_current
 from simulation.vehicle_protocol.requests import Requests
-from simulation.vehicle_protocol.stations import Outgoing, Station, is_for
-from simulation.vehicle_protocol.streams import Streams
+from simulation.vehicle_protocol.streams import Outgoing, Station, Streams, is_for
 from simulation.vehicle_protocol.vehicle import Vehicle
 
 PIECE = 50  # bytes of one STATUSTEXT

@@ -7,7 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight.orders import MAX_HEIGHT_M, CannotFly, orders
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 
 MAX_ITEMS = {
     Flavour.PX4: {MissionType.MISSION: 2_000, MissionType.FENCE: 64, MissionType.RALLY: 32},

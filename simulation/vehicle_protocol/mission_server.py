@@ -14,9 +14,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
 from mavlink.vehicle_plan import MissionItem, MissionType
-from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.item_rules import MAX_ITEMS, refusal_of, refusal_of_list
-from simulation.vehicle_protocol.stations import Outgoing, Station
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Outgoing, Station
 
 E7 = 1e7
 _MAX_E7 = 2**31 - 1

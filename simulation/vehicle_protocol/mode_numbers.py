@@ -4,9 +4,29 @@ Sources: PX4's px4_custom_mode.h (main mode and sub mode), ArduCopter's mode.h.
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.flight.states import Mode
-from simulation.vehicle_protocol.flavour import Flavour
+
+
+class Flavour(StrEnum):
+    """PX4 flies item 0 of its list; on ArduPilot item 0 is home, and is not flown."""
+
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+
+    @property
+    def autopilot(self) -> int:
+        """MAV_AUTOPILOT."""
+        return int(mavlink.MAV_AUTOPILOT_PX4 if self is Flavour.PX4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA)
+
+    @property
+    def first_item(self) -> int:
+        """The number of the first item that is flown."""
+        return 0 if self is Flavour.PX4 else 1
+
 
 PX4_AUTO, PX4_POSITION = 4, 3
 PX4_SUB_MODES = {Mode.TAKE_OFF: 2, Mode.HOLD: 3, Mode.GO_TO: 3, Mode.MISSION: 4, Mode.RETURN: 5, Mode.LAND: 6}

@@ -10,9 +10,9 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from simulation.flight.settings import Settings
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.stations import Outgoing, Station
+from simulation.flight.airframe import Settings
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Outgoing, Station
 
 BY_NAME = -1
 REAL32 = mavlink.MAV_PARAM_TYPE_REAL32

@@ -12,12 +12,12 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from inspection.geodesy import LonLat
 from simulation.flight.states import DONE, Mode, Outcome, Refused
 from simulation.vehicle_protocol.command_door import Command
-from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.item_rules import begins_with_take_off
 from simulation.vehicle_protocol.mode_numbers import (
     COPTER_BY_HAND,
     COPTER_NOT_ARMABLE,
     GUIDED,
+    Flavour,
     ShownMode,
     ordered_mode,
     px4_number,

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
 from simulation.flight.states import Landed, MissionState, UavState
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 
 E7 = 1e7
 UNKNOWN_U16 = 65_535

@@ -8,11 +8,10 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
 from simulation.vehicle_protocol.command_door import Command
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from simulation.vehicle_protocol.pilot import ACCEPTED, DENIED, UNSUPPORTED
 from simulation.vehicle_protocol.reports import REPORTS, Report, home
-from simulation.vehicle_protocol.stations import Outgoing, Station
-from simulation.vehicle_protocol.streams import Streams
+from simulation.vehicle_protocol.streams import Outgoing, Station, Streams
 
 CAPABILITIES = (
     mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT

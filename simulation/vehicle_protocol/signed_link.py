@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 from mavlink.frames import Frame, Message
 from mavlink.signing import EPOCH_UNIX_S, UNITS_PER_S, FrameWriter, Refusal, SignatureCheck
-from simulation.vehicle_protocol.stations import AUTOPILOT
+from simulation.vehicle_protocol.streams import AUTOPILOT
 
 
 @dataclass

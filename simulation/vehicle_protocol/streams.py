@@ -2,10 +2,13 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from simulation.vehicle_protocol.flavour import Flavour
+from mavlink.frames import Message
+from simulation.vehicle_protocol.mode_numbers import Flavour
 
 # Seconds of simulated time. What MAVSDK, MAVProxy and a gateway need without asking.
 INTERVALS_S = {
@@ -77,3 +80,33 @@ class Streams:
     def interval_us(self, message: int) -> int:
         """As MESSAGE_INTERVAL has it."""
         return round(self._intervals_s[message] * 1e6) if message in self._intervals_s else -1
+
+
+AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1, the one component there is
+
+
+@dataclass(frozen=True, slots=True)
+class Station:
+    """A component of another system, and the link by which it was heard: two stations may bear the same ids."""
+
+    system: int
+    component: int
+    link: int = 0
+
+    @property
+    def ends(self) -> tuple[int, int]:
+        """As messages name whom they are for."""
+        return (self.system, self.component)
+
+
+@dataclass(frozen=True, slots=True)
+class Outgoing:
+    """`to` is None for what everybody is told."""
+
+    message: Message
+    to: Station | None = None
+
+
+def is_for(message: Any, system: int) -> bool:
+    """Whether a vehicle with this system id has to do with it: 0 names all, a message without a target is for all."""
+    return getattr(message, "target_system", 0) in (0, system) and getattr(message, "target_component", 0) in (0, AUTOPILOT)

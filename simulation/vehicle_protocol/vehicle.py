@@ -5,8 +5,8 @@ from typing import Protocol
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from simulation.flight.airframe import Settings
 from simulation.flight.events import Event
-from simulation.flight.settings import Settings
 from simulation.flight.states import Haven, Mode, Outcome, UavState
 
 

@@ -14,11 +14,11 @@ from missions.selectors.fleet import types_of_organisation
 from simulation import selectors
 from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe
-from simulation.rehearsing.candidates import CANDIDATES
+from simulation.rehearsing.airframe_choice import CANDIDATES
 from simulation.selectors import chosen_airframe
 from simulation.serializers import shapes
 from simulation.services.fleet import airframe_of_type
-from simulation.services.green_verdict import set_rule
+from simulation.services.rehearsals import set_rule
 from workspace.api.permissions import ADMINISTRATORS, InTheBrowserAlone
 from workspace.api.signed_in import SignedInRequest
 from workspace.audit import record_change

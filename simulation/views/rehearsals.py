@@ -1,5 +1,6 @@
 """Rehearsals of missions: start, look, follow, cancel."""
 
+from collections.abc import Sequence
 from typing import Any
 from uuid import UUID
 
@@ -11,19 +12,19 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
+from inspection.views.parameters import invalid
 from missions.models import Mission
 from missions.services.commands.refused import Refused
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals
-from planning.energy.conditions import conditions_from_json
+from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
 from simulation import selectors
 from simulation.models import Rehearsal
-from simulation.rehearsing.weather_scenario import Named
+from simulation.rehearsing.weather_scenario import Named, Sky, named_sky, own_sky
 from simulation.serializers import shapes
 from simulation.serializers.representations import planned_points, rehearsal_detail_json, rehearsal_json, track_json
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal, start_rehearsal
-from simulation.views.skies import skies_of
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import page_of
@@ -33,6 +34,23 @@ from workspace.api.whole_numbers import WholeNumber
 from workspace.jobs.services import TooManyJobs
 from workspace.models import User
 from workspace.tasks import send_job_on_commit
+
+
+def skies_of(asked: Sequence[Any], planned: Conditions) -> list[Sky]:
+    """Names and own figures, given the conditions that were planned with. Raises ApiProblem."""
+    return [sky_of(entry, planned, f"conditions.{number}") for number, entry in enumerate(asked)]
+
+
+def sky_of(entry: Any, planned: Conditions, place: str = "conditions") -> Sky:
+    """Raises ApiProblem, with `place` as where the fault stands."""
+    try:
+        return named_sky(Named(entry), planned) if isinstance(entry, str) else own_sky(entry, planned)
+    except InvalidConditions as error:
+        raise invalid(f"{place}.{error.place}", f"{error.place} {error.message}.") from error
+    except ValueError as error:
+        names = ", ".join(str(code) for code in Named if code is not Named.OWN)
+        raise invalid(place, f"{entry!r} is none of {names}.") from error
+
 
 NEWEST_FIRST = ("-created_at", "-pk")
 USUAL = (Named.AS_PLANNED,)

@@ -35,7 +35,7 @@ from simulation.services.simulations import (
 )
 from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
-from simulation.views.skies import sky_of
+from simulation.views.rehearsals import sky_of
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, page_of

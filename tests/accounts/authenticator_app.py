@@ -6,8 +6,7 @@ from html import unescape
 from django.test import Client
 from django.utils import timezone
 
-from accounts.one_time_codes import STEP_S, code_of
-from accounts.second_factors import set_up
+from accounts.second_factors import STEP_S, code_of, set_up
 from workspace.field_encryption import unseal
 from workspace.models import SecondFactor, User
 

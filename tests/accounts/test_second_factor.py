@@ -12,8 +12,17 @@ from django.test import Client, override_settings
 from django.utils import timezone
 
 from accounts.login import HALF_IN, HALF_IN_S
-from accounts.one_time_codes import bare, code_of, matching_step, new_recovery_codes
-from accounts.second_factors import TRIES, TooManyCodes, WrongCode, seal_with_the_key_of_today, try_code
+from accounts.second_factors import (
+    TRIES,
+    TooManyCodes,
+    WrongCode,
+    bare,
+    code_of,
+    matching_step,
+    new_recovery_codes,
+    seal_with_the_key_of_today,
+    try_code,
+)
 from tests.accounts.authenticator_app import (
     SEED,
     code_now,

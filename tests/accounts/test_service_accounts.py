@@ -11,7 +11,7 @@ from django.db import IntegrityError, transaction
 from django.test import Client
 from django.utils import timezone
 
-from accounts.service_accounts import make_service_account
+from accounts.services import make_service_account
 from accounts.users import NoAdministratorLeft, delete_person, save_person
 from tests.accounts.users import client_of, somebody
 from tests.workspace.api.described_answers import openapi_document

@@ -9,7 +9,7 @@ from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
 
-from accounts.sign_in_log import forget_old_sign_ins
+from accounts.login import forget_old_sign_ins
 from tests.accounts.users import client_of, somebody
 from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Organisation, Role, SignInEntry, User

@@ -19,7 +19,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
-from accounts.reauthentication import PROOF_S
+from accounts.login import PROOF_S
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES, save_picture

@@ -15,7 +15,7 @@ from prometheus_client.parser import text_string_to_metric_families
 from config import system_metrics
 from operation import metrics
 from operation.exposition import metrics_text
-from simulation.simulator import figures as simulator_figures
+from simulation.simulator import process as simulator_process
 from telemetry.gateway import figures as gateway_figures
 from tests.accounts.users import client_of, somebody
 
@@ -34,7 +34,7 @@ def own_names() -> Iterator[tuple[str, tuple[str, ...]]]:
                 endings = {"counter": ("_total",), "histogram": ("_bucket", "_sum", "_count"), "gauge": ("",)}[family.type]
                 for ending in endings:
                     yield f"{family.name}{ending}", (*metric._labelnames, *(("le",) if ending == "_bucket" else ()))
-    for module in (gateway_figures, simulator_figures, system_metrics):
+    for module in (gateway_figures, simulator_process, system_metrics):
         for one in module.DESCRIBED:
             yield one.name + ("_total" if one.is_counter else ""), tuple(one.labels)
 

@@ -8,8 +8,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from simulation.flight.airframe import Settings
 from simulation.flight.events import Armed, Disarmed, Event, ItemReached, LandedAt, MissionEnded, ModeChanged, TookOff
-from simulation.flight.settings import Settings
 from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, UavState
 
 STEP_S = 0.04

@@ -27,8 +27,8 @@ from missions.services.commands.refused import Refused
 from missions.services.commands.start_slots import reasons_to_wait
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation
-from simulation.services.green_verdict import set_rule
 from simulation.services.idle_twins import retire_idle_twins
+from simulation.services.rehearsals import set_rule
 from simulation.services.simulations import end_now
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post

@@ -13,7 +13,7 @@ from mavlink.mission_items import flight_loads
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from tests.telemetry.estimation.simulated import simulated_flight
 
 BEGUN_UNIX_S = 1_790_000_000.0

@@ -16,7 +16,7 @@ from django.test import Client
 from django.utils import timezone
 from drf_spectacular.generators import SchemaGenerator
 
-from accounts.service_accounts import make_service_account
+from accounts.services import make_service_account
 from missions.models import (
     Base,
     CommandKind,

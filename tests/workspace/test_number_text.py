@@ -3,7 +3,7 @@
 import pytest
 from django.utils.translation import override
 
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Middleware: each request in the language and the time zone of whoever asks, and a note that they were here."""
 
+import ipaddress
 from collections.abc import Callable
 from contextlib import nullcontext
 from datetime import timedelta
@@ -54,3 +55,22 @@ def _whoever_has_signed_in(request: HttpRequest) -> User | None:
         User.objects.filter(pk=request.user.pk).update(last_seen_at=now)
         request.user.last_seen_at = now
     return request.user
+
+
+def visitor_address(peer: str, forwarded: str) -> str:
+    """Return the address of the visitor.
+
+    peer: who has opened the connection, empty over a unix socket. forwarded: X-Forwarded-For, of which only what our own proxy has
+    appended last counts, and only where the peer may be that proxy (SPANWISE_TRUSTED_PROXIES, or a unix socket).
+    """
+    last = forwarded.rpartition(",")[2].strip()
+    return last if last and _is_trusted(peer) else peer
+
+
+def _is_trusted(peer: str) -> bool:
+    try:
+        address = ipaddress.ip_address(peer)
+    except ValueError:  # a unix socket has no address: nobody but the proxy can open it
+        return True
+    address = getattr(address, "ipv4_mapped", None) or address
+    return any(address in network for network in settings.TRUSTED_PROXIES)

@@ -1,22 +1,25 @@
 """Limits on guessing passwords, counted in the cache, that keep nobody out of their own account.
 
 Who guesses is slowed down in three ways: by name and network, by network, and by name over all networks. A browser in which
-the name has signed in before (workspace/sessions/trusted_devices.py) is counted for itself, so it is free of what others do to the name.
+the name has signed in before (workspace/sessions/sign_in_attempts.py) is counted for itself, so it is free of what others do to the name.
 Without Redis each process counts for itself, so that there are as many tries more as there are processes.
 """
 
 import hashlib
 import ipaddress
 import logging
+import secrets
 from dataclasses import dataclass
 
+from django.conf import settings
+from django.core import signing
 from django.core.cache import cache
 from django.core.cache.backends.base import BaseCache
 from django.core.cache.backends.locmem import LocMemCache
-from django.http import HttpRequest
+from django.http import HttpRequest, HttpResponse
 
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
-from workspace.sessions.visitors import visitor_address
+from workspace.sessions.preferences import visitor_address
 
 WINDOW_S = 15 * 60
 TRIES = 5  # of one name from one network, or from one known browser
@@ -135,3 +138,41 @@ def _count(counts: BaseCache, key: str, most: int) -> int:
     if count > most:
         raise HeldBack(WINDOW_S)
     return most - count
+
+
+COOKIE = f"{settings.COOKIE_PREFIX}spanwise_known"
+SALT = "workspace.known_browsers"
+KEPT_S = 180 * 24 * 3_600
+MAX_PEOPLE = 5  # of one browser
+
+
+def mark_of(request: HttpRequest, name: str) -> str | None:
+    """The browser's mark for a name that has signed in here before."""
+    return dict(_entries(request)).get(_digest(name))
+
+
+def remember(request: HttpRequest, response: HttpResponse, name: str) -> None:
+    """Somebody has shown to be who they say, with this browser."""
+    mine = _digest(name)
+    others = [entry for entry in _entries(request) if entry[0] != mine]
+    entries = [(mine, secrets.token_urlsafe(12)), *others][:MAX_PEOPLE]
+    response.set_cookie(
+        COOKIE,
+        signing.dumps(entries, salt=SALT),
+        max_age=KEPT_S,
+        secure=settings.SESSION_COOKIE_SECURE,
+        httponly=True,
+        samesite="Lax",
+    )
+
+
+def _entries(request: HttpRequest) -> list[tuple[str, str]]:
+    try:
+        entries = signing.loads(request.COOKIES.get(COOKIE, ""), salt=SALT, max_age=KEPT_S)
+    except signing.BadSignature:
+        return []
+    return [(str(name), str(mark)) for name, mark in entries]
+
+
+def _digest(name: str) -> str:
+    return hashlib.sha256(name.casefold().encode()).hexdigest()[:24]

@@ -31,7 +31,7 @@ from planning.trajectory.route_points import line_of, with_short_legs
 from planning.trajectory.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import RoutePoints, WaypointKind, Waypoints
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 HIGHER_M = 0.05
 

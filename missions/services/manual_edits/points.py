@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 from inspection.geodesy import LonLat, distance_m, path_length_m
 from missions.services.manual_edits.stored_route import KeptWaypoint
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 MOVED_M = 0.1  # less is rounding
 MAX_WAYPOINTS = 5_000

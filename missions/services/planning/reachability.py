@@ -17,7 +17,7 @@ from planning.problem import UavStart
 from planning.reachability.reachability import Flight, reach
 from planning.reachability.reachable_assets import Reach, Verdict
 from planning.request import ROUTE_ENDS, BaseRequest, EndAction, PlanRequest, UavRequest
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 Box = tuple[float, float, float, float]
 CODES = {

@@ -19,7 +19,7 @@ from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, WrongPace
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.radio import WrongAddress, address_of
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 
 MAX_UAVS = 200
 KEY_LENGTH = 32

@@ -10,9 +10,8 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 
 from operation.program import program_begins
-from simulation.simulator.figures import figures_of
 from simulation.simulator.options import options_of_settings
-from simulation.simulator.process import Simulator
+from simulation.simulator.process import Simulator, figures_of
 from simulation.vehicle_endpoint.radio import WrongAddress
 
 ENDS_WITHIN_S = 9.5

@@ -10,8 +10,7 @@ from django.core.management import BaseCommand, CommandError, CommandParser
 from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import ImpossibleWeather, Weather
-from simulation.flight.route_file import InvalidRoute, read_route
-from simulation.flight.route_flight import fly_route
+from simulation.flight.route_flight import InvalidRoute, fly_route, read_route
 
 WIND_AGL_M = 10.0  # one layer is the wind at all heights
 MAX_BYTES = 10_000_000

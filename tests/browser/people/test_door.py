@@ -8,7 +8,7 @@ from time import time
 import pytest
 from playwright.sync_api import Page, expect
 
-from accounts.one_time_codes import STEP_S, code_of
+from accounts.second_factors import STEP_S, code_of
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.people.test_account import account, newcomer
 from tests.browser.pictures import THEMES

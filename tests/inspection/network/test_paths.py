@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.network.legs import Attachment, DirectLeg, NoWay
+from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.paths.contracted_graph import CORE, condense
-from inspection.network.paths.passed import BEND, passed_on
 from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import route_index
 from tests.inspection.network import search_oracle

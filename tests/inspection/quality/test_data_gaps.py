@@ -9,7 +9,7 @@ from django.db import connection
 
 from inspection.models import Asset, DataGap, GapSearch, GapState
 from inspection.quality.network import Network
-from inspection.quality.search import search
+from inspection.quality.repair import search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.services import find_gaps, import_osm
 from inspection.services.gaps import SEARCH_LOCK, dismiss_gap, gaps_are_current

@@ -6,7 +6,7 @@ import pytest
 from inspection.network.build.edges import component_labels
 from inspection.quality.infrastructure import Gap, GapGround
 from inspection.quality.network import Network
-from inspection.quality.search import search
+from inspection.quality.repair import search
 from inspection.quality.supports import course_of_row
 from inspection.serializers.gaps import sentence, title
 from tests.inspection.quality.drawn import at, ground, row

@@ -14,7 +14,7 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.paths.passed import BEND, passed_on
+from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.paths.paths import DIRECT
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, Ways, ways_between

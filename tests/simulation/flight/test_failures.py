@@ -6,11 +6,10 @@ from dataclasses import replace
 import pytest
 
 from inspection.geodesy import LonLat
-from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.airframe import AIRFRAMES, OwnAction, Settings
 from simulation.flight.events import Crashed, ModeChanged, Said
 from simulation.flight.faults import Faults, ImpossibleFault
 from simulation.flight.flown import Ending, fly_mission
-from simulation.flight.settings import OwnAction, Settings
 from simulation.flight.states import Landed, Mode, Refused
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, begin, land, off_m, place, reached, step, take_off, waypoint

@@ -6,9 +6,8 @@ import pytest
 from pymavlink.dialects.v20 import common as mavlink
 
 from mavlink.vehicle_plan import MissionItem
-from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.airframe import AIRFRAMES, Settings
 from simulation.flight.events import Armed, Disarmed
-from simulation.flight.settings import Settings
 from simulation.flight.states import Landed, MissionState, Mode, Refused
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, at, off_m, place, plain, step, take_off, waypoint

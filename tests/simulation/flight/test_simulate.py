@@ -13,8 +13,7 @@ from django.core.management import CommandError, call_command
 
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Weather
-from simulation.flight.route_file import MAX_WAYPOINTS, InvalidRoute, RouteFile, items_of, read_route
-from simulation.flight.route_flight import cross_track_m, fly_route
+from simulation.flight.route_flight import MAX_WAYPOINTS, InvalidRoute, RouteFile, cross_track_m, fly_route, items_of, read_route
 from tests.simulation.flight.lists import HOME, off_m, place, wind
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -6,8 +6,7 @@ import pytest
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending
-from simulation.flight.route_file import RouteFile
-from simulation.flight.route_flight import RouteFlight, fly_route
+from simulation.flight.route_flight import RouteFile, RouteFlight, fly_route
 from tests.simulation.flight.lists import HOME, off_m, place, wind
 from tests.simulation.flight.track_oracle import beside_m
 

@@ -15,8 +15,7 @@ from mavlink.vehicle_plan import MissionType
 from simulation.flight.plant import FlatGround
 from simulation.flight.states import Mode
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.mode_numbers import GUIDED
+from simulation.vehicle_protocol.mode_numbers import GUIDED, Flavour
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 
 SPEED = 20.0

@@ -17,7 +17,7 @@ from mavsdk.plugins.telemetry import Telemetry
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from tests.simulation.fleets import AT, TIMEOUT_S, flying, free_port, wait_for
 
 SPEED = 20.0

@@ -9,7 +9,7 @@ from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground

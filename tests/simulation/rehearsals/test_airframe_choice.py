@@ -3,8 +3,7 @@
 import pytest
 
 from planning.energy.performance import Performance
-from simulation.rehearsing.airframe_choice import nearest_airframe
-from simulation.rehearsing.candidates import CANDIDATES
+from simulation.rehearsing.airframe_choice import CANDIDATES, nearest_airframe
 
 
 @pytest.mark.parametrize(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from simulation.assessment.finding import Level
 from simulation.assessment.flown import Ending, FlownFlight, FlownRoute
 from simulation.assessment.following import following_of
 from simulation.assessment.judging import Verdict, judge
+from simulation.assessment.limits import Level
 from simulation.assessment.obstacles import nearest_standing
 from simulation.assessment.stored import track_to_json, verdict_to_json
 from tests.simulation.flown import LIMITS, UP_M, a_route, a_track, around, flown, rows, standing, zones

@@ -19,9 +19,8 @@ from missions.services.commands.refused import Refused
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
 from simulation.rehearsing.flying import RouteToFly
 from simulation.serializers.words import reason_of
-from simulation.services.green_verdict import reasons_without_rehearsal, set_rule
 from simulation.services.plan_to_fly import content_of, plan_to_fly
-from simulation.services.rehearsals import cancel_rehearsal
+from simulation.services.rehearsals import cancel_rehearsal, reasons_without_rehearsal, set_rule
 from simulation.tasks import rehearse_mission
 from tests.inspection.ground import tower
 from tests.missions import worlds

@@ -6,8 +6,8 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.stations import Outgoing, Station
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Outgoing, Station
 from tests.simulation.kinematic_uav import STEP_S, KinematicUav
 
 SYSTEM = 7

@@ -10,9 +10,9 @@ from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mission_server import as_kept
-from simulation.vehicle_protocol.stations import Station
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import KinematicUav
 from tests.simulation.vehicle_protocol.talk import SYSTEM, UNIX_S, over_the_wire
 from tests.telemetry.vehicles.channel import Channel, Link

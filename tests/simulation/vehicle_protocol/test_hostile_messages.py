@@ -13,8 +13,8 @@ from mavlink.signing import FrameWriter
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.stations import Station
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import HOME, KinematicUav
 
 SEEDS = [*range(6), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(6, 60))]

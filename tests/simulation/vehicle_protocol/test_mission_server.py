@@ -6,9 +6,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
-from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mission_server import MAX_REQUESTS, REQUEST_INTERVAL_S
-from simulation.vehicle_protocol.stations import Station
+from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import TO, Talk, kinds, only
 from tests.telemetry.vehicles.loads import mission, polygon, rally, waypoint

@@ -11,7 +11,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import FlatGround
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import TO, Talk, kinds, only
 from tests.telemetry.vehicles.loads import mission

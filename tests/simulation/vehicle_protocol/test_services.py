@@ -10,7 +10,7 @@ from mavlink.decoding.report import TextCollector
 from mavlink.mission_sync.limits import PARAMETERS as LEG_LIMITS
 from mavlink.rtl import own_return
 from simulation.vehicle_protocol.endpoint import text_messages
-from simulation.vehicle_protocol.flavour import Flavour
+from simulation.vehicle_protocol.mode_numbers import Flavour
 from simulation.vehicle_protocol.streams import INTERVALS_S, Streams
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import SYSTEM, TO, UNIX_S, Talk, kinds, only, over_the_wire

@@ -25,8 +25,7 @@ from simulation.flight.events import ItemReached
 from simulation.flight.faults import Weather
 from simulation.flight.states import MissionState, Mode
 from simulation.flight.uav import SimulatedUav
-from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.mode_numbers import usual_number
+from simulation.vehicle_protocol.mode_numbers import Flavour, usual_number
 from telemetry.estimation.knowledge import Knowledge
 from tests.simulation.rehearsals.planned_flights import planned_timing, usable_wh
 from tests.telemetry.estimation.heard import reports_of

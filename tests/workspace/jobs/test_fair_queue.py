@@ -9,9 +9,8 @@ from django.db import connection
 from django.utils import timezone
 
 from tests.accounts.users import somebody
-from workspace.jobs.fair_queue import next_waiting, start_fair_job
 from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
-from workspace.jobs.services import LEASE_S, create_job, finish_job, requeue_lost_jobs, start_job
+from workspace.jobs.services import LEASE_S, create_job, finish_job, next_waiting, requeue_lost_jobs, start_fair_job, start_job
 from workspace.models import Job, JobState, Organisation, User
 
 READ = "inspection.tasks.read_proposal"

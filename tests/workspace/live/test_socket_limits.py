@@ -13,8 +13,8 @@ from websocket import WebSocket, create_connection
 
 from tests.accounts.users import client_of, somebody
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
-from workspace.live import socket_places
-from workspace.live.socket_places import SocketPlaces
+from workspace.live import sockets
+from workspace.live.sockets import SocketPlaces
 from workspace.models import User
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -101,8 +101,8 @@ def test_those_of_all_live_programs_are_counted_together(here: Door) -> None:
 
 
 def test_those_of_a_killed_program_are_counted_until_their_lifetime_ends(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(socket_places, "LIFETIME_S", 2)
-    monkeypatch.setattr(socket_places, "RENEW_INTERVAL_S", 0.2)
+    monkeypatch.setattr(sockets, "LIFETIME_S", 2)
+    monkeypatch.setattr(sockets, "RENEW_INTERVAL_S", 0.2)
     limits = {f"user {somebody().pk}": 2}
 
     async def scenario() -> None:
@@ -121,7 +121,7 @@ def test_those_of_a_killed_program_are_counted_until_their_lifetime_ends(monkeyp
 
 
 def test_open_ones_are_counted_again_after_redis_has_lost_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(socket_places, "RENEW_INTERVAL_S", 0.2)
+    monkeypatch.setattr(sockets, "RENEW_INTERVAL_S", 0.2)
     place = f"user {somebody().pk}"
 
     async def scenario() -> None:

@@ -11,8 +11,15 @@ from django.test import Client
 
 from workspace.models import SignInEntry, SignInOutcome, User
 from workspace.sessions import sign_in_attempts
-from workspace.sessions.sign_in_attempts import TRIES, TRIES_BEFORE_A_NAME_IS_SLOW, TRIES_OF_A_NETWORK, HeldBack, network_of, try_to_sign_in
-from workspace.sessions.trusted_devices import COOKIE
+from workspace.sessions.sign_in_attempts import (
+    COOKIE,
+    TRIES,
+    TRIES_BEFORE_A_NAME_IS_SLOW,
+    TRIES_OF_A_NETWORK,
+    HeldBack,
+    network_of,
+    try_to_sign_in,
+)
 
 pytestmark = pytest.mark.django_db
 PASSWORD = "inspect-the-lines"

@@ -8,8 +8,8 @@ from django.test import Client
 from tests.workspace.sessions.test_sign_in_limits import PASSWORD
 from workspace.live.sockets import _address_of
 from workspace.models import User
+from workspace.sessions.preferences import visitor_address
 from workspace.sessions.sign_in_attempts import TRIES
-from workspace.sessions.visitors import visitor_address
 
 STRANGER, OWNER, PROXY = "203.0.113.1", "203.0.113.2", "10.3.0.9"
 
