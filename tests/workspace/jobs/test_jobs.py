@@ -276,7 +276,7 @@ def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any)
     Job.objects.update(result={"routes": []}, state=JobState.DONE)
     client = client_of(user)
     client.get("/api/v1/jobs")
-    with django_assert_num_queries(4):  # session, user, organisation, jobs
+    with django_assert_num_queries(3):  # session, user with organisation, jobs
         listed = client.get("/api/v1/jobs").json()["results"]
     assert len(listed) == len(jobs)
     assert "result" not in listed[0]
