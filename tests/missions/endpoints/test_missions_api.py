@@ -59,7 +59,7 @@ def test_a_reopened_mission_names_its_targets_as_the_list_of_assets_does(client:
     number_supports()
     targets = [*here.towers, here.line, here.bridge, {"position": [10.0, 56.3]}]
     mission = post(client, "missions", mission_body(*targets)).json()
-    with django_assert_num_queries(9):  # session, user with organisation, mission, UAVs, targets, routes, changed UAVs, ground, its open job
+    with django_assert_num_queries(9):  # session, user and organisation, mission, UAVs, targets, routes, changed UAVs, ground, open job
         opened = client.get(f"/api/v1/missions/{mission['id']}").json()
     names = [(target["label"], target["detail"]) for target in opened["targets"]]
     assert names[:6] == [(f"Tower {place} of 6", "110 kV AEP") for place in range(1, 7)]
