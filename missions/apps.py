@@ -3,6 +3,7 @@
 from django.apps import AppConfig
 
 from workspace.admin_pages.field_labels import label
+from workspace.jobs.result_texts import register_result_texts
 
 
 class MissionsConfig(AppConfig):
@@ -13,3 +14,4 @@ class MissionsConfig(AppConfig):
         from inspection.auto_apply_hooks import register_check  # noqa: PLC0415 (models are there by then)
 
         register_check("missions.selectors.flown_infrastructure.flown_missions_touched")
+        register_result_texts("missions.tasks.solve_plan", "missions.reason_texts.plan_with_texts")

@@ -9,13 +9,14 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
-from inspection.network.build.obstacles import too_tall_walls, with_walls
+from inspection.network.build.obstacles import WALL, too_tall_walls, with_walls
 from inspection.network.export import by_length
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray, ZoneTable
 from planning.connection_points import AccessRules
 from planning.context import PlanningContext
+from planning.reasons import Reason
 from planning.rules import FlightRules
 
 NEAR_SHARE = 0.5  # of what a plan extends over, on each side; paths lead farther round only where nothing nearer is left
@@ -130,7 +131,10 @@ def airspace_on(
     return Airspace(context, graph, flyable, with_walls(zones, walls), leg_zones, access, is_by_length)
 
 
-def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> str | None:
+ZoneName = str | Reason  # a name as stated, or what stands for one
+
+
+def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> ZoneName | None:
     """Return the name of the zone that holds the position between this height above ground and that of the flight to it.
 
     A place nearer to a zone than the clearance counts as inside it.
@@ -142,10 +146,10 @@ def zone_at(position: LonLat, airspace: Airspace, agl_m: float = 0.0) -> str | N
     if not zones.contains([position], clearance_m, low_m, high_m)[0]:
         return None
     found = zones.zone_at(position, low_m, high_m)
-    return found[1] if found else clearance_text(airspace)
+    return _name(found[1]) if found else _margin(airspace)
 
 
-def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> str | None:
+def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> ZoneName | None:
     """Return the name of the first zone that a stretch meets at the heights of its inspection and of the flight to it."""
     line = np.array(course)
     low_m, high_m = column_m(agl_m, airspace)
@@ -155,12 +159,16 @@ def zone_along(course: Sequence[LonLat], agl_m: float, airspace: Airspace) -> st
     for leg in met.tolist():
         found = airspace.zones.first_met(course[leg], course[leg + 1], low_m, high_m)
         if found is not None:
-            return found[1]
-    return clearance_text(airspace)
+            return _name(found[1])
+    return _margin(airspace)
 
 
-def clearance_text(airspace: Airspace) -> str:
-    return f"the {airspace.access.zone_clearance_m:g} m around a no-fly zone"
+def _name(name: str) -> ZoneName:
+    return Reason("obstacle_margin") if name == WALL else name
+
+
+def _margin(airspace: Airspace) -> Reason:
+    return Reason("zone_margin", {"margin_m": airspace.access.zone_clearance_m})
 
 
 def column_m(agl_m: float, airspace: Airspace) -> tuple[float, float]:

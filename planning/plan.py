@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from planning.energy.charging import ChargingStop
+from planning.reasons import Reason
 from planning.request import EndAction, PlanRequest
 from planning.separation.separation import Separation
 from planning.trajectory.heights import FloatArray
@@ -46,25 +47,30 @@ class Shortfall:
 class UnassignedTarget:
     """A target that no route visits; `target` is its place in the request.
 
-    missing: metres or Wh without which no UAV can do it even alone, 0 where one could; None where that has no number. `shortfall` is
-    what the message tells. uavs: those that the message speaks of, by their places in the request.
+    `reason` is one of the API's, `why` tells more: what keeps it from every route first, then what belongs to that. missing: metres or Wh
+    without which no UAV can do it even alone, 0 where one could; None where that has no number. `shortfall` is what `why` tells. uavs:
+    those that it speaks of, by their places in the request.
     """
 
     target: int
     reason: str
-    message: str
+    why: tuple[Reason, ...]
     missing: float | None = None
     shortfall: Shortfall | None = None
     uavs: tuple[int, ...] = ()
 
+    def is_for(self, code: str) -> bool:
+        """Whether a reason with this code is among why."""
+        return any(reason.code == code for reason in self.why)
+
 
 @dataclass(frozen=True)
 class PlanWarning:
-    """What the operator should know of a plan; `uav` by its number in the request, None where it is about all."""
+    """What the operator should know of a plan; `uav` by its number in the request, None where it is about all. code: one of the API's."""
 
     code: str
     uav: int | None
-    message: str
+    why: Reason
 
 
 @dataclass(frozen=True, eq=False)

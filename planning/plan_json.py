@@ -10,7 +10,8 @@ import orjson
 from inspection.geodesy import path_length_m
 from planning.energy.charging import ChargingStop
 from planning.energy.conditions import conditions_to_json
-from planning.plan import ALL_PLANS, Plan, PlannedRoute, Shortfall
+from planning.plan import ALL_PLANS, Plan, PlannedRoute, PlanWarning, Shortfall
+from planning.reasons import Reason
 from planning.request import lock_to_json, moment_to_json, task_to_json
 from planning.separation.report import separation_json
 from planning.trajectory.heights import FloatArray
@@ -119,7 +120,7 @@ def plan_to_json(plan: Plan, *, as_text: bool = False) -> dict[str, Any]:
         "terrain": FLAT_GROUND if flat_ground_assumed else TERRAIN_MODEL,
         **plan.quality,
         "locks": [lock_to_json(lock) for lock in request.locks],
-        "warnings": [{"code": warning.code, "uav": warning.uav, "message": warning.message} for warning in plan.warnings],
+        "warnings": [warning_to_json(warning) for warning in plan.warnings],
         "routes": [
             {
                 "uav": uav.name,
@@ -142,7 +143,7 @@ def plan_to_json(plan: Plan, *, as_text: bool = False) -> dict[str, Any]:
             for uav, route, length_m in zip(request.uavs, routes, lengths_m, strict=True)
         ],
         "unassigned": [
-            {"target": item.target, "reason": item.reason, "message": item.message, **shortfall_to_json(item.shortfall)}
+            {"target": item.target, "reason": item.reason, **why_to_json(item.why), **shortfall_to_json(item.shortfall)}
             for item in sorted(plan.unassigned, key=lambda item: item.target)
         ],
     }
@@ -163,6 +164,15 @@ def straight_json(position: FloatArray, kind: IntArray, target: IntArray, length
     stops = position[(kind != PASS) | (target != NONE)]
     straight_m = path_length_m(np.ascontiguousarray(stops))
     return {"straight_m": round(straight_m, 1), "more_m": round(max(0.0, length_m - straight_m), 1)}
+
+
+def why_to_json(why: Sequence[Reason]) -> dict[str, Any]:
+    """The reasons, and their English text."""
+    return {"message": " ".join(map(str, why)), "why": [reason.to_json() for reason in why]}
+
+
+def warning_to_json(warning: PlanWarning) -> dict[str, Any]:
+    return {"code": warning.code, "uav": warning.uav, **why_to_json([warning.why])}
 
 
 def shortfall_to_json(shortfall: Shortfall | None) -> dict[str, float | None]:

@@ -21,10 +21,10 @@ from planning.explain.other_limits import with_other_limits
 from planning.plan import Plan, PlannedRoute, PlanWarning
 from planning.problem import Objective, Priority
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
+from planning.reasons import Reason
 from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
 
-SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
 MAX_SOLVER_CALLS = 40  # of one plan
 MAX_ROUNDS = 6  # of more zones each, for the widest choice of zones and for the narrowest
 
@@ -230,20 +230,18 @@ def _plan(context: PlanningContext, best: CheckedPlan, freest: CheckedPlan, call
 def _warnings(
     context: PlanningContext, request: PlanRequest, grounded: Mapping[int, Grounding], *, is_by_length: bool
 ) -> list[PlanWarning]:
-    found = [PlanWarning(why.code, number, why.message) for number, why in grounded.items()]
-    in_air = "%s is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen."
+    found = [PlanWarning(grounding.code, number, grounding.why) for number, grounding in grounded.items()]
     found += [
-        PlanWarning("uav_in_air", number, in_air % uav.name)
+        PlanWarning("uav_in_air", number, Reason("uav_in_air", {"uav": uav.name}))
         for number, uav in enumerate(request.uavs)
         if uav.uav in context.in_air and number not in grounded
     ]
     if is_by_length:
-        found.append(PlanWarning("shortest_ways", None, SHORTEST_WAYS))
+        found.append(PlanWarning("shortest_ways", None, Reason("shortest_paths")))
     if request.conditions.is_calm:
         return found
-    unknown = "%s states no top airspeed: it is taken to fly no faster than its speed, through the air."
     return found + [
-        PlanWarning("airspeed_not_stated", number, unknown % uav.name)
+        PlanWarning("airspeed_not_stated", number, Reason("airspeed_not_stated", {"uav": uav.name}))
         for number, uav in enumerate(request.uavs)
         if number not in grounded and uav.performance.max_airspeed_mps is None
     ]

@@ -10,6 +10,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from planning.reasons import Reason
+
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
@@ -350,7 +352,7 @@ class Problem:
 Routes = tuple[tuple[int, ...], ...]  # visits in order, one tuple per UAV
 
 
-class Reason(StrEnum):
+class UnassignedReason(StrEnum):
     """Why a target is not visited."""
 
     NO_PATH = "no_path"
@@ -364,12 +366,13 @@ class Reason(StrEnum):
 class Unassigned:
     """missing: metres or Wh that the UAV which comes nearest to it lacks, 0 where it is in reach alone; None for other reasons.
 
-    `uav` is the one that lacks them, by its number in the problem with a row for each UAV.
+    `uav` is the one that lacks them, by its number in the problem with a row for each UAV. A problem has no names: where `why` has a
+    param `uav`, whoever has them puts it in.
     """
 
     target: int
-    reason: Reason
-    message: str
+    reason: UnassignedReason
+    why: Reason
     missing: float | None = None
     uav: int | None = None
 

@@ -22,7 +22,8 @@ APP_FOLDERS = (
     "accounts", "config", "inspection", "mavlink", "missions", "operation", "planning", "results", "simulation", "telemetry", "workspace"
 )  # fmt: skip
 PLANNER_FOLDERS = ("planning", "missions/routing", "missions/flight_plan", "missions/services")
-PLAN_ENTRIES = ("missions.services.planning.planner", "missions.services.planning")  # the first that exists is where a plan request enters
+# The first that exists is where a plan request enters.
+PLAN_ENTRIES = ("planning.planner", "missions.services.planning.planner", "missions.services.planning")
 SMALL_MODULE_LINES = 80
 MAX_FOLDER_FILES = 20
 MAX_PARAMETERS = 8

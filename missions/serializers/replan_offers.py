@@ -6,6 +6,7 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.models import OfferState, ReplanOffer
+from missions.reason_texts import why_text
 from workspace.message_rendering import in_words
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
@@ -47,6 +48,8 @@ def difference_in_words(difference: Mapping[str, Any]) -> dict[str, Any]:
     for part, told in (("uavs", "why"), ("targets", "message")):
         if part in shown:
             shown[part] = [{**entry, told: in_words(entry[told])} for entry in shown[part]]
+    if "targets" in shown:
+        shown["targets"] = [{**entry, "message": why_text(entry.get("why", ()), entry["message"])} for entry in shown["targets"]]
     return shown
 
 

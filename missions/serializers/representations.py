@@ -7,6 +7,7 @@ import numpy as np
 
 from inspection.selectors import asset_detail, asset_label
 from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
+from missions.reason_texts import why_text, with_texts
 from missions.selectors.mission_list import ListedMission, sketch
 from missions.selectors.missions import approval_in_force, open_plan_of_mission
 from missions.selectors.stale_plans import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
@@ -148,7 +149,7 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
         "attributes": row.attributes,
         "state": row.state,
         "unassigned_reason": row.unassigned_reason,
-        "unassigned_message": row.unassigned_message,
+        "unassigned_message": why_text(row.unassigned_why, row.unassigned_message),
     }
 
 
@@ -174,13 +175,14 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
         "terrain": FLAT_GROUND if mission.flat_ground_assumed else TERRAIN_MODEL,
         **(NO_QUALITY | {name: value for name, value in (mission.plan_quality or {}).items() if name in NO_QUALITY}),
         "locks": mission.locks,
-        "warnings": mission.plan_warnings,
+        "warnings": with_texts(mission.plan_warnings),
         "routes": [_route(route, mission, sequence_of) for route in mission.routes.all()],
         "unassigned": [
             {
                 "target": target.sequence,
                 "reason": target.unassigned_reason,
-                "message": target.unassigned_message,
+                "message": why_text(target.unassigned_why, target.unassigned_message),
+                "why": target.unassigned_why,
                 **(NO_SHORTFALL | target.unassigned_missing),
             }
             for target in mission.targets.all()

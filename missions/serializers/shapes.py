@@ -86,6 +86,11 @@ class RouteSerializer(serializers.Serializer):
     waypoints = WaypointSerializer(many=True)
 
 
+class WhySerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same; see planning/reasons.py")
+    params = serializers.DictField(help_text="what fills the sentence: names, numbers in the unit of the name's end, other reasons")
+
+
 class UnassignedSerializer(serializers.Serializer):
     target = serializers.IntegerField()
     reason = serializers.ChoiceField(
@@ -95,6 +100,7 @@ class UnassignedSerializer(serializers.Serializer):
         ]
     )  # fmt: skip
     message = serializers.CharField(help_text="with what is missing, where that has a number, and the minutes of flight that it is")
+    why = WhySerializer(many=True, help_text="the same for programs: the reason first, then what belongs to it")
     missing_m = serializers.FloatField(allow_null=True, help_text="of range, for the UAV that comes nearest to it")
     missing_wh = serializers.FloatField(allow_null=True, help_text="of the battery, for the UAV that comes nearest to it")
     missing_s = serializers.FloatField(
@@ -108,6 +114,7 @@ class WarningSerializer(serializers.Serializer):
     )
     uav = serializers.IntegerField(allow_null=True, help_text="index of the UAV; null: of the whole plan")
     message = serializers.CharField()
+    why = WhySerializer(many=True, help_text="the same for programs")
 
 
 class PlanLockSerializer(serializers.Serializer):

@@ -210,5 +210,6 @@ def _store_left_out(mission: Mission, plan: dict[str, Any]) -> None:
     for row in rows:
         row.unassigned_reason = left_out[row.sequence]["reason"]
         row.unassigned_message = left_out[row.sequence]["message"][:500]
+        row.unassigned_why = left_out[row.sequence].get("why", [])
         row.unassigned_missing = {name: left_out[row.sequence].get(name) for name in NO_SHORTFALL}
-    mission.targets.bulk_update(rows, ["unassigned_reason", "unassigned_message", "unassigned_missing"])
+    mission.targets.bulk_update(rows, ["unassigned_reason", "unassigned_message", "unassigned_why", "unassigned_missing"])

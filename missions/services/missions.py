@@ -241,7 +241,7 @@ def drop_plan(*, mission: Mission) -> None:
     """Back to a draft; the caller holds the row and saves it. The plan that goes is remembered in short."""
     mission.last_plan = summary_of_plan(mission=mission) or mission.last_plan
     mission.routes.all().delete()
-    mission.targets.update(unassigned_reason="", unassigned_message="", unassigned_missing={})
+    mission.targets.update(unassigned_reason="", unassigned_message="", unassigned_why=[], unassigned_missing={})
     mission.state = MissionState.DRAFT
     mission.planned_at = mission.graph_version = mission.ground_revision = mission.flat_ground_assumed = None
     mission.total_length_m = mission.longest_route_m = mission.total_energy_wh = None

@@ -11,6 +11,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import services
+from missions.reason_texts import plan_with_texts
 from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
@@ -91,7 +92,7 @@ class PlanList(APIView):
         asked = PlanInputSerializer.read_request(request.data, request.user.organisation)
         with api_problems():
             if is_small(len(asked.targets)):
-                return Response(services.make_plan(request=asked, as_text=True))
+                return Response(plan_with_texts(services.make_plan(request=asked, as_text=True)))
             services.resolved_targets(asked.targets)  # says at once what a worker would find wrong later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
 

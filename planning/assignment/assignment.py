@@ -14,6 +14,7 @@ from planning.energy.assignment_costs import FlightCosts
 from planning.energy.duration import ready_s
 from planning.plan import ALL_PLANS, WITHOUT_TIMED_ZONES
 from planning.problem import Amounts, BoolArray, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
+from planning.reasons import Reason
 from planning.request import EndAction, LockRequest, PlanRequest, UavRequest
 from planning.rules import FlightRules
 from planning.solver.exact import MAX_TARGETS
@@ -38,7 +39,7 @@ class Assignment:
 
     problem: Problem
     free: Problem | None
-    held_back: dict[int, str]
+    held_back: dict[int, tuple[Reason, ...]]
 
 
 def least_ready_s(action: EndAction, cruise_speed_mps: float, targets_agl_m: Sequence[float], rules: FlightRules) -> float:
@@ -141,7 +142,7 @@ def allowed_visits(
     return allowed[:, [visit.target for visit in visits]]
 
 
-def _without(problem: Problem, held_back: dict[int, str]) -> BoolArray | None:
+def _without(problem: Problem, held_back: dict[int, tuple[Reason, ...]]) -> BoolArray | None:
     if not held_back:
         return problem.allowed
     allowed = np.ones((len(problem.uavs), len(problem.visits)), dtype=bool) if problem.allowed is None else problem.allowed
@@ -151,24 +152,24 @@ def _without(problem: Problem, held_back: dict[int, str]) -> BoolArray | None:
 
 def _runs(
     request: PlanRequest, uavs: Sequence[int], targets: Sequence[ResolvedTarget], grounded: Mapping[int, Grounding]
-) -> tuple[dict[int, str], tuple[Lock, ...]]:
+) -> tuple[dict[int, tuple[Reason, ...]], tuple[Lock, ...]]:
     """What is left of runs that cannot be flown, with the reason, and the runs that can."""
     start_of = {request.uavs[uav].name: start for start, uav in enumerate(uavs)}
-    on_the_ground = {request.uavs[uav].name: grounding.message for uav, grounding in grounded.items()}
+    on_the_ground = {request.uavs[uav].name: grounding.why for uav, grounding in grounded.items()}
     place_of = {target.target: number for number, target in enumerate(targets)}
-    held_back: dict[int, str] = {}
+    held_back: dict[int, tuple[Reason, ...]] = {}
     locks: list[Lock] = []
     for lock in request.locks:
         if lock.uav in on_the_ground:
-            held_back |= _held(lock, place_of, f"It is locked to {lock.uav}. {on_the_ground[lock.uav]}")
+            held_back |= _held(lock, place_of, (Reason("locked_to_grounded", {"uav": lock.uav}), on_the_ground[lock.uav]))
         elif any(target not in place_of for target in lock.targets):
-            held_back |= _held(lock, place_of, "It is locked to others of which one cannot be reached: the run is left out as a whole.")
+            held_back |= _held(lock, place_of, (Reason("locked_to_unreachable"),))
         else:
             locks.append(Lock(start_of[lock.uav], tuple(place_of[target] for target in lock.targets), lock.at_start, lock.at_end))
     return held_back, tuple(locks)
 
 
-def _held(lock: LockRequest, place_of: dict[int, int], why: str) -> dict[int, str]:
+def _held(lock: LockRequest, place_of: dict[int, int], why: tuple[Reason, ...]) -> dict[int, tuple[Reason, ...]]:
     return {place_of[target]: why for target in lock.targets if target in place_of}
 
 

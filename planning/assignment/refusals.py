@@ -10,6 +10,7 @@ from planning.airspace import Airspace, zone_along, zone_at
 from planning.connection_points import tallest_support_m
 from planning.context import ResolvedTarget
 from planning.plan import UnassignedTarget
+from planning.reasons import Reason
 from planning.request import UavRequest
 from planning.trajectory.heights import inspection_agl_m, is_above_limit
 
@@ -17,7 +18,7 @@ RETIRED = "retired"  # a state of stored UAVs; every other one out of service is
 
 
 def deleted_target(target: int) -> UnassignedTarget:
-    return UnassignedTarget(target, "asset_gone", "The asset has been deleted since it was picked.")
+    return UnassignedTarget(target, "asset_gone", (Reason("asset_deleted"),))
 
 
 def refused_target(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarget | None:
@@ -25,18 +26,16 @@ def refused_target(target: ResolvedTarget, airspace: Airspace) -> UnassignedTarg
     height_m = target_height_m(target, airspace)
     agl_m = inspection_agl_m(height_m, airspace.flight)
     if is_above_limit(height_m, airspace.flight):
-        needed_m = height_m + airspace.flight.clearance_m
-        limit_m = airspace.flight.max_agl_m
-        message = f"It is {height_m:.0f} m high: a UAV would have to fly at {needed_m:.0f} m, above the limit of {limit_m:.0f} m."
-        return UnassignedTarget(target.target, "above_height_limit", message)
+        figures = {"height_m": height_m, "needed_m": height_m + airspace.flight.clearance_m, "limit_m": airspace.flight.max_agl_m}
+        return UnassignedTarget(target.target, "above_height_limit", (Reason("above_height_limit", figures),))
     if target.is_stretch:
         zone = zone_along(target.course, agl_m, airspace)
         if zone is not None:
-            return UnassignedTarget(target.target, "inside_zone", f"It runs through {zone}.")
+            return UnassignedTarget(target.target, "inside_zone", (Reason("runs_through_zone", {"zone": zone}),))
     else:
         zone = zone_at(target.course[0], airspace, agl_m)
         if zone is not None:
-            return UnassignedTarget(target.target, "inside_zone", f"It stands inside {zone}.")
+            return UnassignedTarget(target.target, "inside_zone", (Reason("stands_inside_zone", {"zone": zone}),))
     return None
 
 
@@ -52,10 +51,10 @@ def target_height_m(target: ResolvedTarget, airspace: Airspace) -> float:
 
 @dataclass(frozen=True)
 class Grounding:
-    """Why a UAV stays on the ground."""
+    """Why a UAV stays on the ground. code: one of the API's."""
 
     code: str
-    message: str
+    why: Reason
 
 
 def groundings(uavs: Sequence[UavRequest], airspace: Airspace) -> dict[int, Grounding]:
@@ -65,9 +64,9 @@ def groundings(uavs: Sequence[UavRequest], airspace: Airspace) -> dict[int, Grou
         zone = zone_at(uav.position, airspace)
         state = None if uav.uav is None else airspace.context.out_of_service.get(uav.uav)
         if state == RETIRED:
-            found[number] = Grounding("uav_out_of_service", f"{uav.name} is retired and flies no more.")
+            found[number] = Grounding("uav_out_of_service", Reason("uav_retired", {"uav": uav.name}))
         elif state is not None:
-            found[number] = Grounding("uav_out_of_service", f"{uav.name} is in maintenance and does not fly.")
+            found[number] = Grounding("uav_out_of_service", Reason("uav_in_maintenance", {"uav": uav.name}))
         elif zone is not None:
-            found[number] = Grounding("uav_inside_zone", f"{uav.name} stands inside {zone} and cannot take off.")
+            found[number] = Grounding("uav_inside_zone", Reason("uav_inside_zone", {"uav": uav.name, "zone": zone}))
     return found

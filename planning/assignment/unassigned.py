@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from planning.airspace import ZoneName
 from planning.assignment.assignment import Assignment
 from planning.assignment.options import has_sensor, may_do
 from planning.assignment.refusals import Grounding
@@ -14,14 +15,14 @@ from planning.connection_points import Ways, is_near_network
 from planning.context import ResolvedTarget
 from planning.energy.power import power_w
 from planning.plan import Shortfall, UnassignedTarget
-from planning.problem import End, Objective, Problem, Reason, Unassigned
+from planning.problem import End, Objective, Problem, Unassigned, UnassignedReason
+from planning.reasons import MAX_NAMED, Reason
 from planning.request import PlanRequest, TargetRequest, UavRequest
-from planning.solver.reach import NEAREST, needed_range_m, reachable
+from planning.solver.reach import needed_range_m, reachable
 
-LOCKED = " It is locked to others: the run is left out as a whole."
+LOCKED = Reason("locked_run")
 WIND = "wind"
-TOO_STRONG = "The wind is too strong on every way to it, or back."
-MAX_NAMED = 3  # UAVs that a reason names
+NEEDS_UAV = {"beyond_range", "beyond_battery"}  # reasons of the solver, which has no names
 
 
 def explained_unassigned(
@@ -30,7 +31,7 @@ def explained_unassigned(
     uavs: Sequence[int],
     asked: Assignment,
     grounded: Mapping[int, Grounding],
-    no_landing: Mapping[int, str],
+    no_landing: Mapping[int, ZoneName],
     kept_from: Mapping[int, Collection[int]],
 ) -> list[UnassignedTarget]:
     """Return the solver's reasons in full. no_landing: zones in which UAVs would land at targets, by their numbers among those routed;
@@ -40,46 +41,52 @@ def explained_unassigned(
     found = []
     for item in unassigned:
         target, visits = routing.targets[item.target], visits_of[item.target]
-        if item.target in no_landing and item.reason is Reason.NO_PATH:
-            message = f"To land there is to fly through {no_landing[item.target]}."
-            found.append(UnassignedTarget(target.target, "inside_zone", message))
+        if item.target in no_landing and item.reason is UnassignedReason.NO_PATH:
+            landing = Reason("lands_through_zone", {"zone": no_landing[item.target]})
+            found.append(UnassignedTarget(target.target, "inside_zone", (landing,)))
             continue
         not_charged = [uav for uav, kept in kept_from.items() if target.target in kept]
-        if not_charged and item.reason is Reason.NOT_ALLOWED:
-            message = _does_not_last(not_charged, request)
-            found.append(UnassignedTarget(target.target, Reason.BEYOND_ENERGY.value, message, uavs=tuple(not_charged)))
+        if not_charged and item.reason is UnassignedReason.NOT_ALLOWED:
+            too_small = (_battery_too_small(not_charged, request),)
+            found.append(UnassignedTarget(target.target, UnassignedReason.BEYOND_ENERGY.value, too_small, uavs=tuple(not_charged)))
             continue
         if item.target in asked.held_back:
-            found.append(UnassignedTarget(target.target, Reason.NOT_ALLOWED.value, asked.held_back[item.target]))
+            found.append(UnassignedTarget(target.target, UnassignedReason.NOT_ALLOWED.value, asked.held_back[item.target]))
             continue
+        why: tuple[Reason, ...]
         named: tuple[int, ...] = () if item.uav is None else (uavs[item.uav],)
-        if item.reason is Reason.MAX_TARGETS:
+        if item.reason is UnassignedReason.MAX_TARGETS:
             able = _able(asked.problem, uavs, visits)
-            reason, message = item.reason.value, _all_have_enough(request.targets[target.target], able, request)
+            reason, why = item.reason.value, (_all_full(request.targets[target.target], able, request),)
             named = tuple(able)
         else:
-            reason, message = _why(item, request.targets[target.target], request, asked, visits, ways, grounded) or _way_barred(
+            reason, why = _why(item, request.targets[target.target], request, asked, visits, ways, grounded) or _path_barred(
                 target, item, asked.problem, visits, routing, grounded
             )
         missing = item.missing if reason == item.reason.value else None
         shortfall = None if not missing or item.uav is None else _shortfall(request.uavs[uavs[item.uav]], item.reason, missing)
-        if item.uav is not None:
-            message = message.replace(NEAREST, request.uavs[uavs[item.uav]].name)
-        told = message if shortfall is None else with_minutes(message, shortfall)
-        found.append(UnassignedTarget(target.target, reason, told + (LOCKED if item.target in in_runs else ""), missing, shortfall, named))
+        if named and why[0].code in NEEDS_UAV:
+            why = (_with(why[0], uav=request.uavs[named[0]].name), *why[1:])
+        if shortfall is not None:
+            why = (with_minutes(why[0], shortfall), *why[1:])
+        if item.target in in_runs:
+            why = (*why, LOCKED)
+        found.append(UnassignedTarget(target.target, reason, why, missing, shortfall, named))
     return found
 
 
-def _does_not_last(uavs: Sequence[int], request: PlanRequest) -> str:
+def _with(reason: Reason, **params: object) -> Reason:
+    return Reason(reason.code, {**reason.params, **params})
+
+
+def _battery_too_small(uavs: Sequence[int], request: PlanRequest) -> Reason:
     """uavs: those whose battery was tried, as their routes are drawn."""
-    names = " or ".join(request.uavs[uav].name for uav in uavs)
-    if any(request.may_charge(uav) for uav in uavs):
-        return f"However {names} charges on the way, the battery does not last for it."
-    return f"The battery of {names} does not last for it."
+    code = "battery_too_small_with_charging" if any(request.may_charge(uav) for uav in uavs) else "battery_too_small"
+    return Reason(code, {"any_uav": [request.uavs[uav].name for uav in uavs]})
 
 
-def _shortfall(uav: UavRequest, reason: Reason, missing: float) -> Shortfall:
-    return of_range(uav, missing) if reason is Reason.BEYOND_RANGE else of_battery(uav, missing)
+def _shortfall(uav: UavRequest, reason: UnassignedReason, missing: float) -> Shortfall:
+    return of_range(uav, missing) if reason is UnassignedReason.BEYOND_RANGE else of_battery(uav, missing)
 
 
 def _why(
@@ -90,12 +97,12 @@ def _why(
     visits: Sequence[int],
     ways: Ways,
     grounded: Mapping[int, Grounding],
-) -> tuple[str, str] | None:
+) -> tuple[str, tuple[Reason, ...]] | None:
     """Where a wish is what keeps the target from its route, that wish."""
-    if item.reason is Reason.NOT_ALLOWED:
+    if item.reason is UnassignedReason.NOT_ALLOWED:
         return item.reason.value, _nobody_may(target, request, grounded)
-    if item.reason is Reason.NO_PATH and _is_cut_off_from_bases(asked.problem, visits, ways):
-        return item.reason.value, "There is no way from it to a base that lies outside every no-fly zone."
+    if item.reason is UnassignedReason.NO_PATH and _is_cut_off_from_bases(asked.problem, visits, ways):
+        return item.reason.value, (Reason("no_path_to_base"),)
     return None
 
 
@@ -110,24 +117,24 @@ def _is_cut_off_from_bases(problem: Problem, visits: Sequence[int], ways: Ways) 
     )
 
 
-def _nobody_may(target: TargetRequest, request: PlanRequest, grounded: Mapping[int, Grounding]) -> str:
+def _nobody_may(target: TargetRequest, request: PlanRequest, grounded: Mapping[int, Grounding]) -> tuple[Reason, ...]:
     """Who could do it stays on the ground, and why; or nobody has the sensor."""
     if target.uav:
         tied = next((number for number, uav in enumerate(request.uavs) if uav.name == target.uav), None)
         if tied is not None and not has_sensor(request.uavs[tied], target.sensor):
-            return f"It is tied to {target.uav}, which does not have the sensor {target.sensor}."
+            return (Reason("tied_without_sensor", {"uav": target.uav, "sensor": target.sensor}),)
         if tied is not None and tied in grounded:
-            return f"It is tied to {target.uav}. {grounded[tied].message}"
-        return f"It is tied to {target.uav}, which cannot fly to it."
+            return Reason("tied_to_grounded", {"uav": target.uav}), grounded[tied].why
+        return (Reason("tied_to_unable", {"uav": target.uav}),)
     able = [number for number, uav in enumerate(request.uavs) if may_do(uav, target)]
     if able:
-        return " ".join([f"No UAV that can take off has the sensor {target.sensor}.", *_why_grounded(able, grounded)])
-    return f"No UAV of the plan has the sensor {target.sensor}."
+        return Reason("no_flying_uav_with_sensor", {"sensor": target.sensor}), *_why_grounded(able, grounded)
+    return (Reason("no_uav_with_sensor", {"sensor": target.sensor}),)
 
 
-def _why_grounded(uavs: Sequence[int], grounded: Mapping[int, Grounding]) -> list[str]:
+def _why_grounded(uavs: Sequence[int], grounded: Mapping[int, Grounding]) -> list[Reason]:
     """Of the first of these UAVs."""
-    return [grounded[uav].message for uav in uavs if uav in grounded][:MAX_NAMED]
+    return [grounded[uav].why for uav in uavs if uav in grounded][:MAX_NAMED]
 
 
 def _able(problem: Problem, uavs: Sequence[int], visits: Sequence[int]) -> list[int]:
@@ -136,42 +143,42 @@ def _able(problem: Problem, uavs: Sequence[int], visits: Sequence[int]) -> list[
     return [uavs[start] for start in np.flatnonzero(within).tolist()]
 
 
-def _all_have_enough(target: TargetRequest, able: Sequence[int], request: PlanRequest) -> str:
+def _all_full(target: TargetRequest, able: Sequence[int], request: PlanRequest) -> Reason:
     """Each UAV that could do it alone has its most: which they are, where they are few."""
     if target.uav:
-        return f"It is tied to {target.uav}, which has as many targets as it may have."
+        return Reason("tied_to_full", {"uav": target.uav})
     if not able or len(able) > MAX_NAMED:
-        return "Each UAV that can do it has as many targets as it may have."
+        return Reason("all_uavs_full")
     full = [request.uavs[uav] for uav in able]
     if len(full) == 1:
-        return f"{full[0].name} has as many targets as it may have ({full[0].most_targets})."
-    return f"{', '.join(uav.name for uav in full[:-1])} and {full[-1].name} have as many targets as they may have."
+        return Reason("uav_full", {"uav": full[0].name, "most": full[0].most_targets})
+    return Reason("uavs_full", {"uavs": [uav.name for uav in full[:-1]], "last": full[-1].name})
 
 
-def _way_barred(
+def _path_barred(
     target: ResolvedTarget,
     item: Unassigned,
     problem: Problem,
     visits: Sequence[int],
     routing: RoutingInput,
     grounded: Mapping[int, Grounding],
-) -> tuple[str, str]:
-    """Where the solver found no way, whether that is the distance to the network or the zones around."""
+) -> tuple[str, tuple[Reason, ...]]:
+    """Where the solver found no path, whether that is the distance to the network or the zones around."""
     ways, airspace = routing.ways, routing.airspace
-    if item.reason is not Reason.NO_PATH:
-        return item.reason.value, item.message
+    if item.reason is not UnassignedReason.NO_PATH:
+        return item.reason.value, (item.why,)
     if not ways.uavs:
-        return item.reason.value, " ".join([item.message, *_why_grounded(sorted(grounded), grounded)])
+        return item.reason.value, (item.why, *_why_grounded(sorted(grounded), grounded))
     if _is_stopped_by_wind(problem, visits):
-        return WIND, TOO_STRONG
-    reach = f"{airspace.access.access_leg_m / 1_000:g} km"
+        return WIND, (Reason("wind_too_strong"),)
+    reach = {"reach_km": airspace.access.access_leg_m / 1_000}
     if not any(ways.entry_legs[visit] for visit in visits):
         if any(is_near_network(airspace.graph, end, airspace.access.access_leg_m) for end in (target.course[0], target.course[-1])):
-            return Reason.NO_PATH.value, f"Every straight way to it from the network within {reach} meets a no-fly zone."
-        return "too_far_from_network", f"It is more than {reach} from the network."
+            return UnassignedReason.NO_PATH.value, (Reason("access_barred", reach),)
+        return "too_far_from_network", (Reason("too_far_from_network", reach),)
     if not any(ways.uav_legs):
-        return Reason.NO_PATH.value, f"No UAV has a clear way of up to {reach} to the network from where it stands."
-    return item.reason.value, item.message
+        return UnassignedReason.NO_PATH.value, (Reason("no_access_for_uavs", reach),)
+    return item.reason.value, (item.why,)
 
 
 def _is_stopped_by_wind(problem: Problem, visits: Sequence[int]) -> bool:
@@ -198,7 +205,6 @@ def of_battery(uav: UavRequest, wh: float) -> Shortfall:
     return Shortfall(wh * 3_600.0 / watts, wh=wh)
 
 
-def with_minutes(sentence: str, shortfall: Shortfall) -> str:
-    """The sentence, at whose end the shortfall stands, with its minutes; rounded up, as no less would do."""
-    minutes = math.ceil(shortfall.seconds / 6.0) / 10.0
-    return f"{sentence.removesuffix('.')}: {minutes:,.1f} min of flight."
+def with_minutes(reason: Reason, shortfall: Shortfall) -> Reason:
+    """The reason with the minutes of the shortfall; rounded up, as no less would do."""
+    return _with(reason, minutes=math.ceil(shortfall.seconds / 6.0) / 10.0)

@@ -7,13 +7,14 @@ from dataclasses import replace
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.checks.least_shortfall import LeastLacks, lack_wh
 from planning.plan import PlannedRoute, UnassignedTarget
+from planning.reasons import Reason
 from planning.trajectory.sorties import wh_of_sorties
 
 JUST_BELOW = 1e-3
 LEFT = 0.999  # of a share: what is counted is rounded
 MAX_TRIED = 40  # targets of a route that are left out of it one by one
 BEYOND_ENERGY = "beyond_energy"
-KEPT_BACK = "As drawn, over the ground and what stands tall, all routes that were tried with it take more than the battery may give."
+IN_EVERY_ROUTE = Reason("beyond_battery_in_every_route")
 
 
 def battery_overruns(found: CandidatePlan, routes: Sequence[PlannedRoute]) -> dict[int, float]:
@@ -87,7 +88,7 @@ def without_overruns(
     found: CandidatePlan, routes: Sequence[PlannedRoute], over: Collection[int]
 ) -> tuple[CandidatePlan, list[PlannedRoute]]:
     """The UAVs of these numbers stay on the ground, and what they would have done is left out."""
-    left_out = [UnassignedTarget(target, BEYOND_ENERGY, KEPT_BACK, uavs=(uav,)) for uav in over for target in routes[uav].targets]
+    left_out = [UnassignedTarget(target, BEYOND_ENERGY, (IN_EVERY_ROUTE,), uavs=(uav,)) for uav in over for target in routes[uav].targets]
     grounded = [
         PlannedRoute(end_action=found.request.end_action(number)) if number in over else route for number, route in enumerate(routes)
     ]

@@ -12,17 +12,18 @@ from planning.airspace import ZoneChoice
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.checks.battery import battery_overruns, not_lasting_for, without_overruns
 from planning.checks.wires import (
-    barred_after_others_text,
-    barred_text,
     barring_spans,
     targets_barred,
     targets_barred_after_others,
-    told_of_wires,
     walls_of_spans,
+    wires_after_others,
+    wires_in_the_way,
+    with_wires,
     without_routes_barred,
 )
 from planning.context import PlanningContext
 from planning.plan import PlannedRoute
+from planning.reasons import Reason
 
 MAX_ROUND = 6  # candidates in one airspace; after the last one UAVs whose routes cannot be flown stay on the ground
 SHARES_FROM = MAX_ROUND - 2  # from this candidate on a battery counts as smaller, and no target is kept from its UAV for it any more
@@ -50,7 +51,7 @@ class Constraints:
     kept_from: TargetsOfUavs = field(default_factory=dict)
     spans: frozenset[int] = frozenset()
     closed_spans: frozenset[int] = frozenset()
-    wires: Mapping[int, tuple[int, str]] = field(default_factory=dict)
+    wires: Mapping[int, tuple[int, Reason]] = field(default_factory=dict)
     number: int = 0
 
     @property
@@ -98,12 +99,12 @@ class Constraints:
         spans = frozenset[int]().union(*barring.values())
         if not spans <= self.spans:
             return replace(self, spans=self.spans | spans)
-        barred, text = targets_barred(found, barring), barred_text
+        barred, reason = targets_barred(found, barring), wires_in_the_way
         if not barred and not spans <= self.closed_spans:
             return replace(self, closed_spans=self.closed_spans | spans)
         if not barred:
-            barred, text = targets_barred_after_others(found, barring), barred_after_others_text
-        why = {target: (uav, text(found.request.uavs[uav].name)) for uav, targets in barred.items() for target in targets}
+            barred, reason = targets_barred_after_others(found, barring), wires_after_others
+        why = {target: (uav, reason(found.request.uavs[uav].name)) for uav, targets in barred.items() for target in targets}
         return replace(self._keeping(barred), wires={**self.wires, **why})
 
     def _after_overruns(self, found: CandidatePlan, conflicts: "Conflicts", *, is_firm: bool) -> "Constraints":
@@ -147,4 +148,4 @@ def without_conflicts(found: CandidatePlan, conflicts: Conflicts, constraints: C
     if conflicts:
         found, routes = without_overruns(found, routes, conflicts.overruns)
         found, routes = without_routes_barred(found, routes, conflicts.spans)
-    return replace(found, left_out=told_of_wires(found.left_out, constraints.wires)), routes
+    return replace(found, left_out=with_wires(found.left_out, constraints.wires)), routes

@@ -15,12 +15,13 @@ from planning.assignment.candidate_plan import CandidatePlan
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.context import PlanningContext
 from planning.plan import PlannedRoute, UnassignedTarget
-from planning.problem import Reason
+from planning.problem import UnassignedReason
+from planning.reasons import Reason
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import FloatArray
 
-NO_PATH = Reason.NO_PATH.value
+NO_PATH = UnassignedReason.NO_PATH.value
 FREE_AT_ENDS_M = 2.0 * BESIDE_M  # the towers at the ends of a wire that hangs too high between them can be flown to
 
 
@@ -97,24 +98,24 @@ def _is_barred(found: CandidatePlan, uav: int, order: Sequence[int]) -> bool:
     return route is not None and bool(barring_spans([route], found.airspace.context))
 
 
-def told_of_wires(left_out: Sequence[UnassignedTarget], why: Mapping[int, tuple[int, str]]) -> list[UnassignedTarget]:
+def with_wires(left_out: Sequence[UnassignedTarget], why: Mapping[int, tuple[int, Reason]]) -> list[UnassignedTarget]:
     """With the reasons for what was kept from UAVs, by their numbers, for wires, unless others lack the range for it."""
     return [
-        UnassignedTarget(item.target, NO_PATH, why[item.target][1], uavs=(why[item.target][0],))
-        if item.target in why and item.reason == Reason.BEYOND_ENERGY.value
+        UnassignedTarget(item.target, NO_PATH, (why[item.target][1],), uavs=(why[item.target][0],))
+        if item.target in why and item.reason == UnassignedReason.BEYOND_ENERGY.value
         else item
         for item in left_out
     ]
 
 
-def barred_text(uav: str) -> str:
+def wires_in_the_way(uav: str) -> Reason:
     """Why a target is left out to which that UAV could fly but for wires."""
-    return f"{uav} would have to pass a mast or wires that cannot be flown over."
+    return Reason("wires_in_the_way", {"uav": uav})
 
 
-def barred_after_others_text(uav: str) -> str:
+def wires_after_others(uav: str) -> Reason:
     """The same where the UAV could fly to it alone."""
-    return f"From its other targets {uav} would have to pass a mast or wires that cannot be flown over."
+    return Reason("wires_after_others", {"uav": uav})
 
 
 def without_routes_barred(
@@ -123,7 +124,7 @@ def without_routes_barred(
     """The UAVs of these numbers stay on the ground, and what they would have done is left out."""
     request = found.request
     left_out = [
-        UnassignedTarget(target, NO_PATH, barred_text(request.uavs[uav].name), uavs=(uav,))
+        UnassignedTarget(target, NO_PATH, (wires_in_the_way(request.uavs[uav].name),), uavs=(uav,))
         for uav in barred
         for target in routes[uav].targets
     ]

@@ -5,17 +5,16 @@ from dataclasses import replace
 
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.unassigned import LOCKED, of_battery, with_minutes
-from planning.checks.battery import KEPT_BACK
+from planning.checks.battery import IN_EVERY_ROUTE
 from planning.checks.least_shortfall import IsClear, Lack, LeastLacks
-from planning.checks.wires import NO_PATH, barred_text
+from planning.checks.wires import NO_PATH, wires_in_the_way
 from planning.plan import UnassignedTarget
-from planning.problem import End, Reason
+from planning.problem import UnassignedReason
+from planning.reasons import Reason
 from planning.request import PlanRequest, UavRequest
-from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
+from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE, THERE
 
-OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
-ALONE = "It is within what the battery may give alone, but not within what is left after the other targets."
-_THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
+OUT_OF_REACH = {UnassignedReason.BEYOND_RANGE.value, UnassignedReason.BEYOND_ENERGY.value}
 
 
 def with_lacks(found: CandidatePlan, is_clear: IsClear | None = None) -> list[UnassignedTarget]:
@@ -24,7 +23,7 @@ def with_lacks(found: CandidatePlan, is_clear: IsClear | None = None) -> list[Un
     is_clear: whether a drawn route keeps clear of all zones, where the plan stands on fewer: a way that does not is none.
     """
     told = list(found.left_out)
-    rows = [row for row, item in enumerate(told) if item.reason in OUT_OF_REACH and not item.message.endswith(LOCKED)]
+    rows = [row for row, item in enumerate(told) if item.reason in OUT_OF_REACH and not item.is_for(LOCKED.code)]
     if rows:
         lacks = LeastLacks(found, is_clear)
         for row in rows:
@@ -45,7 +44,7 @@ def least_missing(
         same = theirs.get(item.target)
         if item.reason in OUT_OF_REACH and item.missing and item.target in flown:
             alone = _alone(item.target, flown[item.target])
-            return replace(alone, message=alone.message + LOCKED) if item.message.endswith(LOCKED) else alone
+            return replace(alone, why=(*alone.why, LOCKED)) if item.is_for(LOCKED.code) else alone
         if same is None or item.reason not in OUT_OF_REACH:
             return item
         if item.missing is None:
@@ -55,7 +54,7 @@ def least_missing(
         if item.missing == 0.0 or same.missing == 0.0:
             return item if item.missing == 0.0 else same
         if item.reason != same.reason:
-            return item if item.reason == Reason.BEYOND_ENERGY.value else same
+            return item if item.reason == UnassignedReason.BEYOND_ENERGY.value else same
         return item if item.missing <= same.missing else same
 
     return [least(item) for item in plan]
@@ -63,42 +62,42 @@ def least_missing(
 
 def _told(item: UnassignedTarget, request: PlanRequest, lacks: LeastLacks) -> UnassignedTarget:
     """Who has the range, but was kept from a target, lacks the battery, even where the solver saw only the range of the others."""
-    by_range = item.reason == Reason.BEYOND_RANGE.value
+    by_range = item.reason == UnassignedReason.BEYOND_RANGE.value
     is_alone = by_range and not item.missing
     least = None if is_alone else lacks.of_battery(item.target)
     if least is None and not by_range:
         for target, uav in lacks.barred:
             if target == item.target:
-                return UnassignedTarget(target, NO_PATH, barred_text(request.uavs[uav].name), uavs=(uav,))
+                return UnassignedTarget(target, NO_PATH, (wires_in_the_way(request.uavs[uav].name),), uavs=(uav,))
     if least is None:
         is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
         if is_way or by_range:
             return item if is_way else replace(item, missing=None)
         anyhow = _told(item, request, LeastLacks(lacks.found))  # where zones are not in force: no less is missing
         return replace(anyhow, missing=None)
-    told = replace(item, reason=Reason.BEYOND_ENERGY.value)
+    told = replace(item, reason=UnassignedReason.BEYOND_ENERGY.value)
     if least.missing <= 0.0:
-        if item.message == KEPT_BACK:
+        if item.is_for(IN_EVERY_ROUTE.code):
             return replace(told, missing=0.0)
         return _alone(item.target, request.uavs[least.uav])
     shortfall = of_battery(request.uavs[least.uav], least.missing)
     return replace(
-        told, message=with_minutes(_message(least, request), shortfall), missing=least.missing, shortfall=shortfall, uavs=(least.uav,)
+        told, why=(with_minutes(_beyond_battery(least, request), shortfall),), missing=least.missing, shortfall=shortfall, uavs=(least.uav,)
     )
 
 
 def _alone(target: int, uav: UavRequest) -> UnassignedTarget:
     """What keeps it from the route of a UAV that could do it alone."""
     if uav.performance.usable_wh is not None:
-        return UnassignedTarget(target, Reason.BEYOND_ENERGY.value, ALONE, 0.0)
+        return UnassignedTarget(target, UnassignedReason.BEYOND_ENERGY.value, (Reason("in_reach_alone"),), 0.0)
     told = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
-    return UnassignedTarget(target, told.reason.value, told.message, 0.0)
+    return UnassignedTarget(target, told.reason.value, (told.why,), 0.0)
 
 
-def _message(lack: Lack, request: PlanRequest) -> str:
+def _beyond_battery(lack: Lack, request: PlanRequest) -> Reason:
     uav = request.uavs[lack.uav]
-    more = f"{lack.missing:,.1f} Wh more than the battery of {uav.name} may give."
+    figures = {"uav": uav.name, "missing_wh": lack.missing}
     if lack.route.lacks_wh > 0.0:
-        return f"However {uav.name} charges on the way, it alone takes up to {more}"  # fewer may do by ways that were not drawn
-    needed, there = f"{lack.missing + (uav.performance.usable_wh or 0.0):,.1f} Wh", _THERE[request.route_end(lack.uav)]
-    return f"Over the ground and what stands tall it takes {needed} {there}, {more}"
+        return Reason("beyond_battery_with_charging", figures)  # fewer may do by paths that were not drawn
+    needed_wh = lack.missing + (uav.performance.usable_wh or 0.0)
+    return Reason("beyond_battery_as_drawn", {**figures, "needed_wh": needed_wh, "there": THERE[request.route_end(lack.uav)]})

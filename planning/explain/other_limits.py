@@ -9,28 +9,37 @@ import numpy as np
 from planning.assignment.assignment import allowed_visits
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.options import has_sensor
-from planning.assignment.unassigned import LOCKED, MAX_NAMED, WIND, in_calm
+from planning.assignment.unassigned import LOCKED, WIND, in_calm
 from planning.checks.least_shortfall import LeastLacks
 from planning.plan import UnassignedTarget
-from planning.problem import BoolArray, Reason
+from planning.problem import BoolArray, UnassignedReason
+from planning.reasons import Reason
 from planning.request import PlanRequest
-from planning.solver.reach import NO_WAY, least_needs, needed_range_m
+from planning.solver.reach import least_needs, needed_range_m
+
+NO_PATH = "no_path"  # the code of the reason that no UAV has a path
 
 
 class Limit(StrEnum):
-    """In the order in which they are listed."""
+    """In the order in which they are listed; codes of reasons."""
 
-    GROUNDED = "cannot take off"
-    NO_SENSOR = "without the sensor"
-    NO_WAY = "no permitted route"
-    WIND = "wind too strong"
-    RANGE = "range too short"
-    BATTERY = "battery too small"
-    WIRES = "mast or wires in the way"
+    GROUNDED = "cannot_take_off"
+    NO_SENSOR = "without_sensor"
+    NO_PATH = "no_permitted_route"
+    WIND = "wind_too_strong_for"
+    RANGE = "range_too_short"
+    BATTERY = "battery_too_small_of"
+    WIRES = "wires_for"
 
 
-_OWN_LIMIT = {Reason.NO_PATH.value: Limit.NO_WAY, WIND: Limit.WIND}
-_EXPLAINED = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value, Reason.MAX_TARGETS.value, Reason.NO_PATH.value, WIND}
+_OWN_LIMIT = {UnassignedReason.NO_PATH.value: Limit.NO_PATH, WIND: Limit.WIND}
+_EXPLAINED = {
+    UnassignedReason.BEYOND_RANGE.value,
+    UnassignedReason.BEYOND_ENERGY.value,
+    UnassignedReason.MAX_TARGETS.value,
+    UnassignedReason.NO_PATH.value,
+    WIND,
+}
 
 
 def with_other_limits(found: CandidatePlan) -> list[UnassignedTarget]:
@@ -43,10 +52,10 @@ def with_other_limits(found: CandidatePlan) -> list[UnassignedTarget]:
         item
         for item in found.left_out
         if item.reason in _EXPLAINED
-        and (item.uavs or item.message == NO_WAY or item.reason == WIND)
+        and (item.uavs or item.is_for(NO_PATH) or item.reason == WIND)
         and item.target not in locked
         and not request.targets[item.target].uav
-        and not item.message.endswith(LOCKED)
+        and not item.is_for(LOCKED.code)
     ]
     if not asked:
         return list(found.left_out)
@@ -64,17 +73,11 @@ def _told(item: UnassignedTarget, request: PlanRequest, limits: "_Limits") -> Un
     own = None if item.uavs else of_kind.pop(_OWN_LIMIT[item.reason], None)
     if not of_kind:
         return item
-    message = item.message
-    if own is not None and item.message == NO_WAY:  # it is not so of every UAV
-        message = f"There is no permitted route for {_names(own)}."
-    others = "; ".join(f"{limit} ({_names(of_kind[limit])})" for limit in Limit if limit in of_kind)
-    return replace(item, message=f"{message} Other UAVs: {others}.")
-
-
-def _names(names: Sequence[str]) -> str:
-    """The first of them, and how many more there are."""
-    more = len(names) - MAX_NAMED
-    return ", ".join(names[:MAX_NAMED]) + (f" +{more}" if more > 0 else "")
+    why = item.why
+    if own is not None and item.is_for(NO_PATH):  # it is not so of every UAV
+        why = (Reason("no_path_for_uavs", {"uavs": own}),)
+    others = [Reason(limit.value, {"uavs": of_kind[limit]}) for limit in Limit if limit in of_kind]
+    return replace(item, why=(*why, Reason("other_uavs", {"limits": others})))
 
 
 class _Limits:
@@ -107,7 +110,7 @@ class _Limits:
         start, visits = self.found.uavs.index(uav), self._visits[target]
         limits, needed_m = self.found.problem.uavs[start], self._needed_m[start, visits]
         if not np.isfinite(needed_m).any():
-            yield Limit.WIND if self._is_in_reach_in_calm(start, visits) else Limit.NO_WAY
+            yield Limit.WIND if self._is_in_reach_in_calm(start, visits) else Limit.NO_PATH
         within = needed_m <= limits.limit_m
         if not within.any():
             yield Limit.RANGE

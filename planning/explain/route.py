@@ -184,7 +184,7 @@ def _best_order(request: PlanRequest, field: _Field, uav: int, targets: Sequence
 
 def _start(field: _Field, uav: int) -> int:
     if uav not in field.uav_of:
-        raise InvalidRequest({"uav": Reason("uav_inside_zone")})
+        raise InvalidRequest({"uav": Reason("uav_now_inside_zone")})
     return field.uav_of[uav]
 
 

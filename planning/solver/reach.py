@@ -7,25 +7,24 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
+from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Routes, Unassigned, UnassignedReason
+from planning.reasons import Reason
 from planning.solver.cheapest_route import LeastRoutes
 from planning.solver.cost_matrices import NO_WAY_M, Kind, classes_of, quantities_of
 
 
 class Told(NamedTuple):
-    """A reason with its sentence; what is missing, and which row of the problem comes so near."""
+    """A reason with what it tells; what is missing, and which row of the problem comes so near."""
 
-    reason: Reason
-    message: str
+    reason: UnassignedReason
+    why: Reason
     missing: float | None = None
     uav: int | None = None
 
 
-_THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
-NO_WAY = "No UAV can get there: no way on the network keeps clear of every zone."
-NEAREST = "the UAV that comes nearest to it"  # a problem has no names: who has them puts one in
-RANGE_ALONE = Told(Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0)
-NOT_ON_ONE_ROUTE = Told(Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.")
+THERE = {End.OPEN: Reason("there"), End.RETURN: Reason("there_and_back"), End.ANY_BASE: Reason("there_and_to_base")}
+RANGE_ALONE = Told(UnassignedReason.BEYOND_RANGE, Reason("in_range_alone"), 0.0)
+NOT_ON_ONE_ROUTE = Told(UnassignedReason.NO_PATH, Reason("not_on_one_route"))
 
 
 def needed_range_m(problem: Problem) -> FloatArray:
@@ -149,7 +148,7 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
                 told = _beyond_battery(problem, used_wh, within_range, visits)
         told = told or _beyond_rest(problem, able, done, visits)
         nearest = None if told.uav is None else list(dict.fromkeys(owner)).index(owner[told.uav])
-        found.append(Unassigned(target, told.reason, told.message, told.missing, nearest))
+        found.append(Unassigned(target, told.reason, told.why, told.missing, nearest))
     return tuple(found)
 
 
@@ -176,20 +175,18 @@ def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArra
     """Why no UAV gets there at all; None if one does, if its battery lasts."""
     needed_m, within = needed_m[:, visits], within_range[:, visits]
     if not len(problem.uavs):
-        return Told(Reason.NO_PATH, "There is no UAV that can take off.")
+        return Told(UnassignedReason.NO_PATH, Reason("no_uav_takes_off"))
     if visits and problem.allowed is not None and not problem.allowed[:, visits].any():
-        return Told(Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to.")
+        return Told(UnassignedReason.NOT_ALLOWED, Reason("no_uav_allowed"))
     if not np.isfinite(needed_m).any():
-        return Told(Reason.NO_PATH, NO_WAY)
+        return Told(UnassignedReason.NO_PATH, Reason("no_path"))
     if within.any():
         return None
     limit_m = np.array([uav.limit_m for uav in problem.uavs])
     missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
     uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
-    there = _THERE[problem.uavs[uav].end]
-    needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
-    message = f"It is {needed} {there}, {missing} more than the range of {NEAREST}."
-    return Told(Reason.BEYOND_RANGE, message, float(missing_m[uav, visit]), int(uav))
+    figures = {"needed_m": float(needed_m[uav, visit]), "there": THERE[problem.uavs[uav].end], "missing_m": float(missing_m[uav, visit])}
+    return Told(UnassignedReason.BEYOND_RANGE, Reason("beyond_range", figures), float(missing_m[uav, visit]), int(uav))
 
 
 def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Told:
@@ -198,25 +195,19 @@ def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArr
     within = within_range[:, visits]
     missing_wh = np.where(within, used_wh[:, visits], np.inf) - np.where(within, limit_wh[:, None], 0.0)
     uav, visit = np.unravel_index(np.argmin(missing_wh), missing_wh.shape)
-    needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
-    there = _THERE[problem.uavs[uav].end]
-    said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of {NEAREST} may give."
-    return Told(Reason.BEYOND_ENERGY, said, missing, int(uav))
+    needed_wh, missing = float(used_wh[uav, visits[int(visit)]]), float(missing_wh[uav, visit])
+    figures = {"needed_wh": needed_wh, "there": THERE[problem.uavs[uav].end], "missing_wh": missing}
+    return Told(UnassignedReason.BEYOND_ENERGY, Reason("beyond_battery", figures), missing, int(uav))
 
 
 def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> Told:
     """Why it is left out though some UAV could do it alone."""
     able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
     if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
-        return Told(Reason.MAX_TARGETS, "Each UAV that can do it has as many targets as it may have.")
+        return Told(UnassignedReason.MAX_TARGETS, Reason("all_uavs_full"))
     has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
     if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
-        alone = "within range and battery" if has_range else "within what the battery may give"
-        return Told(Reason.BEYOND_ENERGY, f"It is {alone} alone, but not within what is left after the other targets.", 0.0)
+        return Told(UnassignedReason.BEYOND_ENERGY, Reason("in_reach_alone"), 0.0)
     if has_range:
         return RANGE_ALONE
     return NOT_ON_ONE_ROUTE
-
-
-def _km(length_m: float) -> str:
-    return f"{length_m:,.0f} m" if length_m < 1_000 else f"{length_m / 1_000:,.1f} km"

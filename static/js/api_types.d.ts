@@ -7190,6 +7190,8 @@ export interface components {
             reason: components["schemas"]["UnassignedReasonEnum"];
             /** @description with what is missing, where that has a number, and the minutes of flight that it is */
             message: string;
+            /** @description the same for programs: the reason first, then what belongs to it */
+            why: components["schemas"]["Why"][];
             /**
              * Format: double
              * @description of range, for the UAV that comes nearest to it
@@ -7371,6 +7373,8 @@ export interface components {
             /** @description index of the UAV; null: of the whole plan */
             uav: number | null;
             message: string;
+            /** @description the same for programs */
+            why: components["schemas"]["Why"][];
         };
         /**
          * @description * `uav_inside_zone` - uav_inside_zone
@@ -7420,6 +7424,14 @@ export interface components {
          * @enum {string}
          */
         WaypointKind: "start" | "pass" | "target" | "end" | "base";
+        Why: {
+            /** @description for programs: stays the same; see planning/reasons.py */
+            code: string;
+            /** @description what fills the sentence: names, numbers in the unit of the name's end, other reasons */
+            params: {
+                [key: string]: unknown;
+            };
+        };
         /**
          * @description * `chosen` - chosen
          *     * `nearest` - nearest
@@ -8321,6 +8333,7 @@ export type Warning = components['schemas']['Warning'];
 export type WarningCodeEnum = components['schemas']['WarningCodeEnum'];
 export type Waypoint = components['schemas']['Waypoint'];
 export type WaypointKind = components['schemas']['WaypointKind'];
+export type Why = components['schemas']['Why'];
 export type WhyEnum = components['schemas']['WhyEnum'];
 export type WhyInputRequest = components['schemas']['WhyInputRequest'];
 export type WhyRouteInputRequest = components['schemas']['WhyRouteInputRequest'];

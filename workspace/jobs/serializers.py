@@ -5,6 +5,7 @@ from typing import Any, TypeAlias
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
+from workspace.jobs.result_texts import result_with_texts
 from workspace.message_rendering import in_words
 from workspace.models import Job, JobState
 
@@ -58,6 +59,8 @@ class JobSerializer(serializers.ModelSerializer):
     def to_representation(self, instance: Job) -> dict[str, Any]:
         shown = super().to_representation(instance)
         shown["message"] = in_words(instance.message)
+        if shown.get("result"):
+            shown["result"] = result_with_texts(instance.task, instance.result)
         if instance.error:
             shown["error"] = instance.error | {"message": in_words(str(instance.error.get("message", "")))}
         return shown

@@ -8,7 +8,9 @@ from missions.models import Mission, Route
 from missions.services.manual_edits.checks import HandGround, hand_ground
 from missions.services.manual_edits.edits import checked_by_hand, place_of, settle_by_hand, store_by_hand
 from missions.services.manual_edits.legs import HandLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
-from planning.plan import PlannedRoute
+from planning.plan import PlannedRoute, PlanWarning
+from planning.plan_json import warning_to_json
+from planning.reasons import Reason
 from planning.request import InvalidRequest
 from planning.trajectory.waypoints import RoutePoints
 
@@ -51,9 +53,7 @@ def keep_by_hand(mission: Mission) -> int:
 
 
 def _warning(name: str, uav: int, missed: int, count: int) -> dict[str, Any]:
-    told = f"Legs of {name} that were changed by hand and are as planned again: {missed} of {count}."
-    words = f"{told} Their ends differ, or something bars them now."
-    return {"code": NOT_KEPT, "uav": uav, "message": words}
+    return warning_to_json(PlanWarning(NOT_KEPT, uav, Reason("edits_discarded", {"missed": missed, "legs": count, "uav": name})))
 
 
 def _kept(mission: Mission, route: Route, legs: Sequence[HandLeg], targets: dict[int, Any], ground: HandGround) -> _Kept | None:

@@ -14,6 +14,7 @@ from inspection.network.build.obstacles import NO_ZONE
 from inspection.network.route_index import node_tree
 from inspection.network.zones.zone_index import widen
 from missions.models import UavState
+from missions.reason_texts import why_text
 from missions.selectors.fleet import uavs_of_organisation
 from missions.selectors.planning_context import planning_context, read_targets, stored_bases
 from missions.services.planning.planner import make_plan
@@ -108,7 +109,7 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, airspace)
     alone = _refused_alone(request, target) if reason == "not_with_the_others" and needs_flight_costs(request) else None
     if alone is not None:
-        return said | {"reason": alone["reason"], "message": alone["message"], "uavs": uavs}
+        return said | {"reason": alone["reason"], "message": why_text(alone["why"], alone["message"]), "uavs": uavs}
     return said | {"reason": reason, "zones": barring, "uavs": uavs}
 
 

@@ -9,6 +9,7 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.selectors.planning import planning_read
+from missions.reason_texts import reason_text
 from missions.selectors.planning_context import planning_context
 from planning.airspace import Airspace, airspace_on, column_m, zone_at, zone_choice
 from planning.assignment.refusals import groundings
@@ -90,7 +91,7 @@ def _flights(
             name = None if base is None else base.name
             if number in kept_down:
                 why = kept_down[number]
-                grounded.append({"uav": number, "base": name, "code": why.code, "message": why.message})
+                grounded.append({"uav": number, "base": name, "code": why.code, "message": reason_text(why.why)})
                 continue
             action = request.end_action(number)
             limit_m = UavStart(uav.max_range_m, ROUTE_ENDS[action]).limit_m

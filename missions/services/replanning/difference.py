@@ -117,10 +117,10 @@ def _targets(proposal: Proposal, rests: Sequence[Rest], uavs: Sequence[dict[str,
     after = {target: uav["place"] for uav in uavs for target in uav["order"]}
     found = []
     for target in sorted({*before, *after}):
-        reason, words = proposal.unreached.get(target, ("", "")) if target not in after else ("", "")
+        reason, words, why = ("", "", []) if target in after else proposal.unreached.get(target, ("", "", []))
         if before.get(target) != after.get(target):
             entry = {"target": target, "label": labels[target], "from": before.get(target), "to": after.get(target)}
-            found.append({**entry, "reason": reason, "message": words})
+            found.append({**entry, "reason": reason, "message": words, "why": why})
     return found
 
 

@@ -62,7 +62,7 @@ class Proposal:
     field: Field
     continued: Mapping[int, Continued]
     recalled: frozenset[int]
-    unreached: Mapping[int, tuple[str, str]]
+    unreached: Mapping[int, tuple[str, str, list[dict[str, Any]]]]
     plan: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
@@ -150,7 +150,7 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
     if not flying:
         reasons = [field.troubles[rest.place] for rest in field.rests if not rest.is_out and rest.place in field.troubles]
         words = "\n".join(reasons) or "No other UAV of the mission is in the air."
-        return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words)))
+        return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words, [])))
     if not wanted:
         return Proposal(field, {}, recalled, {})
     plan = make_plan(request=_request(field, way, flying, wanted), stop=field.stop, search_s=field.search_s)
@@ -158,7 +158,7 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
     more = {place for place, order in zip(flying, orders, strict=True) if not order and _comes_home(field, place)}
     if any(field.leavings[place].targets for place in more):
         return _proposal(field, way, recalled | more)
-    unreached = {wanted[item["target"]]: (item["reason"], item["message"]) for item in plan["unassigned"]}
+    unreached = {wanted[item["target"]]: (item["reason"], item["message"], item["why"]) for item in plan["unassigned"]}
     continued: dict[int, Continued] = {}
     for place, order, route in zip(flying, orders, plan["routes"], strict=True):
         leaving = field.leavings[place]
@@ -168,7 +168,7 @@ def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
         try:
             continued[place] = continued_route(leaving, _with_places(route, wanted), whole, conditions_from_json(field.mission.conditions))
         except CannotLeave as error:  # others may have been given what it would keep: the whole proposal falls
-            return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("beyond_energy", str(error))))
+            return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("beyond_energy", str(error), [])))
     return Proposal(field, continued, recalled | more, unreached, plan)
 
 

@@ -54,7 +54,7 @@ def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str]
     for number, proposal in enumerate(proposals(field)):
         note(min(0.9, 0.3 + 0.15 * number), "Comparing ways to share it out")
         if not proposal.continued:
-            words += [message for _code, message in proposal.unreached.values()]
+            words += [message for _code, message, _why in proposal.unreached.values()]
             continue
         if not proposal.unreached and not (reasons := _open(offer, proposal)):
             return ""

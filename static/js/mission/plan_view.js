@@ -6,27 +6,12 @@ import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText } from "../units.js";
 import { changesOf } from "./hand/hand_route.js";
 import { ordersOf, wishedOrders } from "./locks.js";
-import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
-/** @import { Plan, Unassigned } from "../api_types.d.ts" */
+/** @import { Plan } from "../api_types.d.ts" */
 /** @import { HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "./types.d.ts" */
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
-
-/** @type {Record<Unassigned["reason"], string>} */
-const REASONS = {
-  no_path: t("No way along the network leads there."),
-  inside_zone: t("It stands inside a no-fly zone."),
-  beyond_range: t("It is out of range."),
-  beyond_energy: t("No battery lasts for the way there and back."),
-  wind: t("The wind is too strong on every way to it, or back."),
-  too_far_from_network: t("It is too far from the network."),
-  above_height_limit: t("It is higher than may be flown."),
-  asset_gone: t("It is no longer in the data."),
-  not_allowed: t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
-  most_targets: t("Every UAV that could fly it has as many targets as it may."),
-};
 
 /** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
 export const OBJECTIVES = [
@@ -117,7 +102,7 @@ export function unreachedOf(plan) {
   return plan.result.unassigned.map((entry) => ({
     target: plan.targets[entry.target],
     reason: entry.reason,
-    sentence: inWords(entry.message, REASONS[entry.reason]) || t("No route visits it."),
+    sentence: entry.message || t("No route visits it."),
   }));
 }
 

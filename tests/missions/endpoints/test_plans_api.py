@@ -65,7 +65,13 @@ def test_a_plan_has_the_promised_shape(here: World, client: Client) -> None:
             "position", "kind", "asset", "target", "task", "altitude_agl_m", "altitude_amsl_m", "altitude_relative_m",
         }  # fmt: skip
     assert plan["unassigned"] == [
-        {"target": 1, "reason": "too_far_from_network", "message": "It is more than 10 km from the network.", **NO_SHORTFALL}
+        {
+            "target": 1,
+            "reason": "too_far_from_network",
+            "message": "It is more than 10 km from the network.",
+            "why": [{"code": "too_far_from_network", "params": {"reach_km": 10.0}}],
+            **NO_SHORTFALL,
+        }
     ]
 
 

@@ -1,7 +1,6 @@
 """Works out once more, for every UAV of a request, why a plan leaves a target out: by trying every order of the targets."""
 
 import math
-import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise, permutations, product
 from typing import Any
@@ -11,12 +10,10 @@ from planning.problem import End
 from tests.missions.property_tests.test_random_missions import MissionModel
 
 METRES_OFF = 3.0  # what is kept in reserve of a range, and rounding
-GROUNDED, NO_SENSOR, NO_WAY, RANGE = "cannot take off", "without the sensor", "no permitted route", "range too short"
-BATTERY, NOTHING = "battery too small", "nothing"
-_BY_RANGE = re.compile(r"It is ([\d,.]+) (k?m) .*?, ([\d,.]+) (k?m) more than the range of (.+?)(?:: [\d.,]+ min of flight)?\.(?: |$)")
-_BY_BATTERY = re.compile(r"([\d,.]+) Wh more than the battery of (.+?) may give")
-_NO_ROUTE_FOR = re.compile(r"There is no permitted route for (.+?)\.")
-_OTHERS = re.compile(r"Other UAVs: (.+)\.$")
+GROUNDED, NO_SENSOR, NO_WAY, RANGE = "cannot_take_off", "without_sensor", "no_permitted_route", "range_too_short"
+BATTERY, NOTHING = "battery_too_small_of", "nothing"
+BY_BATTERY = {"beyond_battery", "beyond_battery_as_drawn", "beyond_battery_with_charging"}
+ALONE = {"in_range_alone", "in_reach_alone"}
 
 
 class ReasonOracle:
@@ -31,31 +28,32 @@ class ReasonOracle:
                 yield f"target {item['target']}: {fault}: {item['reason']}, {item['message']}"
 
     def _untrue(self, item: dict[str, Any]) -> Iterator[str]:
-        target, message = item["target"], item["message"]
+        target, codes, params = item["target"], [reason["code"] for reason in item["why"]], item["why"][0]["params"]
         bound = self._bound_to(target)
         limits = {uav.name: self._limit(number, target) for number, uav in enumerate(self.request.uavs) if bound in (None, uav.name)}
         if item["reason"] == "not_allowed":
-            yield from self._untrue_wish(item["target"], message, bound, limits)
+            yield from self._untrue_wish(item["target"], item["why"], bound, limits)
             return
-        if item["reason"] not in {"beyond_range", "beyond_energy", "no_path"} or "a base" in message or "as a whole." in message[:90]:
+        is_of_run = codes[0] == "locked_to_unreachable" or "locked_run" in codes
+        if item["reason"] not in {"beyond_range", "beyond_energy", "no_path"} or codes[0] == "no_path_to_base" or is_of_run:
             return
         named: dict[str, str] = {}
-        if by_range := _BY_RANGE.search(message):
-            named[by_range[5]] = RANGE
-            yield from self._wrong_figures(item, by_range, limits)
-        elif by_battery := _BY_BATTERY.search(message):
-            named[by_battery[2]] = BATTERY
-        elif no_route := _NO_ROUTE_FOR.search(message):
-            named |= dict.fromkeys(no_route[1].split(", "), NO_WAY)
-        elif message.startswith("No UAV can get there"):
+        if codes[0] == "beyond_range":
+            named[params["uav"]] = RANGE
+            yield from self._wrong_figures(item, params, limits)
+        elif codes[0] in BY_BATTERY:
+            named[params["uav"]] = BATTERY
+        elif codes[0] == "no_path_for_uavs":
+            named |= dict.fromkeys(params["uavs"], NO_WAY)
+        elif codes[0] == "no_path":
             named |= dict.fromkeys(limits, NO_WAY)
-        elif "alone" in message:
+        elif codes[0] in ALONE:
             if NOTHING not in limits.values():
                 yield f"nobody could do it alone, but {limits}"
             return
         else:
             return
-        said = named | _others(message)
+        said = named | _others(item["why"])
         for name, limit in limits.items():
             if limit == NOTHING and said.get(name) != BATTERY:
                 yield f"{name} has the range and a way, but is said to have {said.get(name)}"
@@ -66,23 +64,24 @@ class ReasonOracle:
                 if next(uav for uav in self.request.uavs if uav.name == name).performance.battery_wh is None:
                     yield f"{name} has no battery"
 
-    def _untrue_wish(self, target: int, message: str, bound: str | None, limits: dict[str, str]) -> Iterator[str]:
+    def _untrue_wish(self, target: int, why: list[dict[str, Any]], bound: str | None, limits: dict[str, str]) -> Iterator[str]:
         number = next((number for number, uav in enumerate(self.request.uavs) if uav.name == bound), None)
+        told = {(reason["code"], reason["params"].get("uav")) for reason in why}
         if number is not None and not self._has_sensor(number, target):
-            if f"tied to {bound}, which does not have the sensor" not in message:
+            if ("tied_without_sensor", bound) not in told:
                 yield f"it does not say that {bound} lacks the sensor"
-        elif bound is not None and limits[bound] == GROUNDED and not re.search(rf"{bound} stands inside .+ and cannot take off\.", message):
+        elif bound is not None and limits[bound] == GROUNDED and ("uav_inside_zone", bound) not in told:
             yield f"it does not say why {bound} cannot take off"
         if NOTHING in limits.values() or RANGE in limits.values():
             yield f"somebody may do it, {limits}"
 
-    def _wrong_figures(self, item: dict[str, Any], said: re.Match[str], limits: dict[str, str]) -> Iterator[str]:
-        needed_m, missing_m = _metres(said[1], said[2]), _metres(said[3], said[4])
+    def _wrong_figures(self, item: dict[str, Any], said: dict[str, Any], limits: dict[str, str]) -> Iterator[str]:
+        needed_m, missing_m = said["needed_m"], said["missing_m"]
         lacks_m = {}
         for number, uav in enumerate(self.request.uavs):
             if limits.get(uav.name) == RANGE:
                 lacks_m[uav.name] = self._needed_m(number, item["target"]) - (uav.max_range_m or 0.0)
-        name = said[5]
+        name = said["uav"]
         if name not in lacks_m:
             yield f"not the range is what keeps {name}"
             return
@@ -91,7 +90,7 @@ class ReasonOracle:
         if lacks_m[name] > min(lacks_m.values()) + METRES_OFF:
             yield f"{min(lacks_m, key=lambda one: lacks_m[one])} comes nearer"
         range_m = next(uav.max_range_m for uav in self.request.uavs if uav.name == name) or 0.0
-        if abs(needed_m - missing_m - range_m) > 101.0 or abs(missing_m - item["missing_m"]) > 51.0:
+        if abs(needed_m - missing_m - range_m) > 1.0 or abs(missing_m - item["missing_m"]) > 1.0:
             yield "its figures do not add up"
 
     def _bound_to(self, target: int) -> str | None:
@@ -159,14 +158,6 @@ def _length_m(model: MissionModel, start: int, order: Sequence[int]) -> float:
     return metres + float(back)
 
 
-def _others(message: str) -> dict[str, str]:
-    found = _OTHERS.search(message)
-    said = {}
-    for part in found[1].split("; ") if found else []:
-        limit, _, names = part.removesuffix(")").partition(" (")
-        said |= dict.fromkeys(names.split(", "), limit)
-    return said
-
-
-def _metres(amount: str, unit: str) -> float:
-    return float(amount.replace(",", "")) * (1_000.0 if unit == "km" else 1.0)
+def _others(why: list[dict[str, Any]]) -> dict[str, str]:
+    limits = next((reason["params"]["limits"] for reason in why if reason["code"] == "other_uavs"), [])
+    return {name: limit["code"] for limit in limits for name in limit["params"]["uavs"]}

@@ -4,7 +4,6 @@ A way that the planner finds cheaper, along infrastructure, may be up to twice a
 """
 
 import math
-import re
 from collections.abc import Collection, Iterator
 from dataclasses import replace
 from datetime import timedelta
@@ -30,9 +29,7 @@ MAX_AGL_M = 120.0
 STAYS_S = 100.0  # more than any task of these missions takes, with taking off, stopping and landing
 REASONS = {"inside_zone", "beyond_range", "beyond_energy", "above_height_limit", "too_far_from_network", "no_path", "wind"}
 OF_WAYS = {"no_path", "wind", "beyond_range", "beyond_energy", "too_far_from_network"}
-NO_NUMBER = ("alone",)  # beside others nothing is missing that has one number
-_MISSING = re.compile(r"([\d,.]+) (k?m|Wh) more than")
-_MINUTES = re.compile(r": ([\d,.]+) min of flight\.")
+NO_NUMBER = {"in_range_alone", "in_reach_alone"}  # beside others nothing is missing that has one number
 
 
 class RefusalJudge:
@@ -65,7 +62,7 @@ class RefusalJudge:
             yield "no UAV has a battery"
         elif reason not in REASONS:
             yield "that is no reason here"
-        is_told = missing(item) is not None or any(words in message for words in NO_NUMBER)
+        is_told = missing(item) is not None or item["why"][0]["code"] in NO_NUMBER
         if reason in {"beyond_range", "beyond_energy"} and not is_told:
             yield f"it does not say what is missing: {message}"
         if missing(item) is not None and not any(_is_so_long(item, uav) for uav in request.uavs):
@@ -161,17 +158,16 @@ class RefusalJudge:
 
 def missing(item: dict[str, Any]) -> tuple[float, float] | None:
     """Metres and Wh that a refusal says to be missing."""
-    found = _MISSING.search(item["message"])
-    if found is None:
+    params = item["why"][0]["params"]
+    if "missing_m" not in params and "missing_wh" not in params:
         return None
-    amount = float(found[1].replace(",", ""))
-    return (0.0, amount) if found[2] == "Wh" else (amount * (1_000.0 if found[2] == "km" else 1.0), 0.0)
+    return params.get("missing_m", 0.0), params.get("missing_wh", 0.0)
 
 
 def _is_so_long(item: dict[str, Any], uav: Any) -> bool:
     """Whether what is missing is what this UAV flies in so many seconds, and the message rounds them up to minutes."""
-    found = _MINUTES.search(item["message"])
-    if found is None or item["missing_s"] is None:
+    minutes = item["why"][0]["params"].get("minutes")
+    if minutes is None or item["missing_s"] is None:
         return False
     if item["missing_wh"] is None:
         seconds = item["missing_m"] / uav.cruise_speed_mps
@@ -179,7 +175,7 @@ def _is_so_long(item: dict[str, Any], uav: Any) -> bool:
         return False
     else:
         seconds = item["missing_wh"] * 3_600.0 / watts(uav.performance, min(uav.cruise_speed_mps, limit_mps(uav)), 0.0, 1.225)
-    is_rounded = -0.2 <= float(found[1].replace(",", "")) * 60.0 - item["missing_s"] <= 6.2
+    is_rounded = -0.2 <= minutes * 60.0 - item["missing_s"] <= 6.2
     return is_rounded and abs(seconds - item["missing_s"]) <= 0.01 * seconds + 0.3
 
 

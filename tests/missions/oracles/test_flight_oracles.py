@@ -105,7 +105,7 @@ def test_a_false_refusal_and_a_forgotten_target_are_found() -> None:
     asked = request(TargetRequest(here.towers[2].pk), uavs=(uav(performance=battery), uav(name="Gull", **HOME)), objective=Objective.TOTAL)
     plan = make_plan(request=asked)
     assert Judge().faults(asked, plan) == []
-    refused = {"target": 0, "reason": "inside_zone", "message": ""}
+    refused = {"target": 0, "reason": "inside_zone", "message": "", "why": [{"code": "stands_inside_zone", "params": {}}]}
     empty = [route | {"targets": [], "waypoints": [], "length_m": 0.0, "arrival_s": []} for route in plan["routes"]]
     assert Judge().faults(asked, plan | {"routes": empty, "unassigned": [refused]}) == ["target 0 is not inside_zone: no zone is there: "]
     assert Judge().faults(asked, plan | {"routes": empty}) == ["a target is visited twice or forgotten"]

@@ -15,6 +15,7 @@ from planning.energy.performance import Performance
 from planning.explain.energy_shortfall import least_missing
 from planning.plan import UnassignedTarget
 from planning.problem import Objective, Priority
+from planning.reasons import Reason
 from planning.request import EndAction, UavRequest
 from tests.inspection import ground
 from tests.missions.worlds import island, power_line, rebuild, request, uav, world
@@ -162,8 +163,8 @@ def test_what_cannot_be_charged_for_is_left_out_and_nothing_else() -> None:
     small = iris(battery_wh=0.7 * min(far, towers) / 0.8, **home)
     plan = make_plan(request=request(*there, *here.towers, uavs=(small,), charging_w=300.0))
     assert reasons(plan) == dict.fromkeys(range(6), "beyond_energy")
-    assert all("However Tern charges" in item["message"] for item in plan["unassigned"])
-    assert all(" Wh more than the battery of Tern may give: " in item["message"] for item in plan["unassigned"])
+    assert all(item["message"].startswith("Even with charging stops, Tern is up to ") for item in plan["unassigned"])
+    assert all(" Wh short for this target: " in item["message"] for item in plan["unassigned"])
     assert sorted(plan["routes"][0]["targets"]) == [6, 7, 8, 9, 10, 11]
     assert plan["routes"][0]["charging"]
     assert plan["gap"] is None
@@ -186,10 +187,10 @@ def test_with_the_wh_that_are_missing_it_is_flown_and_with_less_it_is_not(chargi
         return make_plan(request=request(there, uavs=(iris(battery_wh=battery_wh, end_action=EndAction.RETURN),), charging_w=charging_w))
 
     (item,) = plan(8.0)["unassigned"]
-    missing_wh = float(item["message"].split(" Wh more than the battery of Tern")[0].split()[-1])
+    missing_wh = item["why"][0]["params"]["missing_wh"]
     assert plan(8.0 + (missing_wh + 0.06) / 0.8)["unassigned"] == []
     assert reasons(plan(8.0 + (missing_wh - 0.06) / 0.8)) == {0: "beyond_energy"}
-    assert ("However Tern charges on the way" in item["message"]) == (charging_w is not None)
+    assert ("Even with charging stops" in item["message"]) == (charging_w is not None)
 
 
 def test_who_has_the_range_lacks_the_battery_though_others_lack_the_range() -> None:
@@ -199,7 +200,7 @@ def test_who_has_the_range_lacks_the_battery_though_others_lack_the_range() -> N
     uavs = (iris(battery_wh=8.0, end_action=EndAction.RETURN), uav(name="Gull", max_range_m=1_000.0, end_action=EndAction.RETURN))
     (item,) = make_plan(request=request(there, uavs=uavs, charging_w=300.0))["unassigned"]
     assert item["reason"] == "beyond_energy"
-    assert item["message"].startswith("However Tern charges on the way, it alone takes up to ")
+    assert item["message"].startswith("Even with charging stops, Tern is up to ")
 
 
 def test_a_target_that_is_in_reach_alone_is_told_so_and_flown_when_it_comes_first() -> None:
@@ -209,7 +210,7 @@ def test_a_target_that_is_in_reach_alone_is_told_so_and_flown_when_it_comes_firs
     small = iris(battery_wh=(alone_wh + 0.1) / 0.8, end_action=EndAction.RETURN)
     (item,) = make_plan(request=request(*here.towers[:3], there, uavs=(small,)))["unassigned"]
     assert item["target"] == 3
-    assert "alone" in item["message"]
+    assert "on its own" in item["message"]
     first = TargetRequest(None, LonLat(10.001, 55.985), priority=Priority.HIGH)
     assert 3 not in reasons(make_plan(request=request(*here.towers[:3], first, uavs=(small,))))
 
@@ -238,8 +239,8 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,)))
     assert reasons(plan) == {0: "beyond_energy"}
-    said = f"it takes {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the battery of Tern may give: 0.3 min of flight."
-    assert plan["unassigned"][0]["message"] == f"Over the ground and what stands tall {said}"
+    said = f"it needs {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight."
+    assert plan["unassigned"][0]["message"] == f"Including terrain and obstacles {said}"
 
 
 def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path: Path) -> None:
@@ -249,7 +250,7 @@ def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path
     drawn_wh = make_plan(request=request(here.towers[5], uavs=(iris(end_action=EndAction.RETURN),)))["total_energy_wh"]
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN, sorties=2)
     (item,) = make_plan(request=request(here.towers[5], uavs=(small,), charging_w=300.0))["unassigned"]
-    assert item["message"].endswith("there and back, 0.7 Wh more than the battery of Tern may give: 0.3 min of flight.")
+    assert item["message"].endswith("there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight.")
 
 
 def test_what_is_missing_is_of_the_route_that_is_the_least_as_it_is_drawn() -> None:
@@ -271,7 +272,7 @@ def test_what_is_missing_is_of_the_route_that_is_the_least_as_it_is_drawn() -> N
     straight_wh, round_wh = (plan(40.0, *targets)["total_energy_wh"] for targets in ((there,), (beside, there)))
     assert round_wh < straight_wh - 0.5
     said = next(item["message"] for item in plan(round_wh - 0.3, beside, there)["unassigned"] if item["target"] == 1)
-    assert f"it takes {round_wh:.1f} Wh there, 0.3 Wh more" in said
+    assert f"it needs {round_wh:.1f} Wh there, 0.3 Wh more" in said
 
 
 MID_WAY = (10.16, 56.0)  # from here a UAV reaches the line of the world, or the island; from the one to the other it does not
@@ -296,15 +297,15 @@ def test_what_is_not_on_one_route_with_others_is_not_put_down_to_the_wind() -> N
 
 
 def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
-    by_battery = UnassignedTarget(0, "beyond_energy", "It takes 9 Wh more", 9.0)
-    alone = UnassignedTarget(0, "beyond_range", "It is within range alone", 0.0)
+    by_battery = UnassignedTarget(0, "beyond_energy", (Reason("beyond_battery"),), 9.0)
+    alone = UnassignedTarget(0, "beyond_range", (Reason("in_range_alone"),), 0.0)
     assert least_missing([by_battery], [alone], {}) == least_missing([alone], [by_battery], {}) == [alone]
 
 
 def test_what_another_plan_flies_is_within_reach_alone() -> None:
-    left_out = UnassignedTarget(0, "beyond_range", "It is 9 km there, 1 km more", 1_000.0)
+    left_out = UnassignedTarget(0, "beyond_range", (Reason("beyond_range"),), 1_000.0)
     (told,) = least_missing([left_out], [], {0: uav(max_range_m=9_000.0)})
-    assert (told.reason, told.missing, told.message[:24]) == ("beyond_range", 0.0, "It is within range alone")
+    assert (told.reason, told.missing, told.why) == ("beyond_range", 0.0, (Reason("in_range_alone"),))
     assert least_missing([left_out], [], {1: uav()}) == [left_out]
 
 

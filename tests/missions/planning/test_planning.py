@@ -287,7 +287,10 @@ def test_a_uav_inside_a_zone_stays_on_the_ground_and_the_plan_says_so() -> None:
     zone_around((10.001, 55.990))
     plan = make_plan(request=request(here.towers[0], uavs=(uav((10.001, 55.990), name="Kite"), uav())))
     assert [route["targets"] for route in plan["routes"]] == [[], [0]]
-    assert plan["warnings"] == [{"code": "uav_inside_zone", "uav": 0, "message": "Kite stands inside Airport and cannot take off."}]
+    (warning,) = plan["warnings"]
+    assert (warning["code"], warning["uav"]) == ("uav_inside_zone", 0)
+    assert warning["message"] == "Kite stands inside Airport and cannot take off."
+    assert warning["why"] == [{"code": "uav_inside_zone", "params": {"uav": "Kite", "zone": "Airport"}}]
 
 
 @pytest.mark.parametrize(
@@ -299,7 +302,8 @@ def test_a_uav_out_of_service_is_given_nothing(state: str, words: str) -> None:
     kite = replace(uav(name="Kite"), uav=stored.pk)
     plan = make_plan(request=request(here.towers[0], uavs=(kite, uav())))
     assert [route["targets"] for route in plan["routes"]] == [[], [0]]
-    assert plan["warnings"] == [{"code": "uav_out_of_service", "uav": 0, "message": words}]
+    (warning,) = plan["warnings"]
+    assert (warning["code"], warning["uav"], warning["message"]) == ("uav_out_of_service", 0, words)
 
 
 def test_when_no_uav_can_take_off_every_target_says_so() -> None:
@@ -307,7 +311,10 @@ def test_when_no_uav_can_take_off_every_target_says_so() -> None:
     zone_around(UAV_AT)
     plan = make_plan(request=request(here.towers[0]))
     message = "There is no UAV that can take off. Tern stands inside Airport and cannot take off."
-    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": message, **NO_SHORTFALL}]
+    (left_out,) = plan["unassigned"]
+    assert (left_out["reason"], left_out["message"]) == ("no_path", message)
+    assert [reason["code"] for reason in left_out["why"]] == ["no_uav_takes_off", "uav_inside_zone"]
+    assert left_out.items() >= NO_SHORTFALL.items()
 
 
 @pytest.mark.parametrize("action", list(EndAction))

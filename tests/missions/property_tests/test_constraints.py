@@ -146,7 +146,7 @@ def test_the_way_to_the_base_counts_against_the_range(here: World) -> None:
 
 def test_without_a_way_to_any_base_the_reason_says_so(here: World) -> None:
     plan = make_plan(request=request(*towers(here, 0), uavs=(LANDING,), bases=(BaseRequest("Moon", LonLat(10.0, 57.0)),)))
-    assert reasons(plan) == {0: ("no_path", "There is no way from it to a base that lies outside every no-fly zone.")}
+    assert reasons(plan) == {0: ("no_path", "There is no path from it to a base outside every no-fly zone.")}
 
 
 def test_all_that_return_need_no_base(here: World) -> None:

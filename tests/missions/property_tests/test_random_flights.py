@@ -144,13 +144,13 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
         # What is said is said of the battery: at the time of that plan a zone may be in force that was not.
         is_flown = first is None or first["reason"] not in OUT_OF_REACH or not make_plan(request=only)["unassigned"]
         return [] if is_flown else [f"target {target} is not flown alone: {said}"]
-    if "charges on the way" in said:  # by way of others there may be more towers to charge at
+    if item["why"][0]["code"] == "beyond_battery_with_charging":  # by way of others there may be more towers to charge at
         asked, target = only, 0
     seen["refusals flown"] += 1
     half = make_plan(request=first_of_all(asked, target, lacks[0] * ALMOST, lacks[1] * ALMOST - MIN_WH))
     whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + MIN_WH))
     faults = []
-    if target not in _left_out(half) and "up to" not in said:
+    if target not in _left_out(half) and item["why"][0]["code"] != "beyond_battery_with_charging":
         faults.append(f"target {target} is flown with less than what is missing: {said}")
     if target in _left_out(whole) and _left_out(whole)[target]["reason"] == item["reason"]:  # who has the range may lack the battery
         faults.append(f"target {target} is not flown with all that is missing: {said}")

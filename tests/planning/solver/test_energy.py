@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.problem import Amounts, End, InvalidProblem, Lock, Objective, Problem, Reason, Routes, UavStart, Visit, merit
+from planning.problem import Amounts, End, InvalidProblem, Lock, Objective, Problem, Routes, UavStart, UnassignedReason, Visit, merit
 from planning.solver.constrained_tours import limited_tours
 from planning.solver.exact import best_plan, proven_routes
 from planning.solver.lower_bounds import lower_bound
@@ -147,15 +147,16 @@ def test_the_least_energy_and_the_fewest_metres_are_not_the_same_plan() -> None:
 def test_a_target_beyond_the_battery_says_how_many_wh_are_missing() -> None:
     """3 km there and back at 10 m/s are 600 s, 16.7 Wh."""
     (left_out,) = solve(on_a_road([3], (UavStart(end=End.RETURN, usable_wh=10.0),), Objective.TOTAL)).unassigned
-    assert left_out.reason is Reason.BEYOND_ENERGY
+    assert left_out.reason is UnassignedReason.BEYOND_ENERGY
     assert left_out.missing == pytest.approx(600.0 / 36.0 - 10.0, abs=1e-4)
-    assert left_out.message.startswith("It takes 16.7 Wh there and back, 6.7 Wh more than the battery")
+    assert (left_out.why.code, left_out.why.params["there"].code) == ("beyond_battery", "there_and_back")
+    assert left_out.why.params["needed_wh"] == pytest.approx(600.0 / 36.0)
 
 
 def test_a_target_that_the_battery_would_reach_alone_says_so() -> None:
     (left_out,) = solve(on_a_road([-3, 3], (UavStart(usable_wh=10.0),), Objective.TIME)).unassigned
-    assert left_out.reason is Reason.BEYOND_ENERGY
-    assert "alone" in left_out.message
+    assert left_out.reason is UnassignedReason.BEYOND_ENERGY
+    assert left_out.why.code == "in_reach_alone"
     assert left_out.missing == 0.0
 
 
@@ -181,7 +182,7 @@ def test_what_is_not_known_is_no_way() -> None:
     assert problem.wh is not None
     problem.wh.first[0, 1] = problem.wh.onward[0, 0, 1] = np.nan
     (left_out,) = solve(problem).unassigned
-    assert (left_out.target, left_out.reason) == (1, Reason.NO_PATH)
+    assert (left_out.target, left_out.reason) == (1, UnassignedReason.NO_PATH)
 
 
 def test_where_too_many_tours_would_have_to_be_weighed_the_plan_is_not_called_proven() -> None:

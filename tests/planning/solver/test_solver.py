@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.problem import End, Objective, Problem, Reason, Routes, UavStart, Visit, merit
+from planning.problem import End, Objective, Problem, Routes, UavStart, Unassigned, UnassignedReason, Visit, merit
 from planning.solver.exact import best_plan
 from planning.solver.reach import needed_range_m, reachable
 from planning.solver.search import Progress
@@ -70,7 +70,7 @@ def test_range_is_never_exceeded_and_as_many_targets_are_visited_as_can_be(objec
         for uav, route in [*enumerate(solution.routes), *(enumerate(by_search(problem)) if seed < 5 else ())]:
             assert problem.route_length_m(uav, route) <= 45_000.0
         assert len(solution.unassigned) == best_merit(problem)[0]
-        assert {item.reason for item in solution.unassigned} <= {Reason.BEYOND_RANGE}
+        assert {item.reason for item in solution.unassigned} <= {UnassignedReason.BEYOND_RANGE}
         left_out += len(solution.unassigned)
     assert left_out > 0
 
@@ -124,10 +124,16 @@ def test_a_target_that_the_range_just_reaches_is_visited() -> None:
     assert solve(on_a_line([10], (UavStart(20_001.0, end=End.RETURN),))).unassigned == ()
 
 
+def told(left_out: Unassigned) -> tuple[float, str, float]:
+    params = left_out.why.params
+    return params["needed_m"], params["there"].code, params["missing_m"]
+
+
 def test_a_target_beyond_every_range_says_how_much_is_missing() -> None:
     (left_out,) = solve(on_a_line([10], (UavStart(9_000.0), UavStart(4_000.0)))).unassigned
-    assert left_out.reason is Reason.BEYOND_RANGE
-    assert left_out.message == "It is 10.0 km there, 1.0 km more than the range of the UAV that comes nearest to it."
+    assert left_out.reason is UnassignedReason.BEYOND_RANGE
+    assert left_out.why.code == "beyond_range"
+    assert told(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
 
 
 def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
@@ -135,33 +141,33 @@ def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
     problem = on_a_line([10], (UavStart(), UavStart(9_000.0)))
     problem.from_start_m[0] = np.inf
     (left_out,) = solve(problem).unassigned
-    assert left_out.message.startswith("It is 10.0 km there, 1.0 km more")
+    assert told(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
 
 
 def test_the_way_back_counts_for_a_uav_that_returns() -> None:
     (left_out,) = solve(on_a_line([10], (UavStart(15_000.0, end=End.RETURN),))).unassigned
-    assert left_out.reason is Reason.BEYOND_RANGE
-    assert left_out.message.startswith("It is 20.0 km there and back, 5.0 km more")
+    assert left_out.reason is UnassignedReason.BEYOND_RANGE
+    assert told(left_out) == (20_000.0, "there_and_back", pytest.approx(5_000.0, abs=0.1))
 
 
 def test_a_target_that_would_fit_alone_says_so() -> None:
     (left_out,) = solve(on_a_line([-10, 10], (UavStart(12_000.0),))).unassigned
-    assert left_out.reason is Reason.BEYOND_RANGE
-    assert "within range alone" in left_out.message
+    assert left_out.reason is UnassignedReason.BEYOND_RANGE
+    assert left_out.why.code == "in_range_alone"
 
 
 def test_without_a_way_the_reason_is_no_path() -> None:
     problem = on_a_line([5, 10], (UavStart(1_000.0),))
     problem.from_start_m[:, 1] = problem.between_m[:, 1] = np.inf
     reasons = {item.target: item.reason for item in solve(problem).unassigned}
-    assert reasons == {0: Reason.BEYOND_RANGE, 1: Reason.NO_PATH}
+    assert reasons == {0: UnassignedReason.BEYOND_RANGE, 1: UnassignedReason.NO_PATH}
 
 
 def test_targets_of_two_networks_cannot_be_on_one_route() -> None:
     problem = on_a_line([5, 10], (UavStart(),))
     problem.between_m[:] = np.inf
     (left_out,) = solve(problem).unassigned
-    assert left_out.reason is Reason.NO_PATH
+    assert left_out.reason is UnassignedReason.NO_PATH
     assert left_out.message.endswith("Add a UAV.")
 
 
@@ -173,7 +179,7 @@ def test_a_target_behind_another_one_is_reached() -> None:
 
 
 def test_without_uavs_everything_is_left_out() -> None:
-    assert [item.reason for item in solve(on_a_line([1, 2], ())).unassigned] == [Reason.NO_PATH, Reason.NO_PATH]
+    assert [item.reason for item in solve(on_a_line([1, 2], ())).unassigned] == [UnassignedReason.NO_PATH, UnassignedReason.NO_PATH]
 
 
 def test_same_problem_and_seed_give_the_same_plan() -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.problem import End, InvalidProblem, Lock, Objective, Problem, Reason, Solution, UavStart, Visit, merit
+from planning.problem import End, InvalidProblem, Lock, Objective, Problem, Solution, UavStart, UnassignedReason, Visit, merit
 from planning.solver.exact import best_plan
 from planning.solver.reach import needed_range_m, reachable
 from planning.solver.search import best_found
@@ -96,7 +96,7 @@ def test_what_does_not_fit_in_one_flight_is_flown_in_two() -> None:
     assert sorted(solution.sorties[0]) == [(0,), (1,)]
     assert (solution.total_m, solution.unassigned, solution.is_proven) == (40_000.0, (), True)
     (left_out,) = solve(replace(problem, uavs=(returning(21),))).unassigned
-    assert left_out.reason is Reason.BEYOND_RANGE
+    assert left_out.reason is UnassignedReason.BEYOND_RANGE
 
 
 def test_the_time_between_sorties_counts() -> None:
@@ -118,7 +118,7 @@ def test_the_other_uav_is_quicker_than_a_second_sortie() -> None:
 
 def test_the_number_of_targets_is_that_of_all_sorties() -> None:
     (left_out,) = solve(on_a_road([-10, 10], (returning(21, sorties=2, most_targets=1),))).unassigned
-    assert left_out.reason is Reason.MAX_TARGETS
+    assert left_out.reason is UnassignedReason.MAX_TARGETS
 
 
 def test_a_route_that_has_to_begin_with_a_run_is_one_flight() -> None:

@@ -44,8 +44,6 @@ export default {
   "any time": "jederzeit",
   "No departure time: all zones count as active.": "Keine Abflugzeit: Alle Zonen gelten als aktiv.",
   "Arrival": "Ankunft",
-  "As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.":
-    "Wie gezeichnet, über das Gelände und was hoch aufragt, braucht eine Route dorthin {missing} Wh mehr, als der Akku von {name} geben darf.",
   "as many targets as it may have": "so viele Ziele, wie es haben darf",
   "As planned.": "Wie geplant.",
   "at landing": "bei der Landung",
@@ -107,8 +105,6 @@ export default {
   "Done in": "Fertig in",
   "Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay.":
     "Einen Wegpunkt auf der Karte ziehen oder einen neuen aus der Mitte einer Teilstrecke. Start, Ende und Ziele bleiben.",
-  "Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.":
-    "Gezeichnet über das Gelände und was hoch aufragt, brauchen Routen mehr, als auf dem Netz gezählt wird; mit dieser Rücklage reicht kein Akku dafür.",
   "Each UAV flies its route to the end, as it was checked.":
     "Jedes UAV fliegt seine Route zu Ende, wie sie geprüft wurde.",
   "Each UAV flies straight to the nearest of its start and the rally points, and lands.":
@@ -302,11 +298,7 @@ export default {
   "The mission": "Die Mission",
   "Next open departure: {when}.": "Nächster offener Abflug: {when}.",
   "The route is kept as changed by hand.": "Die Route bleibt, wie sie von Hand geändert ist.",
-  "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.":
-    "Die Routen nehmen kürzere Wege als bevorzugt, weiter weg von den Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
-  "{name} is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen.":
-    "{name} meldet sich in der Luft: Der Plan beginnt mit einem Start vom Boden dort, wo es zuletzt gesehen wurde.",
   "The wind is too strong on every way to it, or back.": "Der Wind ist auf jedem Weg dorthin oder zurück zu stark.",
   "the wind": "der Wind",
   "the wind, {time} more than in calm air": "der Wind, {time} mehr als bei Windstille",
@@ -352,8 +344,6 @@ export default {
   "Zones that force a detour": "Zonen, die zu einem Umweg zwingen",
   "Zones: {zones}.": "Zonen: {zones}.",
   "{name} lies inside {zone}: nothing may land there.": "{name} liegt in {zone}: Dort darf nichts landen.",
-  "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.":
-    "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
   "{name} starts {time} later and flies {height} higher": "{name} startet {time} später und fliegt {height} höher",
   "{name} starts {time} later": "{name} startet {time} später",
 };

@@ -2,8 +2,6 @@
 
 export default {
   "A step back": "Einen Schritt zurück",
-  "A UAV can get there, but not on one route with its other targets. Add a UAV.":
-    "Ein UAV kann dorthin, aber nicht auf einer Route mit seinen anderen Zielen. Ein weiteres UAV hilft.",
   "Aborted": "Abgebrochen",
   "In flight": "Im Flug",
   "Address": "Adresse",
@@ -57,8 +55,6 @@ export default {
   "Find": "Suchen",
   "Find an asset": "Ein Objekt suchen",
   "Fold the side": "Seite einklappen",
-  "From its other targets {name} would have to pass a mast or wires that cannot be flown over.":
-    "Von seinen anderen Zielen aus müsste {name} an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
   "Go to the assets": "Zu den Objekten",
   "Go to the map": "Zur Karte",
   "Go to the missions": "Zu den Missionen",
@@ -97,8 +93,6 @@ export default {
   "More for {name}": "Mehr für {name}",
   "Name": "Name",
   "Name of the set": "Name des Satzes",
-  "{name} would have to pass a mast or wires that cannot be flown over.":
-    "{name} müsste an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
   "New": "Neu",
   "New mission": "Neue Mission",
   "New name of {name}": "Neuer Name von {name}",

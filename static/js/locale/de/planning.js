@@ -2,74 +2,11 @@
 
 export default {
   "{count} warning": ["{count} Warnung", "{count} Warnungen"],
-  "It takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.":
-    "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
-  "It is {needed} {there}, {missing} more than the range of {name}.":
-    "Es sind {needed} {there}, {missing} mehr als die Reichweite von {name}.",
-  "The battery of {name} does not last for it.": "Der Akku von {name} reicht dafür nicht.",
-  "Other UAVs: {limits}.": "Andere UAVs: {limits}.",
-  "mast or wires in the way": "Mast oder Leiterseile im Weg",
-  "battery too small": "Akku zu klein",
-  "range too short": "Reichweite zu gering",
-  "wind too strong": "zu starker Wind",
-  "no permitted route": "keine zulässige Route",
-  "without the sensor": "ohne den Sensor",
-  "It is locked to {name}.": "Es ist auf {name} festgelegt.",
-  "It is tied to {name}.": "Es ist an {name} gebunden.",
-  "There is no UAV that can take off.": "Kein UAV kann starten.",
-  "No UAV that can take off has the sensor {sensor}.": "Kein UAV, das starten kann, hat den Sensor {sensor}.",
-  "No UAV of the plan has the sensor {sensor}.": "Kein UAV des Plans hat den Sensor {sensor}.",
-  "It is locked to {name}, which cannot take off.": "Es ist auf {name} festgelegt, das nicht starten kann.",
-  "It is tied to {name}, which cannot fly to it.": "Es ist an {name} gebunden, das nicht hinfliegen kann.",
-  "It is tied to {name}, which cannot take off.": "Es ist an {name} gebunden, das nicht starten kann.",
-  "It is tied to {name}, which does not have the sensor {sensor}.":
-    "Es ist an {name} gebunden, das den Sensor {sensor} nicht hat.",
-  "It is tied to {name}, which has as many targets as it may have.":
-    "Es ist an {name} gebunden, das so viele Ziele hat, wie es haben darf.",
-  "It is locked to others of which one cannot be reached: the run is left out as a whole.":
-    "Es ist mit anderen festgelegt, von denen eines nicht erreichbar ist: Die Folge bleibt als Ganzes weg.",
-  "To land there is to fly through {zone}.": "Dort zu landen hieße, durch {zone} zu fliegen.",
-  "No UAV has a clear way of up to {reach} to the network from where it stands.":
-    "Kein UAV hat von seinem Standort einen freien Weg von höchstens {reach} zum Netz.",
-  "It is more than {reach} from the network.": "Es liegt mehr als {reach} vom Netz entfernt.",
-  "Every straight way to it from the network within {reach} meets a no-fly zone.":
-    "Jeder gerade Weg dorthin vom Netz im Umkreis von {reach} trifft auf eine Flugverbotszone.",
-  "There is no way from it to a base that lies outside every no-fly zone.":
-    "Kein Weg führt von dort zu einer Basis, die außerhalb aller Flugverbotszonen liegt.",
-  "No permitted route from any base.": "Keine zulässige Route von einer Basis.",
-  "There is no permitted route for {names}.": "Für {names} gibt es keine zulässige Route.",
-  "{minutes} min of flight.": "{minutes} min Flug.",
-  "It is locked to others: the run is left out as a whole.":
-    "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
   "Within {share} of the best plan without temporary zones.":
     "Höchstens {share} über dem besten Plan ohne zeitweise Zonen.",
   "Within {share} of the best plan with the locked targets and without temporary zones.":
     "Höchstens {share} über dem besten Plan mit den festgelegten Zielen und ohne zeitweise Zonen.",
   "As good as the best plan without temporary zones.": "So gut wie der beste Plan ohne zeitweise Zonen.",
-  "Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.":
-    "Von Hand geänderte Abschnitte von {name}, die wieder sind wie geplant: {missed} von {count}. Ihre Enden sind andere, oder etwas ist ihnen jetzt im Weg.",
-  "Each UAV that can do it has as many targets as it may have.":
-    "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
-  "However {name} charges on the way, it alone takes up to {missing} Wh more than its battery may give.":
-    "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es bis zu {missing} Wh mehr, als sein Akku geben darf.",
-  "However {name} charges on the way, the battery does not last for it.":
-    "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",
-  "It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.":
-    "Es sind {needed} {there}, {missing} mehr als die Reichweite des UAV, das ihm am nächsten kommt.",
-  "It is within range alone, but not after the other targets.":
-    "Allein liegt es in Reichweite, nach den anderen Zielen nicht mehr.",
-  "It takes {needed} Wh {there}, {missing} Wh more than the battery of the UAV that comes nearest to it may give.":
-    "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku des UAV geben darf, das ihm am nächsten kommt.",
-  "or|list": "oder",
-  "Over the ground and what stands tall it takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.":
-    "Über Gelände und Hohes hinweg braucht es {needed} Wh {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
-  "Over the ground and what stands tall, all routes that were tried with it take more than the battery may give.":
-    "Über Gelände und Hohes hinweg brauchen alle versuchten Routen mit ihm mehr, als der Akku geben darf.",
-  "The battery lasts for it alone, but not after the other targets.":
-    "Allein reicht der Akku dafür, nach den anderen Zielen nicht mehr.",
-  "there and back|way": "hin und zurück",
-  "there and on to the nearest base|way": "hin und weiter zur nächsten Basis",
-  "there|way": "hin",
   "(locked)": "(festgelegt)",
   "Best possible.": "Optimal.",
   "Add a base": "Basis anlegen",
@@ -176,17 +113,10 @@ export default {
   "{figure} so far": "bisher {figure}",
   "{figure} so far, within {share} of the best possible ({least})":
     "bisher {figure}, höchstens {share} über dem Optimum ({least})",
-  "{name} has as many targets as it may have ({count}).": "{name} hat so viele Ziele, wie es haben darf ({count}).",
-  "{name} has as many targets as it may have ({count}), and no other UAV has the range for it.":
-    "{name} hat so viele Ziele, wie es haben darf ({count}), und kein anderes UAV hat die Reichweite dafür.",
   "{name} may do {count} target at most.": [
     "{name} darf höchstens {count} Ziel anfliegen.",
     "{name} darf höchstens {count} Ziele anfliegen.",
   ],
-  "{names} and {last} have as many targets as they may have.":
-    "{names} und {last} haben so viele Ziele, wie sie haben dürfen.",
-  "{names} and {last} have as many targets as they may have, and no other UAV has the range for it.":
-    "{names} und {last} haben so viele Ziele, wie sie haben dürfen, und kein anderes UAV hat die Reichweite dafür.",
   "{names} could fly there, but has as many targets as it may have.": [
     "{names} könnte hinfliegen, hat aber so viele Ziele, wie es haben darf.",
     "{names} könnten hinfliegen, haben aber so viele Ziele, wie sie haben dürfen.",

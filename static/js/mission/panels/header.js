@@ -13,7 +13,6 @@ import { standingUavs } from "../fleet.js";
 import { departureText } from "../flight_options.js";
 import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
-import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
 import { uavNotice } from "./uavs/changes.js";
 
@@ -226,7 +225,7 @@ function planNotices({ plan }, { actions, canPlan, askWhy }) {
   /** @param {string[]} keys @param {string} label @returns {WayOut[]} */
   const remove = (keys, label) => (canPlan ? [{ label, act: () => actions.removeTargets(keys) }] : []);
   return folded([
-    ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", inWords(message))),
+    ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", message)),
     ...unreached
       .slice(0, MAX_UNREACHED)
       .map(({ target, sentence }) =>

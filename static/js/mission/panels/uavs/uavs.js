@@ -4,7 +4,7 @@ import { byId, h, keyedList } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
 import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
 import { isPlanCurrent } from "../../plan_view.js";
-import { GROUNDING, inWords } from "../../plan_words.js";
+import { GROUNDING } from "../../plan_words.js";
 import { saidInMission } from "../../uav_changes.js";
 import { changeDialog, newDialog } from "./dialog.js";
 import { refreshRow, uavRow } from "./row.js";
@@ -118,7 +118,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
 function groundedWords(state, { sequence }) {
   const warnings = (isPlanCurrent(state) && state.plan?.result.warnings) || [];
   const warning = warnings.find(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
-  return inWords(warning?.message ?? "");
+  return warning?.message ?? "";
 }
 
 /** @param {MissionPageState} state @param {ShownUav[]} uavs @param {boolean} canPlan */

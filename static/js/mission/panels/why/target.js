@@ -3,7 +3,7 @@
 import { h } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText } from "../../../units.js";
-import { inWords, zoneOf } from "../../plan_words.js";
+import { zoneOf } from "../../plan_words.js";
 import { showLegalTimes } from "../options/legal_times.js";
 
 /** @import { Reach, TargetExplanation, Unassigned } from "../../../api_types.d.ts" */
@@ -21,7 +21,7 @@ export function targetExplanation(said, entry, { plan, store, actions, canPlan }
     h(
       "p",
       { class: "why-sentence" },
-      isRangeOfPlan(said, entry) ? inWords(entry.message) : reasonWords(said, full) || inWords(entry.message),
+      isRangeOfPlan(said, entry) ? entry.message : reasonWords(said, full) || entry.message,
     ),
     facts(said),
     canPlan && changes(said, { target, full, store, actions }),
@@ -91,7 +91,7 @@ export function reasonWords(said, full = []) {
         ? t("Every way to it leads through {zones}.", { zones })
         : t("No way leads there that keeps clear of every zone."),
     beyond_range: () => t("It is out of range of every UAV of this mission."),
-    beyond_energy: () => inWords(said.message, t("No battery lasts for the way there and back.")),
+    beyond_energy: () => said.message || t("No battery lasts for the way there and back."),
     wind: () => t("The wind is too strong on every way to it, or back."),
     not_allowed: () => t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
     most_targets: () => t("Every UAV that could fly it has as many targets as it may."),

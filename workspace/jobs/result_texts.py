@@ -1,0 +1,16 @@
+"""Results of jobs in the reader's language: workers store them in English."""
+
+from typing import Any
+
+from django.utils.module_loading import import_string
+
+_functions: dict[str, str] = {}
+
+
+def register_result_texts(task: str, function: str) -> None:
+    """The dotted name of a function that returns a result of this task with its texts in the language that is active."""
+    _functions[task] = function
+
+
+def result_with_texts(task: str, result: Any) -> Any:
+    return import_string(_functions[task])(result) if result and task in _functions else result
