@@ -145,8 +145,7 @@ class Reason:
         """The sentence in the language of the wording."""
         sentence = SENTENCES[self.code]
         words = wording.gettext(sentence) if isinstance(sentence, str) else wording.ngettext(*sentence, self.params["count"])
-        if self.params:
-            words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
+        words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
         if "minutes" in self.params:
             minutes = wording.number(self.params["minutes"], 1)
             words = wording.gettext(MINUTES) % {"sentence": words.removesuffix("."), "minutes": minutes}

@@ -35,6 +35,7 @@ from scripts.test_run.reports import Report, allowed_skips, read_report, read_ta
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
 TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
+SLOWEST_LISTED = 40  # tests of a step of 5 s and more
 BROWSER_WORKERS = 2  # each with a whole installation
 SITL, SITL_TESTS = "SPANWISE_SITL", "tests/telemetry/scenarios"
 
@@ -54,7 +55,8 @@ def _pytest(name: str, expression: str, arguments: list[str], *, lane: str = "te
     folder.mkdir(parents=True, exist_ok=True)
     cache, report = folder / "cache", folder / "report.json"
     report.unlink(missing_ok=True)
-    command = _python("-m", "pytest", "-m", expression, *arguments, *cache_arguments(cache), f"--check-report={report}")
+    options = [*cache_arguments(cache), f"--check-report={report}", f"--durations={SLOWEST_LISTED}", "--durations-min=5"]
+    command = _python("-m", "pytest", "-m", expression, *arguments, *options)
     if workers:
         command += [f"--numprocesses={workers}", f"--dist={dist}"]
     environment = {"PYTEST_PLUGINS": "scripts.test_run.plugin"} | ({"PY_COLORS": "1"} if sys.stdout.isatty() else {})

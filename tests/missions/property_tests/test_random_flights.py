@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from missions.services import PlanRequest, make_plan
+from missions.services import GraphOutdated, PlanRequest, make_plan
+from planning import planner
 from tests.accounts.users import somebody
 from tests.missions.oracles.flight_oracle import Judge
 from tests.missions.oracles.manual_edit_oracle import HandJudge
@@ -70,6 +71,28 @@ def test_2000_random_missions_keep_every_promise_of_safety(region_file: Any, fil
 def test_20000_random_missions_keep_every_promise_of_safety(region_file: Any, file_name: str, seed: int, tmp_path: Path) -> None:
     """In slices, each of which can be run alone, with zones of its own."""
     _fly(region_file(file_name), tmp_path, missions=SLICE, seed=seed, twice=SELDOM)
+
+
+@pytest.mark.parametrize("most", [1, 2])
+def test_a_plan_that_runs_out_of_solver_calls_is_as_safe(
+    region_file: Any, most: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What could not be solved again stays on the ground, or there is no plan at all."""
+    monkeypatch.setattr(planner, "MAX_SOLVER_CALLS", most)
+    hills = bring_in(region_file("quillmoor.osm.pbf"), tmp_path, random.Random(6), is_hilly=True)
+    draw = random.Random(6)
+    put_zones(600, draw)
+    region, judge, author, every_air, times = Region(), Judge(hills), somebody(), airs(draw), departures(draw, 2)
+    flown = 0
+    for _ in range(60):
+        asked = flight(region, draw, draw.choice(every_air), draw.choice(times), author)
+        try:
+            plan = make_plan(request=asked)
+        except GraphOutdated:
+            continue
+        flown += sum(len(route["targets"]) for route in plan["routes"])
+        assert [*judge.faults_of_routes(asked, plan), *judge.wires.faults(plan)] == []
+    assert flown > 30
 
 
 def _fly(path: Path, folder: Path, *, missions: int, seed: int, twice: Twice) -> Counter[str]:

@@ -168,7 +168,7 @@ def test_targets_of_two_networks_cannot_be_on_one_route() -> None:
     problem.between_m[:] = np.inf
     (left_out,) = solve(problem).unassigned
     assert left_out.reason is UnassignedReason.NO_PATH
-    assert left_out.message.endswith("Add a UAV.")
+    assert left_out.why.code == "not_on_one_route"
 
 
 def test_a_target_behind_another_one_is_reached() -> None:
