@@ -7,7 +7,7 @@ from django.utils.translation import get_language, gettext, ngettext
 
 from planning.reasons import Reason, Wording, reason_from_json
 from planning.request import InvalidRequest
-from workspace.number_text import number_text
+from workspace.locale_negotiation import number_text
 
 WORDING = Wording(gettext, ngettext, number_text)  # of the language that is active when a text is made
 

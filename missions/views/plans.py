@@ -153,6 +153,6 @@ def _awaited(response: Response, wait_s: int) -> Response:
         raise ApiProblem(status, code, message, retry_after_s=JOBS_RETRY_AFTER_S if status == 503 else None)
     headers = {name: response[name] for name in ("Location", "Idempotency-Replayed") if name in response}
     if job is not None and job.state == JobState.DONE:
-        return Response(plan_with_texts(job.result), headers=headers | {"Preference-Applied": f"wait={wait_s}"})
+        return Response(job.result and plan_with_texts(job.result), headers=headers | {"Preference-Applied": f"wait={wait_s}"})
     response["Preference-Applied"] = f"wait={wait_s}"
     return response
