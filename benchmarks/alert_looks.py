@@ -72,14 +72,16 @@ def _watched(uav, number, mission, approval, waypoints, second, now) -> WatchedU
     first, then = waypoints[0], waypoints[1]
     share = min(1.0, (second * 12.0 + number) / 500.0)
     lon, lat = (here + share * (there - here) for here, there in zip(first["position"], then["position"], strict=True))
-    told = Measurement(
+    reported = Measurement(
         longitude_deg=lon, latitude_deg=lat,
         altitude_relative_m=first["altitude_relative_m"], altitude_amsl_m=200.0 + 100.0 * number, velocity_north_mps=8.0,
         velocity_east_mps=8.0, velocity_down_mps=0.0, battery_percent=90.0,
         mode="POSCTL" if number % EACH_BY_HAND == 0 else "MISSION", is_armed=True, is_in_air=True, gps_fix=3,
         satellites=14, hdop=0.8, waypoint_sequence=1, mission_item=2, wind_north_mps=2.0, wind_east_mps=1.0,
     )  # fmt: skip
-    return WatchedUav(uav.pk, uav.organisation_id, uav.name, mission.pk, approval.pk, newest=Report(now.timestamp(), now.timestamp(), told))
+    return WatchedUav(
+        uav.pk, uav.organisation_id, uav.name, mission.pk, approval.pk, newest=Report(now.timestamp(), now.timestamp(), reported)
+    )
 
 
 def _cpu_s() -> float:

@@ -79,9 +79,9 @@ def on_graph(name: str, options: argparse.Namespace) -> list[Row]:
             values = {"ours": value_of(problem, ours)}
             values |= {rival: found[f"{row} {rival}"]["value_m"] for rival in (*RIVALS[objective], OURS) if f"{row} {rival}" in found}
             best_by = min(values, key=lambda method: values[method])
-            said = "; ".join(f"{method} {value / 1_000:,.2f}" for method, value in values.items() if method != "ours")
+            stated = "; ".join(f"{method} {value / 1_000:,.2f}" for method, value in values.items() if method != "ours")
             best = values[best_by]
-            rows.append(Row(f"{name} {number}", objective.value, values["ours"] / 1_000, best / 1_000, best_by, ours.gap, took_s, said))
+            rows.append(Row(f"{name} {number}", objective.value, values["ours"] / 1_000, best / 1_000, best_by, ours.gap, took_s, stated))
             print(" | ".join(rows[-1].cells()), flush=True)
     return rows
 
@@ -135,11 +135,11 @@ def main() -> int:
     for name in options.only:
         rows += on_tsplib(options) if name == "tsplib" else on_graph(name, options)
     if options.write:
-        said = (
+        stated = (
             f"`python -m benchmarks.assignment`: ours in {options.search_s:g} s of the clock, rivals in 120 s of a processor of their own "
             '(`benchmarks/assignment_rivals.json`), "ours, long" the best of any run of ours; kilometres, in TSPLIB its own unit.\n\n'
         )
-        write_section(TITLE, said + table(HEAD, [row.cells() for row in rows]) + "\n\n" + machine("numba", "ortools", "pyvrp"))
+        write_section(TITLE, stated + table(HEAD, [row.cells() for row in rows]) + "\n\n" + machine("numba", "ortools", "pyvrp"))
     missed = [row for row in rows if not row.is_within]
     print(f"{len(rows) - len(missed)} of {len(rows)} within 1 %")
     return 1 if missed else 0

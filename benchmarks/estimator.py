@@ -21,7 +21,7 @@ import numpy as np
 from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat
 from telemetry.estimation.tracker import Tracker
-from tests.telemetry.estimation.heard import reports_of
+from tests.telemetry.estimation.received import reports_of
 from tests.telemetry.estimation.routes import drawn_route, knowledge_for, lines_of
 from tests.telemetry.estimation.scoring import BEGUN_S, INTERVALS_S, Score, rms, score_flights, share
 from tests.telemetry.estimation.truth import fly

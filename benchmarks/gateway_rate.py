@@ -85,7 +85,7 @@ def gateway(port: int) -> Iterator[subprocess.Popen[str]]:
             process.wait(30)
 
 
-def play(port: int, systems: list[int], rate_hz: float, seconds: float, first_ms: int, told: Any) -> None:
+def play(port: int, systems: list[int], rate_hz: float, seconds: float, first_ms: int, reported: Any) -> None:
     """Sends as many reports a second; tells how many it has sent, and how long that took."""
     sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     sender.connect(("127.0.0.1", port))
@@ -107,7 +107,7 @@ def play(port: int, systems: list[int], rate_hz: float, seconds: float, first_ms
             time.sleep(ahead_s)
         for datagram in report:
             sender.send(datagram)
-    told.put((len(reports), time.monotonic() - began_s))
+    reported.put((len(reports), time.monotonic() - began_s))
 
 
 def cpu_s(process: subprocess.Popen[str]) -> float:
@@ -117,11 +117,11 @@ def cpu_s(process: subprocess.Popen[str]) -> float:
 
 def step(port: int, program: subprocess.Popen[str], uavs: list[Uav], rate_hz: float, seconds: float, first_ms: int) -> Step:
     before, began_cpu_s = TelemetryRecord.objects.filter(uav__in=uavs).count(), cpu_s(program)
-    told: Any = multiprocessing.get_context("spawn").Queue()
+    reported: Any = multiprocessing.get_context("spawn").Queue()
     systems = [uav.mavlink_system_id for uav in uavs]
-    player = multiprocessing.get_context("spawn").Process(target=play, args=(port, systems, rate_hz, seconds, first_ms, told))
+    player = multiprocessing.get_context("spawn").Process(target=play, args=(port, systems, rate_hz, seconds, first_ms, reported))
     player.start()
-    sent, took_s = told.get()
+    sent, took_s = reported.get()
     player.join()
     until_s = time.monotonic() + SETTLES_S
     while (stored := TelemetryRecord.objects.filter(uav__in=uavs).count() - before) < sent and time.monotonic() < until_s:

@@ -63,8 +63,8 @@ class Socket:
                 if first & 128:
                     return whole
 
-    def say(self, word: object) -> None:
-        self._send(TEXT, orjson.dumps(word))
+    def report(self, value: object) -> None:
+        self._send(TEXT, orjson.dumps(value))
 
     def _send(self, kind: int, text: bytes) -> None:
         mask = os.urandom(4)
@@ -92,26 +92,26 @@ class Page:
                 text = await socket.receive()
                 self.take(orjson.loads(text), began_s)
                 self.bytes += len(text)
-                socket.say({"type": "have", "sequence": self._sequence})
+                socket.report({"type": "have", "sequence": self._sequence})
         except (Closed, OSError, asyncio.IncompleteReadError) as error:
             self.error = repr(error)
 
-    def take(self, word: dict[str, Any], began_s: float) -> None:
+    def take(self, value: dict[str, Any], began_s: float) -> None:
         now_ms = (time.monotonic() - began_s) * 1000
-        if word["type"] == "still-there":
+        if value["type"] == "still-there":
             return
         self.messages += 1
-        if word["type"] == "changes":
-            self.gaps += word["sequence"] != self._sequence + 1
-        self._sequence = word["sequence"]
-        for uav in word["live"]["uavs"] if word["type"] == "snapshot" else word["uavs"]:
+        if value["type"] == "changes":
+            self.gaps += value["sequence"] != self._sequence + 1
+        self._sequence = value["sequence"]
+        for uav in value["live"]["uavs"] if value["type"] == "snapshot" else value["uavs"]:
             if (measured := uav["measured"]) is None:
                 continue
             sent_ms = round(measured["position"][0] * PER_DEGREE) - self.first[uav["id"]]
             own = self.seen.setdefault(uav["id"], set())
             if sent_ms not in own:
                 own.add(sent_ms)
-                if word["type"] == "changes":
+                if value["type"] == "changes":
                     self.waits_ms.append(round(now_ms - sent_ms))
 
 
@@ -136,7 +136,7 @@ def main() -> None:
     options = parser.parse_args()
     first = {int(uav): first for uav, first in orjson.loads(sys.stdin.readline()).items()}
     pages = asyncio.run(open_pages(options, first, sys.stdin.readline().split()))
-    told = [
+    reported = [
         {
             "waits_ms": page.waits_ms,
             "seen": {str(uav): sorted(seen) for uav, seen in page.seen.items()},
@@ -147,7 +147,7 @@ def main() -> None:
         }
         for page in pages
     ]
-    sys.stdout.buffer.write(orjson.dumps(told) + b"\n")
+    sys.stdout.buffer.write(orjson.dumps(reported) + b"\n")
     sys.stdout.flush()
 
 

@@ -123,7 +123,7 @@ def front_door() -> Iterator[tuple[int, dict[str, int]]]:
         shutil.rmtree(folder)
 
 
-def play(port: int, lines: list[Line], seconds: float, began_s: float, told: Any) -> None:
+def play(port: int, lines: list[Line], seconds: float, began_s: float, reported: Any) -> None:
     """Each UAV sends a heartbeat, its attitude and where it is once a second, all of them evenly spread; tells what it sent.
 
     A millisecond later is a ten-millionth degree further east, which is how a page knows when a report was sent.
@@ -150,7 +150,7 @@ def play(port: int, lines: list[Line], seconds: float, began_s: float, told: Any
         ):
             sender.send(writers[line.system].frame_of(message, 0.0))
         sent[line.uav_id].append(ms)
-    told.put(sent)
+    reported.put(sent)
 
 
 def cpu_s(pid: int) -> float:
@@ -187,10 +187,10 @@ def run(user: User, lines: list[Line], pages: int, seconds: float) -> Run:
         programs["pages"] = clients.pid
         before_s = {name: cpu_s(pid) for name, pid in programs.items()}
         context = multiprocessing.get_context("spawn")
-        told: Any = context.Queue()
-        player = context.Process(target=play, args=(udp, lines, seconds, began_s, told))
+        reported: Any = context.Queue()
+        player = context.Process(target=play, args=(udp, lines, seconds, began_s, reported))
         player.start()
-        sent = told.get()
+        sent = reported.get()
         cores = {name: (cpu_s(pid) - before_s[name]) / seconds for name, pid in programs.items()}
         player.join()
         estimated, alerts = UavWatch.objects.filter(estimated__isnull=False).count(), Alert.objects.count()
@@ -237,8 +237,8 @@ def cells(done: Run) -> list[str]:
     cores = ", ".join(f"{done.cores[name]:.2f}" for name in ("gateway", "estimator", "live", "nginx", "pages"))
     waits = [f"{done.wait_ms(percent):.0f}" for percent in (50, 95, 99)]
     lost = f"{done.sent - done.stored}"
-    told = f"{done.kilobytes_s:.0f}"
-    return [str(done.uavs), str(done.pages), f"{done.sent:,}", lost, f"{done.seen_share:.2%}", *waits, told, str(done.alerts), cores]
+    reported = f"{done.kilobytes_s:.0f}"
+    return [str(done.uavs), str(done.pages), f"{done.sent:,}", lost, f"{done.seen_share:.2%}", *waits, reported, str(done.alerts), cores]
 
 
 def main() -> None:

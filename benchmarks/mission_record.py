@@ -59,7 +59,7 @@ def fill(mission: Mission, records: int) -> None:
         cursor.execute("ANALYZE")
 
 
-def _asked(path: str, user_id: int, told: Any) -> None:
+def _asked(path: str, user_id: int, reported: Any) -> None:
     """In a process of its own, so that its memory is its alone."""
     client = Client(SERVER_NAME="localhost")
     client.force_login(User.objects.get(pk=user_id))
@@ -69,7 +69,7 @@ def _asked(path: str, user_id: int, told: Any) -> None:
     size = sum(map(len, answer.streaming_content)) if answer.streaming else len(answer.content)
     if answer.status_code != 200:
         raise SystemExit(f"{path}: {answer.status_code}")
-    told.put((time.perf_counter() - wall_s, time.process_time() - cpu_s, _peak_mib() - before_mib, size))
+    reported.put((time.perf_counter() - wall_s, time.process_time() - cpu_s, _peak_mib() - before_mib, size))
 
 
 def _peak_mib() -> float:
@@ -79,10 +79,10 @@ def _peak_mib() -> float:
 
 
 def measured(path: str, user: User, start: Callable[..., Any]) -> list[str]:
-    told = get_context("spawn").Queue()
-    asking = start(target=_asked, args=(path, user.pk, told))
+    reported = get_context("spawn").Queue()
+    asking = start(target=_asked, args=(path, user.pk, reported))
     asking.start()
-    wall_s, cpu_s, mib, size = told.get(timeout=300)
+    wall_s, cpu_s, mib, size = reported.get(timeout=300)
     asking.join()
     return [f"{wall_s:.1f}", f"{cpu_s:.1f}", f"{mib:.0f}", f"{size / 1e6:.2f}"]
 

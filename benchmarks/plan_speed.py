@@ -51,11 +51,11 @@ def plan_file(graph: Path, asked: list[dict[str, Any]], folder: Path) -> Planned
     command = [sys.executable, "manage.py", "plan_file", "--graph", str(graph)]
     command += ["--missions", str(folder / "missions.json"), "--json", str(folder / "plans.json")]
     process = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True)
-    said = process.stdout.read() if process.stdout else ""
+    stated = process.stdout.read() if process.stdout else ""
     _, status, usage = os.wait4(process.pid, 0)
     if status:
         raise SystemExit("plan_file has failed")
-    return Planned(json.loads((folder / "plans.json").read_bytes()), float(said.split(" in ")[1].split(" s;")[0]), usage.ru_maxrss / 1024)
+    return Planned(json.loads((folder / "plans.json").read_bytes()), float(stated.split(" in ")[1].split(" s;")[0]), usage.ru_maxrss / 1024)
 
 
 def article_ms(network: tuple[Any, Any], graph: Any, asked: list[dict[str, Any]], ours: Planned, limit_s: float) -> list[float]:
@@ -101,10 +101,12 @@ def large(options: argparse.Namespace, folder: Path) -> tuple[list[list[str]], l
         ours = plan_file(folder / "large.npz", asked, folder)
         (folder / "missions.json").write_text(json.dumps(asked))
         child = [sys.executable, "-m", "benchmarks.large_graph", "--planner", str(folder)]
-        said = json.loads(subprocess.run(child, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
-        rows.append([name, f"{ours.index_s:.2f} s", f"{ours.peak_mib:.0f} MiB", f"{ours.median_ms:.3f} ms", f"{said['peak_mib']:.0f} MiB"])
+        stated = json.loads(subprocess.run(child, cwd=ROOT, check=True, stdout=subprocess.PIPE).stdout)
+        rows.append(
+            [name, f"{ours.index_s:.2f} s", f"{ours.peak_mib:.0f} MiB", f"{ours.median_ms:.3f} ms", f"{stated['peak_mib']:.0f} MiB"]
+        )
         print(*rows[-1], sep="  ", flush=True)
-        if ours.index_s > MAX_INDEX_S or said["peak_mib"] > MAX_PLANNER_MIB or ours.median_ms > MAX_PLAN_MS:
+        if ours.index_s > MAX_INDEX_S or stated["peak_mib"] > MAX_PLANNER_MIB or ours.median_ms > MAX_PLAN_MS:
             missed.append(f"{options.large_nodes:,} nodes, {name}")
     return rows, missed
 

@@ -64,10 +64,10 @@ def main() -> None:
     change_ms = (quantiles(beside, n=100)[94] - quantiles(alone, n=100)[94]) * 1e3
     rows = [row("alone", alone, 0), row(f"beside {options.askers} askers of /api/schema", beside, answers)]
     text = table(["GET /api/v1/missions", "requests", "median [ms]", "p95 [ms]", "longest [ms]", "answers to the others meanwhile"], rows)
-    told = f"{text}\n\nThe p95 changes by {change_ms:+.1f} ms; less than {MAX_CHANGE_MS:g} is asked for. {machine('django')}"
-    print(told)
+    reported = f"{text}\n\nThe p95 changes by {change_ms:+.1f} ms; less than {MAX_CHANGE_MS:g} is asked for. {machine('django')}"
+    print(reported)
     if options.write:
-        write_section("Askers of the OpenAPI document", told + "\n\nAgain: `python -m benchmarks.schema_askers ADDRESS --token TOKEN`.")
+        write_section("Askers of the OpenAPI document", reported + "\n\nAgain: `python -m benchmarks.schema_askers ADDRESS --token TOKEN`.")
     if change_ms >= MAX_CHANGE_MS:
         raise SystemExit(1)
 

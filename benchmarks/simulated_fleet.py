@@ -128,7 +128,7 @@ def on_their_squares(fleet: Fleet) -> Fleet:
     return fleet
 
 
-def fly(port: int, systems: list[int], places: list[LonLat], speed: float, seconds: float, told: Any, begins: Any) -> None:
+def fly(port: int, systems: list[int], places: list[LonLat], speed: float, seconds: float, reported: Any, begins: Any) -> None:
     """In a process of its own."""
     launches = [Launch(system, place, talks_to=[("127.0.0.1", port)]) for system, place in zip(systems, places, strict=True)]
     fleet = on_their_squares(fleet_of(launches, speed=speed))
@@ -139,7 +139,7 @@ def fly(port: int, systems: list[int], places: list[LonLat], speed: float, secon
     began_cpu_s, ends_s = time.process_time(), time.monotonic() + seconds
     report = fleet.run(lambda: time.monotonic() >= ends_s)
     memory_mb = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    told.put(Batch(report, time.process_time() - began_cpu_s, memory_mb))
+    reported.put(Batch(report, time.process_time() - began_cpu_s, memory_mb))
     fleet.close()
 
 
@@ -198,7 +198,7 @@ def step_in_simulator(port: int, program: Any, uavs: list[Uav], speed: float, se
         flown = {name: after[name] - before[name] for name in ("simulated_s", "steps", "late_steps", "slipped_s")}
         report = FleetReport(
             uavs=len(uavs), simulated_s=flown["simulated_s"], wall_s=wall_s, steps=int(flown["steps"]), late_steps=int(flown["late_steps"]),
-            latest_s=after["latest_s"], slipped_s=flown["slipped_s"], sent=0, heard=0, failed=0,
+            latest_s=after["latest_s"], slipped_s=flown["slipped_s"], sent=0, received_count=0, failed=0,
         )  # fmt: skip
         return Step(len(uavs), speed, [Batch(report, used_s, memory_mb(player.pid or 0), counts_messages=False)], stored, gateway_s)
     finally:
@@ -215,9 +215,9 @@ def memory_mb(process: int) -> float:
 def step(port: int, program: Any, uavs: list[Uav], processes: int, speed: float, seconds: float) -> Step:
     systems, places = [uav.mavlink_system_id for uav in uavs], in_a_row(FIRST, len(uavs), 20.0)
     spawn = multiprocessing.get_context("spawn")
-    told, begins = spawn.Queue(), spawn.Barrier(processes + 1)
+    reported, begins = spawn.Queue(), spawn.Barrier(processes + 1)
     players = [
-        spawn.Process(target=fly, args=(port, systems[part::processes], places[part::processes], speed, seconds, told, begins))
+        spawn.Process(target=fly, args=(port, systems[part::processes], places[part::processes], speed, seconds, reported, begins))
         for part in range(processes)
     ]
     for player in players:
@@ -225,7 +225,7 @@ def step(port: int, program: Any, uavs: list[Uav], processes: int, speed: float,
     begins.wait()
     records = TelemetryRecord.objects.filter(uav__in=uavs)
     before, began_cpu_s = records.count(), cpu_s(program)
-    batches = [told.get() for _ in players]
+    batches = [reported.get() for _ in players]
     used_s = cpu_s(program) - began_cpu_s
     time.sleep(SETTLES_S)
     for player in players:

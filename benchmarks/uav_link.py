@@ -92,8 +92,10 @@ def fill(uav: Uav, number: int) -> None:
 
     def record(place: int) -> NewRecord:
         at = start + timedelta(seconds=place)
-        told = Measurement(longitude_deg=9.5 + place * 1e-6, latitude_deg=47.1, altitude_amsl_m=500.0, battery_percent=80.0, mode="Mission")
-        return NewRecord(uav.pk, LinkKind.MAVLINK, "log", place, at, at, told)
+        reported = Measurement(
+            longitude_deg=9.5 + place * 1e-6, latitude_deg=47.1, altitude_amsl_m=500.0, battery_percent=80.0, mode="Mission"
+        )
+        return NewRecord(uav.pk, LinkKind.MAVLINK, "log", place, at, at, reported)
 
     for first in range(0, number, 5_000):
         store_records([record(place) for place in range(first, min(first + 5_000, number))])

@@ -49,7 +49,7 @@ def give_back_after_task(**_: object) -> None:
 
 
 @beat_init.connect
-def tell_of_the_installation(**_: object) -> None:
+def report_the_installation(**_: object) -> None:
     """The schedule runs once, so it is the one that tells how long queues are."""
     from config.system_metrics import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 

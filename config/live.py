@@ -61,13 +61,13 @@ class SaysGoodbye:
 
     def __init__(self, application: Application) -> None:
         self.application = application
-        self._hears = False
+        self._receives = False
 
     async def __call__(self, scope: dict[str, Any], receive: Receive, send: Send) -> None:
         farewell = farewell_here()
-        if not self._hears:
-            self._hears = True
-            farewell.hear_signal()
+        if not self._receives:
+            self._receives = True
+            farewell.receive_signal()
         if farewell.has_begun and scope["type"] == "websocket":
             await _refuse(send)
         else:
@@ -97,8 +97,8 @@ def _faults() -> list[str]:
         connections.close_all()  # this thread's alone
 
 
-async def _answer(send: Send, status: int, told: dict[str, Any]) -> None:
-    body = json.dumps(told).encode()
+async def _answer(send: Send, status: int, reported: dict[str, Any]) -> None:
+    body = json.dumps(reported).encode()
     headers = [(b"content-type", b"application/json"), (b"cache-control", b"no-store"), (b"content-length", str(len(body)).encode())]
     await send({"type": "http.response.start", "status": status, "headers": headers})
     await send({"type": "http.response.body", "body": body})

@@ -37,21 +37,21 @@ class SoftEnd(StartStopStep):
     def __init__(self, worker: Any, **named: Any) -> None:
         super().__init__(worker, **named)
         self._worker, self._process = worker, os.getpid()
-        self._told_s: float | None = None
+        self._reported_s: float | None = None
         self._cancelled_s: float | None = None
-        self._hears = False
-        signals.worker_before_create_process.connect(self._hear, weak=False)
+        self._receives = False
+        signals.worker_before_create_process.connect(self._receive, weak=False)
 
-    def _hear(self, **_: Any) -> None:
+    def _receive(self, **_: Any) -> None:
         """Before the first process is begun: from then on Celery's own way to end may wait for one that does not hear."""
         is_main = threading.current_thread() is threading.main_thread()  # no other hears signals
-        if is_main and not self._hears and os.getpid() == self._process:
-            self._hears = True
+        if is_main and not self._receives and os.getpid() == self._process:
+            self._receives = True
             for number in SIGNALS:
                 signal.signal(number, self._end)
 
     def start(self, worker: Any) -> None:
-        self._hear()
+        self._receive()
         self._timer = worker.timer.call_repeatedly(POLL_INTERVAL_S, self._look)
 
     def stop(self, worker: Any) -> None:
@@ -60,16 +60,16 @@ class SoftEnd(StartStopStep):
     def _end(self, number: int, frame: FrameType | None) -> None:
         if os.getpid() != self._process:  # a process of the pool between its fork and handlers of its own: it has no work yet
             os._exit(1)
-        if self._told_s is not None:
+        if self._reported_s is not None:
             return
-        self._told_s = time.monotonic()
+        self._reported_s = time.monotonic()
         _later(ENDS_WITHIN_S, os._exit, 1)  # a queue that neither answers nor refuses holds up nothing
         if not state.active_requests:
             self._leave()
 
     def _look(self) -> None:
         """In the worker's loop."""
-        if self._told_s is None or state.should_terminate is not None:
+        if self._reported_s is None or state.should_terminate is not None:
             return
         self._take_nothing_more()
         now_s = time.monotonic()
@@ -78,7 +78,7 @@ class SoftEnd(StartStopStep):
                 self._leave()
         elif not state.active_requests:
             self._leave()
-        elif now_s - self._told_s >= settings.CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT:
+        elif now_s - self._reported_s >= settings.CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT:
             self._cancelled_s = now_s
             logger.warning("%s tasks are not done and go back to the queue", len(state.active_requests))
             self._worker.consumer.cancel_active_requests()

@@ -107,7 +107,7 @@ class Proof:
         self.site.end(pod)
         self.pods.remove(pod)
 
-    def _tell(self, what: str, figure: str) -> None:
+    def _notify(self, what: str, figure: str) -> None:
         """At once: a run that ends early has not been for nothing."""
         self.figures[what] = figure
         print(f"{what}: {figure}", flush=True)
@@ -155,7 +155,7 @@ class Proof:
         code = self.podman("wait", pod.container, timeout_s=600)
         if code != "0":
             raise RuntimeError(f"the migration ended with {code}: {self.podman.logs(pod.container)[-2000:]}")
-        self._tell("migration of an empty database", f"{time.monotonic() - began_s:.1f} s")
+        self._notify("migration of an empty database", f"{time.monotonic() - began_s:.1f} s")
 
     def _start_all(self) -> None:
         """All at once, as a cluster does."""
@@ -164,14 +164,14 @@ class Proof:
         with ThreadPoolExecutor(4) as several:
             started = list(several.map(self._start, first))
         self.web = started[:2]
-        self.names.tell(f"web.{SERVICES}", [pod.address for pod in self.web])  # also of one that is gone: the proxy finds out by itself
+        self.names.notify(f"web.{SERVICES}", [pod.address for pod in self.web])  # also of one that is gone: the proxy finds out by itself
         for name in ("live", "uav-link"):
-            self.names.tell(f"{name}.{SERVICES}", [next(pod for pod in started if pod.program == name).address])
+            self.names.notify(f"{name}.{SERVICES}", [next(pod for pod in started if pod.program == name).address])
         self.proxy_pod = self._start(self.site.pod("proxy", 1))
         self.running = [*started, self.proxy_pod]
         wait_until_ready(self.running, TIMEOUT_S)
         whole_s = time.monotonic() - began_s
-        self._tell("every program ready", f"{whole_s:.1f} s after the first was started")
+        self._notify("every program ready", f"{whole_s:.1f} s after the first was started")
         if whole_s > READY_S:
             self.missed.append(f"all programs were ready after {whole_s:.0f} s, not {READY_S:.0f} s")
         for pod in self.running:
@@ -189,7 +189,7 @@ class Proof:
         self.podman("exec", self.web[0].container, "sh", "-c", "head -c 18 /dev/urandom | base64 >/var/lib/spanwise/password")
         for command in DEMO:
             self._manage(*command)
-        self._tell("demo region, imported and its graph built", f"{time.monotonic() - began_s:.1f} s")
+        self._notify("demo region, imported and its graph built", f"{time.monotonic() - began_s:.1f} s")
         token = self._manage("api_token", "proof", "--days", "1").splitlines()[-1]
         self.proxy = Proxy(self.proxy_pod.address, 8080, token)
         self.bodies = plan_bodies(self.proxy)
@@ -197,7 +197,7 @@ class Proof:
             under_load(self.proxy, self.bodies, 8, 2.0, lambda: None)
 
     def _note(self, what: str, counted: Counted) -> None:
-        self._tell(what, str(counted))
+        self._notify(what, str(counted))
         if counted.failed:
             self.missed.append(f"{what}: {counted.failed} failed, first: {counted.faults[:3]}")
 
@@ -250,13 +250,13 @@ class Proof:
         self._note("certificate swapped twice under load", under_load(proxy, self.bodies, self.options.people, self.options.lasts_s, swap))
         if len(seen) != 3:
             self.missed.append(f"{len(seen)} certificates were seen, not 3")
-        self._tell("TLS below 1.2", "refused" if _refuses_old_tls(pod.address) else "accepted")
+        self._notify("TLS below 1.2", "refused" if _refuses_old_tls(pod.address) else "accepted")
         if self.figures["TLS below 1.2"] != "refused":
             self.missed.append("TLS 1.1 is accepted")
         connection = Proxy(pod.address, 8080, self.proxy.token).connect()
         connection.request("GET", "/sign-in", headers={"Host": "spanwise.example.org"})
         answer = connection.getresponse()
-        self._tell("http", f"{answer.status} {answer.headers.get('Location', '')}")
+        self._notify("http", f"{answer.status} {answer.headers.get('Location', '')}")
         if (answer.status, answer.headers.get("Location")) != (308, "https://spanwise.example.org/sign-in"):
             self.missed.append("http does not lead to https")
 
@@ -264,7 +264,7 @@ class Proof:
         """While everything runs."""
         began_s = time.monotonic()
         self.podman("exec", self.web[0].container, "spanwise", "backup", BACKUP, timeout_s=TIMEOUT_S)
-        self._tell("backup while everything runs", f"{time.monotonic() - began_s:.1f} s")
+        self._notify("backup while everything runs", f"{time.monotonic() - began_s:.1f} s")
 
     def _restore(self) -> None:
         """In a pod made of the migration's Job, with the files, as the documentation has it."""
@@ -276,7 +276,7 @@ class Proof:
         template["volumes"].append({"name": "files", "hostPath": {"path": str(self.site.files), "type": "Directory"}})
         self._start(pod)
         code = self.podman("wait", pod.container, timeout_s=TIMEOUT_S)
-        self._tell("restore into the same database", f"{time.monotonic() - began_s:.1f} s")
+        self._notify("restore into the same database", f"{time.monotonic() - began_s:.1f} s")
         if code != "0":
             self.missed.append(f"the restore ended with {code}: {self.podman.logs(pod.container)[-500:]}")
 
@@ -291,7 +291,7 @@ class Proof:
         for pod in self.running:
             print(f"{pod.name.removeprefix('proof-'):<20} {pod.ready_s:8.1f} {pod.exit_s:8.2f}  {'; '.join(pod.faults)}")
             self.missed += [f"{pod.name}: {fault}" for fault in pod.faults]
-        self._tell("load of the machine at the end", f"{os.getloadavg()[1]:.1f} on {os.cpu_count()} cores")
+        self._notify("load of the machine at the end", f"{os.getloadavg()[1]:.1f} on {os.cpu_count()} cores")
         for missed in self.missed:
             print(f"MISSED {missed}")
         if self.options.json:

@@ -84,9 +84,9 @@ class ParameterSetting:
             return []
         if message.param_id != self._name:
             return []
-        told = self._state.parameters.get(self._name)
-        if told is None or not math.isclose(told, self._value, rel_tol=1e-5, abs_tol=1e-3):
-            self._other, self._is_set = told, False
+        reported = self._state.parameters.get(self._name)
+        if reported is None or not math.isclose(reported, self._value, rel_tol=1e-5, abs_tol=1e-3):
+            self._other, self._is_set = reported, False
             return []
         if self._is_set:
             self.outcome, self.wake_at_s = CommandOutcome(CommandEnd.APPLIED, words=f"{self._name} is {self._value:g}, read back."), None

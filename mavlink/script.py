@@ -65,8 +65,8 @@ class NextHeartbeat:
         return self.tick(now_s)
 
     def tick(self, now_s: float) -> Messages:
-        heard_s = self._state.heartbeat_at_s
-        if (heard_s is not None and heard_s > self._since_s) or (self.wake_at_s is not None and now_s >= self.wake_at_s):
+        last_message_s = self._state.heartbeat_at_s
+        if (last_message_s is not None and last_message_s > self._since_s) or (self.wake_at_s is not None and now_s >= self.wake_at_s):
             self.outcome, self.wake_at_s = True, None
         return []
 

@@ -54,7 +54,7 @@ class VehicleState:
     capabilities: int | None = None
     firmware: tuple[int, int, int] | None = None
     is_ready_to_arm: bool | None = None
-    heard_at_s: float | None = None
+    received_at_s: float | None = None
     heartbeat_at_s: float | None = None
     landed_at_s: float | None = None
     parameters: dict[str, float] = field(default_factory=dict)
@@ -64,7 +64,7 @@ class VehicleState:
     def receive(self, message: Message, now_s: float) -> None:
         if message.get_srcSystem() != self.system or message.get_srcComponent() != AUTOPILOT:
             return
-        self.heard_at_s = now_s
+        self.received_at_s = now_s
         taken = _TAKES.get(message.get_type())
         if taken is not None:
             taken(self, message, now_s)
@@ -101,9 +101,9 @@ class VehicleState:
 
     @property
     def _knows_landed_state(self) -> bool:
-        if self.landed_at_s is None or self.heard_at_s is None or self.landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
+        if self.landed_at_s is None or self.received_at_s is None or self.landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
             return False
-        return self.heard_at_s - self.landed_at_s <= self.fresh_s
+        return self.received_at_s - self.landed_at_s <= self.fresh_s
 
     @property
     def is_held(self) -> bool:

@@ -147,8 +147,8 @@ def outcome_in_words(stored: str) -> str:
     """The same in the reader's language; sentences that nobody has foreseen are as they are."""
     found, rest = [], stored
     while rest := rest.lstrip():
-        sentence, said = _first(rest)
-        found.append(said)
+        sentence, stated = _first(rest)
+        found.append(stated)
         rest = rest[len(sentence) :]
     return " ".join(found)
 

@@ -40,10 +40,10 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "/metrics":
             self._answer(200, CONTENT_TYPE_LATEST, metrics_text())
         elif path == "/healthz":
-            self._tell("alive", [f"{loop} hangs" for loop in pulse.hanging()])
+            self._notify("alive", [f"{loop} hangs" for loop in pulse.hanging()])
         elif path == "/readyz":
             try:
-                self._tell("ready", self.server.readiness.faults())
+                self._notify("ready", self.server.readiness.faults())
             finally:
                 connections.close_all()  # this thread's alone
         else:
@@ -52,9 +52,9 @@ class _Handler(BaseHTTPRequestHandler):
     def do_HEAD(self) -> None:
         self.do_GET()
 
-    def _tell(self, what: str, faults: list[str]) -> None:
-        told: dict[str, Any] = {what: not faults} | ({"reasons": faults} if faults else {})
-        self._answer(503 if faults else 200, "application/json", json.dumps(told).encode())
+    def _notify(self, what: str, faults: list[str]) -> None:
+        reported: dict[str, Any] = {what: not faults} | ({"reasons": faults} if faults else {})
+        self._answer(503 if faults else 200, "application/json", json.dumps(reported).encode())
 
     def _answer(self, status: int, media_type: str, body: bytes) -> None:
         self.send_response(status)
@@ -144,7 +144,7 @@ _here: Exposition | None = None
 _begins = threading.Lock()
 
 
-def tell_how_it_does(program: str, *checks: Callable[[], list[str]]) -> Exposition | None:
+def serve_health(program: str, *checks: Callable[[], list[str]]) -> Exposition | None:
     """Where SPANWISE_METRICS says so, once a process. `checks` are what the program needs to work, else database and Redis."""
     global _here
     address = address_of_environment()

@@ -47,29 +47,29 @@ class JsonFormatter(logging.Formatter):
         self._program = program or os.environ.get("SPANWISE_PROGRAM", "")
 
     def format(self, record: logging.LogRecord) -> str:
-        told: dict[str, Any] = {
+        reported: dict[str, Any] = {
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname,
             "logger": record.name,
             "message": without_secrets(record.getMessage()),
         }
         if self._program:
-            told["program"] = self._program
-        told |= named_in(record)
+            reported["program"] = self._program
+        reported |= named_in(record)
         if record.exc_info:
-            told["exception"] = without_secrets(self.formatException(record.exc_info))
+            reported["exception"] = without_secrets(self.formatException(record.exc_info))
         if record.stack_info:
-            told["stack"] = without_secrets(record.stack_info)
-        return json.dumps(told, default=str)  # in ASCII: some programs take other signs for the end of a line
+            reported["stack"] = without_secrets(record.stack_info)
+        return json.dumps(reported, default=str)  # in ASCII: some programs take other signs for the end of a line
 
 
 def named_in(record: logging.LogRecord) -> dict[str, str]:
     """What the line itself says in `extra`, before what is known of the work at hand. Django writes some lines once a request is over, and
     names the request object in them.
     """
-    told = {name: getattr(record, name, None) for name in FIELDS}
-    read = getattr(told.pop("request"), ABOUT_REQUEST, None)
-    named = {**(read() if callable(read) else {}), **facts(), **{name: value for name, value in told.items() if value is not None}}
+    reported = {name: getattr(record, name, None) for name in FIELDS}
+    read = getattr(reported.pop("request"), ABOUT_REQUEST, None)
+    named = {**(read() if callable(read) else {}), **facts(), **{name: value for name, value in reported.items() if value is not None}}
     return {name: str(named[name]) for name in FIELDS if named.get(name) not in (None, "")}
 
 
@@ -78,11 +78,11 @@ def is_asked_for() -> bool:
 
 
 def json_line(message: str, *, level: str = "INFO", logger: str = "output") -> str:
-    told = {"time": datetime.now(UTC).isoformat(timespec="milliseconds"), "level": level, "logger": logger}
-    told["message"] = without_secrets(message)
+    reported = {"time": datetime.now(UTC).isoformat(timespec="milliseconds"), "level": level, "logger": logger}
+    reported["message"] = without_secrets(message)
     if program := os.environ.get("SPANWISE_PROGRAM"):
-        told["program"] = program
-    return json.dumps(told)
+        reported["program"] = program
+    return json.dumps(reported)
 
 
 def is_json(line: str) -> bool:
@@ -126,8 +126,8 @@ class JsonLines(io.TextIOBase):
             *lines, self._begun = (self._begun + text).split("\n")
             if len(self._begun) > MAX_LINE_LENGTH:
                 lines, self._begun = [*lines, self._begun], ""
-            if told := "".join(self._line(line) + "\n" for line in lines if line.strip()):
-                self._stream.write(told)
+            if reported := "".join(self._line(line) + "\n" for line in lines if line.strip()):
+                self._stream.write(reported)
                 self._stream.flush()
         return len(text)
 
@@ -147,23 +147,23 @@ def write_json_lines() -> None:
     """From here on, in this process and those that it forks."""
     sys.stdout = sys.__stdout__ = JsonLines(sys.stdout, "stdout")  # type: ignore[assignment,misc]
     sys.stderr = sys.__stderr__ = JsonLines(sys.stderr, "stderr")  # type: ignore[assignment,misc]
-    sys.excepthook = _tell_uncaught
-    threading.excepthook = lambda told: _tell_uncaught(told.exc_type, told.exc_value, told.exc_traceback)
-    warnings.showwarning = _tell_warning
+    sys.excepthook = _log_uncaught
+    threading.excepthook = lambda reported: _log_uncaught(reported.exc_type, reported.exc_value, reported.exc_traceback)
+    warnings.showwarning = _log_warning
 
 
-def _tell(level: int, message: str, error: Any = None) -> None:
+def _notify(level: int, message: str, error: Any = None) -> None:
     record = logging.LogRecord("python", level, "", 0, message, None, error)
     sys.stderr.write(JsonFormatter(os.environ.get("SPANWISE_PROGRAM", "")).format(record) + "\n")
 
 
-def _tell_uncaught(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
+def _log_uncaught(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
     if not issubclass(kind, SystemExit | KeyboardInterrupt):
-        _tell(logging.CRITICAL, f"{kind.__name__} was not caught", (kind, error, trace))
+        _notify(logging.CRITICAL, f"{kind.__name__} was not caught", (kind, error, trace))
 
 
-def _tell_warning(message: Any, category: type[Warning], filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
-    _tell(logging.WARNING, f"{category.__name__}: {message} ({filename}:{lineno})")
+def _log_warning(message: Any, category: type[Warning], filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
+    _notify(logging.WARNING, f"{category.__name__}: {message} ({filename}:{lineno})")
 
 
 def main() -> None:

@@ -16,9 +16,9 @@ Facts = Mapping[str, str]
 _about: ContextVar[Facts | Callable[[], Facts] | None] = ContextVar("about", default=None)
 
 
-def sane_request_id(told: str | None) -> str:
+def sane_request_id(reported: str | None) -> str:
     """The one that came along, if it is fit to be written down and sent on; else a new one."""
-    return told if told is not None and _SANE_ID.fullmatch(told) else secrets.token_hex(16)
+    return reported if reported is not None and _SANE_ID.fullmatch(reported) else secrets.token_hex(16)
 
 
 def facts() -> Facts:

@@ -1,6 +1,6 @@
 """What every program does once it has begun: it tells how it does, is traced where that is asked for, and minds its memory."""
 
-from operation.exposition import tell_how_it_does
+from operation.exposition import serve_health
 from operation.garbage import give_back_now_and_then, keep_what_is_there
 from operation.readiness import Check
 from operation.tracing import begin_tracing
@@ -9,6 +9,6 @@ from operation.tracing import begin_tracing
 def program_begins(program: str, *checks: Check) -> None:
     """`checks` are what it needs to work, else database and Redis."""
     begin_tracing(program)
-    tell_how_it_does(program, *checks)
+    serve_health(program, *checks)
     keep_what_is_there()
     give_back_now_and_then()

@@ -6,8 +6,8 @@ from pathlib import Path
 
 
 def _version() -> str:
-    if told := os.environ.get("SPANWISE_VERSION"):
-        return told[:64]
+    if reported := os.environ.get("SPANWISE_VERSION"):
+        return reported[:64]
     try:
         project = tomllib.loads((Path(__file__).resolve().parent.parent / "pyproject.toml").read_text())
     except OSError:

@@ -75,9 +75,9 @@ def _with_database() -> dict[str, str]:
     return os.environ | {"DATABASE_URL": secret("DATABASE_URL")}
 
 
-def _become(command: list[str], told: Mapping[str, str]) -> NoReturn:
+def _become(command: list[str], reported: Mapping[str, str]) -> NoReturn:
     _open_as_many_files_as_allowed()
-    os.execvpe(command[0], command, told)  # noqa: S606 - no shell
+    os.execvpe(command[0], command, reported)  # noqa: S606 - no shell
 
 
 def missing_secrets() -> list[str]:

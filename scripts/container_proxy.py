@@ -101,4 +101,4 @@ def main() -> int:
             seen = fingerprint(named)
             if served is not None and seen and seen != known and served.take():
                 known = seen
-                print(proxy_lines.told("the certificate has changed: new connections get the new one"), file=sys.stderr, flush=True)
+                print(proxy_lines.reported("the certificate has changed: new connections get the new one"), file=sys.stderr, flush=True)

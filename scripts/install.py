@@ -45,7 +45,7 @@ class Progress:
     def __init__(self, about_s: float) -> None:
         self._about_s = about_s
         self._began_s = time.monotonic()
-        self._told_s = self._began_s
+        self._reported_s = self._began_s
         self._is_terminal = sys.stdout.isatty()
 
     def done(self, step: Step) -> None:
@@ -53,9 +53,9 @@ class Progress:
 
     def going_on(self, steps: list[Step]) -> None:
         now = time.monotonic()
-        if now - self._told_s < (TERMINAL_INTERVAL_S if self._is_terminal else LOG_INTERVAL_S):
+        if now - self._reported_s < (TERMINAL_INTERVAL_S if self._is_terminal else LOG_INTERVAL_S):
             return
-        self._told_s = now
+        self._reported_s = now
         names = ", ".join(step.text + (f" ({step.detail})" if step.detail else "") for step in steps)
         text = f"{now - self._began_s:.0f} s of about {self._about_s:.0f} s: {names}"
         self._print(text[: shutil.get_terminal_size().columns - 1] if self._is_terminal else f"{text}\n")

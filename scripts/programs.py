@@ -108,7 +108,7 @@ def _simulator(places: Places) -> Program:
     return Program("simulator", PROGRAM_STAGE, commands.management("run_simulator"), places.process("simulator"), patience_s=12)
 
 
-def _told(places: Places, sockets: Path, program: Program) -> Program:
+def _reported(places: Places, sockets: Path, program: Program) -> Program:
     """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
     environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, program.name)}"}
     if program.name.startswith("worker-"):
@@ -120,7 +120,7 @@ def _told(places: Places, sockets: Path, program: Program) -> Program:
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
-    return [_told(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
+    return [_reported(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
 
 
 def _programs(places: Places, sockets: Path) -> list[Program]:

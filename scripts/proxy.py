@@ -150,10 +150,10 @@ def _line() -> str:
     """How a request is written down: for people, or as JSON for programs."""
     if not is_asked_for():
         return """'$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id'"""
-    told = {"time": "$time_iso8601", "level": "INFO", "logger": "requests", "message": "$told_request", "program": "proxy"}
-    told |= {"request": "$told_id", "address": "$remote_addr"}
+    reported = {"time": "$time_iso8601", "level": "INFO", "logger": "requests", "message": "$told_request", "program": "proxy"}
+    reported |= {"request": "$told_id", "address": "$remote_addr"}
     numbers = '"status": $status, "bytes": $body_bytes_sent, "seconds": $request_time'
-    return f"escape=json '{json.dumps(told)[:-1]}, {numbers}}}'"
+    return f"escape=json '{json.dumps(reported)[:-1]}, {numbers}}}'"
 
 
 def _file_limit() -> int:

@@ -36,10 +36,10 @@ def of_requests(kind: CostlyKind) -> str:
     operators = _operators()
     if not operators:
         return ""
-    said = f"\n            limit_req zone={kind.name} burst={kind.burst * operators} nodelay;"
+    stated = f"\n            limit_req zone={kind.name} burst={kind.burst * operators} nodelay;"
     if kind.at_once:
-        said += f"\n            limit_conn {kind.name}_at_once {kind.at_once * operators};"
-    return f"{said}\n            error_page 429 = @api_too_many;"
+        stated += f"\n            limit_conn {kind.name}_at_once {kind.at_once * operators};"
+    return f"{stated}\n            error_page 429 = @api_too_many;"
 
 
 def of_sockets() -> str:

@@ -20,7 +20,7 @@ LEVELS = {"debug": "DEBUG", "info": "INFO", "notice": "INFO", "warn": "WARNING",
 PASSED_ON = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP)
 
 
-def told(line: str) -> str:
+def reported(line: str) -> str:
     """A line of nginx as it is to be written down."""
     if is_json(line):
         return line
@@ -42,7 +42,7 @@ def start(command: list[str]) -> subprocess.Popen[str]:
 
 def _write_down(lines: Iterable[str]) -> None:
     for line in lines:
-        sys.stderr.write(told(line.rstrip("\n")) + "\n")
+        sys.stderr.write(reported(line.rstrip("\n")) + "\n")
         sys.stderr.flush()
 
 

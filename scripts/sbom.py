@@ -23,11 +23,11 @@ def python_components() -> list[Component]:
     """Every distribution of this Python."""
     found = []
     for distribution in distributions():
-        told = distribution.metadata
-        name = told["Name"]
-        licence = next(filter(None, (told[field] for field in ("License-Expression", "License") if field in told)), "")
+        reported = distribution.metadata
+        name = reported["Name"]
+        licence = next(filter(None, (reported[field] for field in ("License-Expression", "License") if field in reported)), "")
         if not licence or len(licence) > MAX_LICENCE_LENGTH:
-            classes = [entry.rpartition(":: ")[2] for entry in told.get_all("Classifier") or [] if entry.startswith("License ::")]
+            classes = [entry.rpartition(":: ")[2] for entry in reported.get_all("Classifier") or [] if entry.startswith("License ::")]
             licence = ", ".join(classes)
         found.append(_component(name, distribution.version, f"pkg:pypi/{name.lower().replace('_', '-')}@{distribution.version}", licence))
     return found

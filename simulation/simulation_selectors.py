@@ -47,8 +47,8 @@ def _of_change(change: SimulationChange) -> MissionEvent:
     who = change.created_by.display_name if change.created_by else None
     vehicle, by = change.vehicle, f" by {who}" if who else ""
     name, uav_id = ("All simulated UAVs", None) if vehicle is None else (vehicle.name, vehicle.uav_id)
-    told = {"speed": change.speed, "conditions": change.conditions, "faults": change.faults}
-    values: dict[str, Any] = {field: value for field, value in told.items() if value is not None}
+    reported = {"speed": change.speed, "conditions": change.conditions, "faults": change.faults}
+    values: dict[str, Any] = {field: value for field, value in reported.items() if value is not None}
     if change.faults is None:
         kind, words = EventKind.SIMULATION_CHANGED, f"{name}: {' and '.join(values)} changed{by}"
     else:

@@ -92,8 +92,8 @@ class SimulatedVehicle(models.Model):
     reason = models.CharField(max_length=40, blank=True)
     end_wanted_at = models.DateTimeField(null=True, blank=True, help_text="since when it alone is to be gone")
     restarts = models.PositiveIntegerField(default=0, help_text="how often it was put on the ground anew")
-    told = models.JSONField(default=dict, help_text="how it does, as its simulator said last")
-    told_at = models.DateTimeField(null=True, blank=True)
+    reported = models.JSONField(default=dict, db_column="told", help_text="how it does, as its simulator said last")
+    reported_at = models.DateTimeField(null=True, blank=True, db_column="told_at")
 
     class Meta:
         ordering = ["sequence"]

@@ -16,7 +16,7 @@ class TelemetryConfig(AppConfig):
         from missions.hooks.in_air import (  # noqa: PLC0415
             register_down_source,
             register_ground_source,
-            register_never_heard_source,
+            register_never_connected_source,
             register_source,
         )
 
@@ -24,7 +24,7 @@ class TelemetryConfig(AppConfig):
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
         register_source("telemetry.selectors.in_the_air.places_in_the_air")
         register_ground_source("telemetry.selectors.in_the_air.reported_on_the_ground")
-        register_never_heard_source("telemetry.selectors.in_the_air.never_heard")
+        register_never_connected_source("telemetry.selectors.in_the_air.never_connected")
         register_down_source("telemetry.selectors.in_the_air.down_off_plan")
         register_check("telemetry.services.links.approved_vehicles.reasons_of_vehicles")
         register_start_check("telemetry.services.preflight.reasons_not_ready")

@@ -11,11 +11,11 @@ from telemetry.live.feed import Feed
 from telemetry.live.hub import hub_here
 from telemetry.live.messages import message
 from telemetry.live.reader import Reader, SaysNonsense
-from workspace.live.sockets import NOTHING_TO_SAY, SignedInSocket
+from workspace.live.sockets import NO_MESSAGE, SignedInSocket
 from workspace.locale_negotiation import language_of_socket
 from workspace.models import User
 
-MAX_WORD_LENGTH = 4_096  # characters that a page may say at once
+MAX_MESSAGE_LENGTH = 4_096  # characters that a page may say at once
 HEARTBEAT_INTERVAL_S = 2.0  # a page that hears nothing for 5 s says that it has no data (static/js/live/feed.js)
 STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
 GONE, STALLED = 4404, 1013
@@ -62,7 +62,7 @@ class LiveConsumer(SignedInSocket):
             if self._reader is not None:
                 _heed(self._reader, text_data)
         except ValueError:
-            self.hang_up(NOTHING_TO_SAY)
+            self.hang_up(NO_MESSAGE)
 
     async def _speak(self, reader: Reader, feed: Feed) -> None:
         full_s = 0.0
@@ -78,11 +78,11 @@ class LiveConsumer(SignedInSocket):
                 return self.hang_up(STALLED)
 
 
-def _heed(reader: Reader, said: str | None) -> None:
+def _heed(reader: Reader, stated: str | None) -> None:
     """Raises ValueError where it is nothing that a page says."""
-    if said is None or len(said) > MAX_WORD_LENGTH:
+    if stated is None or len(stated) > MAX_MESSAGE_LENGTH:
         raise ValueError
-    match orjson.loads(said):
+    match orjson.loads(stated):
         case {"type": "have", "sequence": int(sequence), **rest} if not rest:
             reader.confirm(sequence)
         case {"type": "again", **rest} if not rest:

@@ -33,16 +33,16 @@ def _flat(operations: list[Any]) -> Iterator[Any]:
 
 
 def _faults_of(operation: Any, *, is_unused: bool) -> Iterator[str]:
-    told = operation.describe()
+    reported = operation.describe()
     if isinstance(operation, RENAMES):
-        yield f"{told}: the version before knows the old name alone; add the new one, fill it, and take the old one away later"
+        yield f"{reported}: the version before knows the old name alone; add the new one, fill it, and take the old one away later"
     elif isinstance(operation, TAKES_AWAY) and not is_unused:
-        yield f"{told}: the version before still uses it; UNUSED_SINCE is missing"
+        yield f"{reported}: the version before still uses it; UNUSED_SINCE is missing"
     elif isinstance(operation, migrations.AddField):
         field = operation.field
         is_optional = field.null or getattr(field, "db_default", NOT_PROVIDED) is not NOT_PROVIDED or isinstance(field, ManyToManyField)
         if not is_optional:
-            yield f"{told}: the version before adds rows without it; let it be null, or give it a db_default"
+            yield f"{reported}: the version before adds rows without it; let it be null, or give it a db_default"
     elif isinstance(operation, migrations.RunSQL) and not is_unused:
         text = operation.sql if isinstance(operation.sql, str) else " ".join(str(part) for part in operation.sql)
         yield from (f"raw SQL says {word.strip()}" for word in WORDS_OF_SQL if word in text.upper())

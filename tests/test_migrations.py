@@ -28,8 +28,8 @@ def later_migrations() -> list[str]:
 
 
 def test_the_version_before_can_go_on_beside_every_migration() -> None:
-    told = {name: faults(importlib.import_module(name), RELEASED) for name in later_migrations()}
-    assert {name: found for name, found in told.items() if found} == {}
+    reported = {name: faults(importlib.import_module(name), RELEASED) for name in later_migrations()}
+    assert {name: found for name, found in reported.items() if found} == {}
 
 
 def test_every_app_is_under_the_rule() -> None:
@@ -37,8 +37,8 @@ def test_every_app_is_under_the_rule() -> None:
     assert with_migrations == BEFORE_THE_RULE.keys()
 
 
-def migration(*operations: Any, **said: str) -> ModuleType:
-    found: Any = SimpleNamespace(Migration=SimpleNamespace(operations=list(operations)), **said)
+def migration(*operations: Any, **stated: str) -> ModuleType:
+    found: Any = SimpleNamespace(Migration=SimpleNamespace(operations=list(operations)), **stated)
     return found  # type: ignore[no-any-return]
 
 

@@ -18,8 +18,8 @@ def language_of_socket(user: User, scope: Mapping[str, Any]) -> str:
     """scope: of a websocket behind the session's middleware."""
     request = HttpRequest()
     request.COOKIES = dict(scope.get("cookies", {}))
-    told = dict(scope.get("headers", [])).get(b"accept-language", b"")
-    request.META["HTTP_ACCEPT_LANGUAGE"] = told.decode("latin-1")
+    reported = dict(scope.get("headers", [])).get(b"accept-language", b"")
+    request.META["HTTP_ACCEPT_LANGUAGE"] = reported.decode("latin-1")
     return language_of_request(user, request)
 
 

@@ -200,11 +200,11 @@ class Installation:
 
     def let_in(self, *names: str) -> None:
         """From now on the proxy finds these replicas of web and live (by_name)."""
-        self._tell_names(self._let_in | set(names))
+        self._publish_names(self._let_in | set(names))
 
     def keep_out(self, *names: str) -> None:
         """The proxy forgets these within its two seconds, and sends them nothing more; what they have they go on answering (by_name)."""
-        self._tell_names(self._let_in - set(names))
+        self._publish_names(self._let_in - set(names))
 
     def is_ready(self, name: str) -> bool:
         """Whether this replica of web answers that it is ready: itself, not the proxy for it."""
@@ -282,12 +282,12 @@ class Installation:
         connection.connect(str(self.sockets / f"{name}.sock"))
         return connection
 
-    def _tell_names(self, let_in: set[str]) -> None:
+    def _publish_names(self, let_in: set[str]) -> None:
         if self.name_server is None:
             raise RuntimeError("this installation's proxy does not ask for names")
         self._let_in = let_in
         for kind in HOSTS:
-            self.name_server.tell(f"{kind}.{SITE}", sorted(self._host(name) for name in let_in if kind_of(name) == kind))
+            self.name_server.notify(f"{kind}.{SITE}", sorted(self._host(name) for name in let_in if kind_of(name) == kind))
 
     def _give_settings(self) -> None:
         shared = dict(self.settings)

@@ -49,7 +49,7 @@ class NameServer:
         self._thread = threading.Thread(target=self._serve, name="name server", daemon=True)
         self._thread.start()
 
-    def tell(self, name: str, addresses: Iterable[str]) -> None:
+    def notify(self, name: str, addresses: Iterable[str]) -> None:
         """From now on the name has these addresses."""
         self._addresses = self._addresses | {name: tuple(addresses)}
 

@@ -109,8 +109,8 @@ def beside(tower: Asset) -> LonLat:
 
 
 def register(user: User, name: str, position: LonLat, uav_type: UavType, **values: object) -> Uav:
-    told = {"name": name, "uav_type": uav_type, "is_simulated": True, "cruise_speed_mps": SPEED_MPS, **values}
-    return create_uav(organisation=user.organisation, actor=user, position=position, values=told)
+    reported = {"name": name, "uav_type": uav_type, "is_simulated": True, "cruise_speed_mps": SPEED_MPS, **values}
+    return create_uav(organisation=user.organisation, actor=user, position=position, values=reported)
 
 
 def request_of(uavs: Sequence[tuple[Uav, int | None]], targets: Sequence[Asset], *, returns: bool) -> PlanRequest:

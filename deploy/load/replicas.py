@@ -72,14 +72,14 @@ def _again(first: Program, name: str, places: Places, sockets: Path) -> Program:
             first,
             name=name,
             folder=places.process(name),
-            command=[moved.get(word, word) for word in first.command],
+            command=[moved.get(message, message) for message in first.command],
             stale_files=[Path(moved.get(str(path), str(path))) for path in first.stale_files],
-            environment=_told_as(first.environment, name, places, sockets),
+            environment=_reported_as(first.environment, name, places, sockets),
         )
     return replace(program, environment=program.environment | _own_settings(kind, name))
 
 
-def _told_as(environment: Mapping[str, str], name: str, places: Places, sockets: Path) -> dict[str, str]:
+def _reported_as(environment: Mapping[str, str], name: str, places: Places, sockets: Path) -> dict[str, str]:
     own = dict(environment)
     if "SPANWISE_METRICS" in own:
         own |= {"SPANWISE_PROGRAM": name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, name)}"}

@@ -63,7 +63,7 @@ class RunReport:
         lines = [f"scenario {self.scenario}, {self.title}: {self.answers:,} answers, {self.failures} failures"]
         lines += ["  ".join(f"{cell:>21}" for cell in row) for row in [HEAD, *self.rows()]]
         lines += [f"  {count:>6} {fault}" for fault, count in self.faults.items()]
-        lines.append(f"cores at the peak: {_told(self.cores)}; load of the machine {self.load_of_machine:.1f}")
+        lines.append(f"cores at the peak: {_reported(self.cores)}; load of the machine {self.load_of_machine:.1f}")
         return "\n".join(lines)
 
 
@@ -71,7 +71,7 @@ def _ms(value: float) -> str:
     return "–" if value != value else f"{value:,.0f} ms"
 
 
-def _told(cores: dict[str, float]) -> str:
+def _reported(cores: dict[str, float]) -> str:
     return ", ".join(f"{name} {value:.2f}" for name, value in sorted(cores.items(), key=lambda item: -item[1]))
 
 
@@ -112,7 +112,7 @@ def write_scenario(scenario: Scenario, reports: Sequence[RunReport]) -> None:
         parts.append(
             f"**{report.title}**, {report.sessions:.0%} of the users signed in: {report.answers:,} answers, {report.failures} failures"
             + "".join(f"; {count} × {fault}" for fault, count in report.faults.items())
-            + f". Cores at the peak: {_told(report.cores)}."
+            + f". Cores at the peak: {_reported(report.cores)}."
         )
         parts.append(table(HEAD, report.rows()))
     write_section(f"Scenario {scenario.number}", "\n\n".join(parts), DOCUMENT)

@@ -66,7 +66,7 @@ def run_scenario(
     """Locust against the installation, and what everybody took of the machine. `meanwhile` is called every second with the run's time."""
     result = installation.places.state / "run.npz"
     result.unlink(missing_ok=True)
-    told = {
+    reported = {
         "SPANWISE_LOAD_FOLDER": str(ground),
         "SPANWISE_LOAD_RESULT": str(result),
         "SPANWISE_LOAD_SCENARIO": str(scenario.number),
@@ -81,7 +81,7 @@ def run_scenario(
     log = installation.places.logs / "locust.log"
     with log.open("wb") as words:
         locust = subprocess.Popen(
-            locust_command(installation.address), env=installation.environment() | told, stdout=words, stderr=words, cwd=PROJECT_DIR
+            locust_command(installation.address), env=installation.environment() | reported, stdout=words, stderr=words, cwd=PROJECT_DIR
         )
         began_s, next_look_s = time.time(), 0.0
         while locust.poll() is None:

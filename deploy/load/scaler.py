@@ -208,17 +208,17 @@ def main() -> int:
 
     _, most_files = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
-    told, problems = [], []
+    reported, problems = [], []
     for number in options.ramp:
         report, scaler, faults = run_ramp(number, users=options.users, seconds=options.seconds, sessions=options.sessions)
         print(report.text())
         print(f"replicas of {scaler.kind}: {', '.join(f'{count} from {at_s:.0f} s' for at_s, count in scaler.steps)}", flush=True)
         problems += [f"ramp {number}: {problem}" for problem in missed(report, scaler, faults)]
-        told.append(asdict(report) | {"series": None, "steps": scaler.steps, "signals": scaler.signals})
+        reported.append(asdict(report) | {"series": None, "steps": scaler.steps, "signals": scaler.signals})
         if options.write:
             write(number, report, scaler)
     if options.json:
-        options.json.write_text(json.dumps(told, indent=1))
+        options.json.write_text(json.dumps(reported, indent=1))
     for problem in problems:
         print(f"MISSED {problem}")
     return int(bool(problems))

@@ -130,9 +130,9 @@ def run(options: argparse.Namespace, folder: Path) -> int:
         looking = Looking(site)
         warm_up_s = 60.0 * options.warm_up_min
         played = play(site, day, users, warm_up_s + 60.0 * options.minutes, looking.look, options.every_s, "soak", counts_ramp=True)
-        code, told = invariants(site, day)
+        code, reported = invariants(site, day)
     (folder / "samples.json").write_text(json.dumps([asdict(one) for one in looking.samples]))
-    return report(options, looking, played, steps, (peak, users), (code, told))
+    return report(options, looking, played, steps, (peak, users), (code, reported))
 
 
 def report(
@@ -172,7 +172,7 @@ def section(
     slopes: dict[str, Slope],
     steps: list[list[str]],
     users: tuple[int, int],
-    told: str,
+    reported: str,
     missed: list[str],
 ) -> str:
     first, last = looking.samples[0], looking.samples[-1]
@@ -199,7 +199,7 @@ MiB, {first.redis_keys} to {last.redis_keys} keys, of which
 {last.dead_rows:,} of tables that grew from {first.tables_bytes / MIB:.0f} to {last.tables_bytes / MIB:.0f} MiB, most of it
 {", ".join(grown)}.
 
-{told.strip()}"""
+{reported.strip()}"""
 
 
 if __name__ == "__main__":

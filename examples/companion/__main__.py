@@ -35,7 +35,7 @@ def main() -> None:
         KinematicAutopilot((longitude, latitude), ground_amsl_m=asked.ground_amsl_m),
         poll_every_s=asked.poll_every_s,
         report_every_s=asked.report_every_s,
-        tell=lambda words: print(f"{datetime.now(UTC):%H:%M:%S} {words}", flush=True),
+        notify=lambda words: print(f"{datetime.now(UTC):%H:%M:%S} {words}", flush=True),
     )
     while True:
         begun_s = time.monotonic()

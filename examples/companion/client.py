@@ -32,9 +32,9 @@ class Companion:
         *,
         poll_every_s: float = 5.0,
         report_every_s: float = 10.0,
-        tell: Callable[[str], None] = lambda words: None,
+        notify: Callable[[str], None] = lambda words: None,
     ) -> None:
-        self._link, self._journal, self._autopilot, self._tell = link, journal, autopilot, tell
+        self._link, self._journal, self._autopilot, self._notify = link, journal, autopilot, notify
         self._poll_every_s, self._report_every_s = poll_every_s, report_every_s
         self._poll_at_s = self._report_at_s = 0.0
         self._wait_until_s = 0.0  # the server asked for it
@@ -144,7 +144,7 @@ class Companion:
             answer = self._ask(now_s, "POST", "acknowledgements", body)
             if answer is None or answer.status != 200:
                 return False
-            self._journal.told("acknowledgements", [number for number, _ in waiting])
+            self._journal.reported("acknowledgements", [number for number, _ in waiting])
         return True
 
     def _send_records(self, now_s: float) -> bool:
@@ -167,28 +167,28 @@ class Companion:
             if answer is None or answer.status != 200:
                 return False
             self._settle("results", [number for number, _ in waiting], answer)
-            self._journal.told("flights", [number for number, _ in flights])
+            self._journal.reported("flights", [number for number, _ in flights])
 
     def _settle(self, table: str, numbers: list[int], answer: Answer) -> None:
         faults = {numbers[refused["index"]]: refused["faults"] for refused in answer.body["refused"]}
         for number, fault in faults.items():
-            self._tell(f"the server refuses number {number} of {table}: {fault}")
+            self._notify(f"the server refuses number {number} of {table}: {fault}")
         self._journal.refuse(table, faults)
-        self._journal.told(table, [number for number in numbers if number not in faults])
+        self._journal.reported(table, [number for number in numbers if number not in faults])
 
     def _ask(self, now_s: float, method: str, what: str, body: Any = None, headers: dict[str, str] | None = None) -> Answer | None:
         """None where there was no answer, or one that says to come later."""
         try:
             answer = self._link.ask(method, what, body, headers)
         except LinkDown as error:
-            self._tell(f"no link: {error}")
+            self._notify(f"no link: {error}")
             return None
         if answer.status >= 500 or answer.status in LATER:
             self._wait_until_s = now_s + _seconds(answer.headers.get("retry-after"))
-            self._tell(f"{what}: the server answers {answer.status}")
+            self._notify(f"{what}: the server answers {answer.status}")
             return None
         if answer.status >= 400:
-            self._tell(f"{what}: the server answers {answer.status}; kept, and sent again")
+            self._notify(f"{what}: the server answers {answer.status}; kept, and sent again")
         return answer
 
 

@@ -55,7 +55,7 @@ class Journal:
         rows = self._database.execute(f"SELECT {own}, body FROM {table} {refused} ORDER BY {own} LIMIT ?", [most])  # noqa: S608
         return [(number, json.loads(body)) for number, body in rows]
 
-    def told(self, table: str, numbers: Sequence[int]) -> None:
+    def reported(self, table: str, numbers: Sequence[int]) -> None:
         """The server has these."""
         own = "sequence" if table in COUNTED else "number"
         with self._database:
@@ -134,10 +134,10 @@ class Journal:
         self._database.execute("INSERT INTO facts VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value", [name, value])
 
     def _add(self, table: str, body: dict[str, Any]) -> int:
-        cursor = self._database.execute(f"INSERT INTO {table} (body) VALUES (?)", [json.dumps(_told(body), allow_nan=False)])  # noqa: S608
+        cursor = self._database.execute(f"INSERT INTO {table} (body) VALUES (?)", [json.dumps(_reported(body), allow_nan=False)])  # noqa: S608
         return int(cursor.lastrowid or 0)
 
 
-def _told(body: dict[str, Any]) -> dict[str, Any]:
+def _reported(body: dict[str, Any]) -> dict[str, Any]:
     """What is no number is not known: JSON has no word for it."""
     return {name: None if isinstance(value, float) and not math.isfinite(value) else value for name, value in body.items()}

@@ -61,14 +61,14 @@ class ImportCommand(BaseCommand, ABC):
         if options["json"]:
             self.stdout.write(json.dumps(data_import.counts))
         else:
-            self.tell(path.name, data_import.counts)
+            self.notify(path.name, data_import.counts)
 
     @abstractmethod
     def read(self, path: Path, options: dict[str, Any], progress: Progress | None) -> DataImport:
         """Store the file's content."""
 
     @abstractmethod
-    def tell(self, name: str, counts: dict[str, Any]) -> None:
+    def notify(self, name: str, counts: dict[str, Any]) -> None:
         """Print for people what was in it."""
 
     def parameters(self, options: dict[str, Any]) -> dict[str, Any]:

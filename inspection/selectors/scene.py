@@ -149,10 +149,10 @@ def scene_in(box: Box) -> Scene:
     return Scene(
         box=box,
         clip=clip,
-        origin_amsl_m=float(_told(middle[None], ground)[0]),
+        origin_amsl_m=float(_reported(middle[None], ground)[0]),
         ground=ground,
         place=found,
-        support_amsl_m=_told(found.position, ground),
+        support_amsl_m=_reported(found.position, ground),
         supports=supports,
         spans=spans,
         assets=assets,
@@ -196,7 +196,7 @@ def _ground(box: Box) -> SceneGround:
     return SceneGround(kind, west, north, (east - west) / (columns - 1), (north - south) / (rows - 1), filled)
 
 
-def _told(positions: FloatArray, ground: SceneGround) -> FloatArray:
+def _reported(positions: FloatArray, ground: SceneGround) -> FloatArray:
     """The ground at positions (n, 2); where no model tells, as the scene's own ground is filled."""
     heights = np.full(len(positions), np.nan) if ground.kind == "flat" else ground_heights_m(positions)
     return np.where(np.isnan(heights), ground.altitude_amsl_m.mean() if ground.kind != "flat" else 0.0, heights)
@@ -293,7 +293,7 @@ def _nearest_places(position: FloatArray, middle: FloatArray, most: int) -> "np.
 
 def _bridges(rows: list[tuple[Asset, shapely.geometry.base.BaseGeometry]], ground: SceneGround) -> list[SceneBridge]:
     edges, number = shapely.get_coordinates(np.array([shape for _, shape in rows], dtype=object), return_index=True)
-    edges_m = _told(edges, ground)
+    edges_m = _reported(edges, ground)
     firsts = np.searchsorted(number, np.arange(1, len(rows)))
     return [_bridge(asset, shape, own_m) for (asset, shape), own_m in zip(rows, np.split(edges_m, firsts), strict=False)]
 

@@ -50,15 +50,15 @@ def _current_snapshot() -> GraphSnapshot | None:
 
 def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnapshot:
     started_s = perf_counter()
-    tell = progress or (lambda message, fraction: None)
-    tell("clearing the zones", 0.0)
+    notify = progress or (lambda message, fraction: None)
+    notify("clearing the zones", 0.0)
     _clear_newest_network()
-    tell("reading the ground", 0.2)
+    notify("reading the ground", 0.2)
     ground = ground_data()
-    tell("joining lines and railways", 0.4)
+    notify("joining lines and railways", 0.4)
     whole = network(ground, settings.GRAPH_RULES)
     content = to_bytes(whole)
-    tell("clearing the zones", 0.7)
+    notify("clearing the zones", 0.7)
     zones = zones_in_force()
     built = cleared(whole, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS)
     snapshot = GraphSnapshot.objects.create(

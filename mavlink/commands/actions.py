@@ -86,7 +86,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     if order is Order.DISARM:
         return OrderPlan(_is_disarmed, ((_DISARM,),))
     if order is Order.RESUME:
-        if not _is_told_to_fly(state):
+        if not _is_ordered_to_fly(state):
             raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
         return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
     if order is Order.TAKE_OFF:
@@ -157,7 +157,7 @@ def _start(state: VehicleState) -> OrderPlan:
 
     ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
     """
-    if _is_told_to_fly(state):
+    if _is_ordered_to_fly(state):
         return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
     first = _first_item(state)
     if state.flavour is Flavour.PX4:
@@ -168,7 +168,7 @@ def _start(state: VehicleState) -> OrderPlan:
 
 def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
     """Of a UAV that is held: it is on its way to the item. Told again while it flies its list, nothing is sent."""
-    if not _is_told_to_fly(state):
+    if not _is_ordered_to_fly(state):
         raise CannotOrder("not-flying", "The UAV is on the ground: this route begins in the air.")
     return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
 
@@ -177,7 +177,7 @@ def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> Ord
     """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
     if state.vehicle_class is not VehicleClass.COPTER:
         raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
-    if not _is_told_to_fly(state):
+    if not _is_ordered_to_fly(state):
         raise CannotOrder("not-flying", "The UAV is on the ground.")
     place = int(parameters[ITEM])
     number = _number_of(state, place)
@@ -188,7 +188,7 @@ def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> Ord
     return OrderPlan(_or_on_ground(is_past), ((_speed(parameters), _item(state, place), _mode(state, Mode.MISSION)),))
 
 
-def _is_told_to_fly(state: VehicleState) -> bool:
+def _is_ordered_to_fly(state: VehicleState) -> bool:
     """Raises CannotOrder where it is not known."""
     if state.is_in_air is None:
         raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
@@ -208,7 +208,7 @@ def _item(state: VehicleState, place: int) -> CommandStep:
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
         (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         effect=lambda seen: seen.mission_item == item,
-        told_at_s=lambda seen: seen.mission_item_at_s,
+        sent_at_s=lambda seen: seen.mission_item_at_s,
         instead=lambda ends: mavlink.MAVLink_mission_set_current_message(ends.system, ends.component, item),
     )
 
@@ -257,7 +257,7 @@ def _positive(parameters: Mapping[str, float], name: str) -> float:
 MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}
 
 
-def blind_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
+def unacknowledged_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
     """The same again after it was sent so often. `order` is one of MODES, `flavour` one that is commanded."""
     numbers = mode_numbers(flavour, MODES[order])
     return mavlink.MAVLink_command_long_message(ends.system, ends.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers)

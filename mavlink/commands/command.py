@@ -32,7 +32,7 @@ class CommandOutcome:
 class CommandStep:
     """`effect` tells whether the vehicle's state shows it; without one its yes is the end. What `is_slow` is waited for longer, once.
 
-    The effect shows in what was told since, by `told_at_s`. `is_too_late` tells that the step can do nothing any more. `instead` is sent
+    The effect shows in what was told since, by `sent_at_s`. `is_too_late` tells that the step can do nothing any more. `instead` is sent
     to a vehicle that does not know the command.
     """
 
@@ -41,7 +41,7 @@ class CommandStep:
     parameters: Seven = (0.0,) * 7
     effect: Effect | None = None
     is_slow: bool = False
-    told_at_s: Callable[[VehicleState], float | None] = lambda state: state.heartbeat_at_s
+    sent_at_s: Callable[[VehicleState], float | None] = lambda state: state.heartbeat_at_s
     is_too_late: Effect | None = None
     instead: Callable[[Ends], Message] | None = None
 
@@ -105,8 +105,13 @@ class CommandMachine:
 
     def _shows_effect(self) -> bool:
         """By what was heard since the beginning."""
-        heard_s = self._step.told_at_s(self._state)
-        return self._step.effect is not None and heard_s is not None and heard_s >= self._begun_s and bool(self._step.effect(self._state))
+        last_message_s = self._step.sent_at_s(self._state)
+        return (
+            self._step.effect is not None
+            and last_message_s is not None
+            and last_message_s >= self._begun_s
+            and bool(self._step.effect(self._state))
+        )
 
     def _answered(self, result: int, now_s: float) -> None:
         if result == mavlink.MAV_RESULT_ACCEPTED:

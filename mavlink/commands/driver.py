@@ -115,5 +115,5 @@ class CommandDriver:
     def _is_already(self, plan: OrderPlan) -> bool:
         if plan.goal is None or not self._state.is_fresh(self._now_s, self._rules.fresh_s):
             return False
-        heard_s = self._state.heartbeat_at_s or 0.0
-        return (self._unsettled_until_s is None or heard_s >= self._unsettled_until_s) and bool(plan.goal(self._state))
+        last_message_s = self._state.heartbeat_at_s or 0.0
+        return (self._unsettled_until_s is None or last_message_s >= self._unsettled_until_s) and bool(plan.goal(self._state))

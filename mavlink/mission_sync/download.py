@@ -48,7 +48,7 @@ class Download:
         if name == "MISSION_ITEM_INT" and self._count is not None and message.seq == len(self._items):
             return self._got(held_item(message), now_s)
         if name == "MISSION_ACK" and message.type != mavlink.MAV_MISSION_ACCEPTED:
-            return self._said_no(message.type, now_s)
+            return self._note_refusal(message.type, now_s)
         return []
 
     def tick(self, now_s: float) -> Messages:
@@ -95,7 +95,7 @@ class Download:
             return []
         return self._request(now_s)
 
-    def _said_no(self, result: int, now_s: float) -> Messages:
+    def _note_refusal(self, result: int, now_s: float) -> Messages:
         if result not in UNCERTAIN:
             self._refused = self._refused or (result, now_s)
             self.wake_at_s = now_s + self._rules.timeout_s

@@ -72,13 +72,13 @@ class FlightWatch:
         return []
 
     def _note_bound_for(self, state: VehicleState, offset: int) -> None:
-        if state.mission_item is None or state.heard_at_s is None:
+        if state.mission_item is None or state.received_at_s is None:
             return
         if state.mission_item > offset or self._bound_for <= offset:
             self._bound_for, self._back_at_s = state.mission_item, None
         elif self._back_at_s is None:
-            self._back_at_s = state.heard_at_s
-        elif state.heard_at_s - self._back_at_s > RESET_S:
+            self._back_at_s = state.received_at_s
+        elif state.received_at_s - self._back_at_s > RESET_S:
             self._bound_for = state.mission_item
 
     def _ended(self, current: int) -> list[Flown]:

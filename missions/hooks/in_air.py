@@ -7,7 +7,7 @@ from django.utils.module_loading import import_string
 
 from inspection.geodesy import LonLat
 
-_IN_THE_AIR, _ON_THE_GROUND, _NEVER_HEARD, _DOWN = "in the air", "on the ground", "never heard", "down off its plan"
+_IN_THE_AIR, _ON_THE_GROUND, _NEVER_RECEIVED, _DOWN = "in the air", "on the ground", "never heard", "down off its plan"
 _sources: dict[str, list[str]] = defaultdict(list)
 
 
@@ -24,9 +24,9 @@ def register_ground_source(name: str) -> None:
     _register(_ON_THE_GROUND, name)
 
 
-def register_never_heard_source(name: str) -> None:
+def register_never_connected_source(name: str) -> None:
     """Of a function that returns those of which nothing was ever received."""
-    _register(_NEVER_HEARD, name)
+    _register(_NEVER_RECEIVED, name)
 
 
 def register_down_source(name: str) -> None:
@@ -48,8 +48,8 @@ def uavs_on_the_ground(uav_ids: Collection[int]) -> set[int]:
     return _asked(_ON_THE_GROUND, uav_ids)
 
 
-def uavs_never_heard(uav_ids: Collection[int]) -> set[int]:
-    return _asked(_NEVER_HEARD, uav_ids)
+def uavs_never_connected(uav_ids: Collection[int]) -> set[int]:
+    return _asked(_NEVER_RECEIVED, uav_ids)
 
 
 def uavs_down_off_plan(uav_ids: Collection[int]) -> set[int]:

@@ -10,7 +10,7 @@ from missions.selectors.zones import flown_route
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
-HEARD_WITHIN_S = 30.0  # else nobody knows where it is
+RECEIVED_WITHIN_S = 30.0  # else nobody knows where it is
 OFF_ROUTE_M = 100.0
 REACHED = (TargetState.IN_PROGRESS, TargetState.COMPLETE)
 
@@ -59,7 +59,7 @@ def _way_ahead(mission: Mission, route: Route, targets: Mapping[int, InspectionT
 
 def _place(points: Sequence[PassedPoint], uav: Uav | None, now: datetime, first: int) -> PlaceOnRoute | None:
     """None where it is not known."""
-    if uav is None or uav.located_at is None or abs((now - uav.located_at).total_seconds()) > HEARD_WITHIN_S:
+    if uav is None or uav.located_at is None or abs((now - uav.located_at).total_seconds()) > RECEIVED_WITHIN_S:
         return None
     here = place_on_route(points, LonLat(*uav.location.coords[:2]), first=first)
     return here if here.away_m <= OFF_ROUTE_M else None

@@ -81,13 +81,13 @@ def missions_with_other_uavs(missions: QuerySet[Mission] | Iterable[Mission]) ->
 
 def uav_change_words(change: UavChange) -> str:
     """ "Kite: battery 56.6 → 40 Wh, in maintenance." in the reader's language."""
-    told = [_figure_words(figure) for figure in change.figures]
+    reported = [_figure_words(figure) for figure in change.figures]
     if change.state is not None:
-        told.append(_state_words()[change.state])
+        reported.append(_state_words()[change.state])
     if change.fault:
-        told.append(_("its present figures cannot be flown with"))
-    told += [_("%(change)s in the fleet, but not in this mission") % {"change": _figure_words(figure)} for figure in of_fleet(change)]
-    return f"{change.name}: {', '.join(told)}."
+        reported.append(_("its present figures cannot be flown with"))
+    reported += [_("%(change)s in the fleet, but not in this mission") % {"change": _figure_words(figure)} for figure in of_fleet(change)]
+    return f"{change.name}: {', '.join(reported)}."
 
 
 def uav_change_json(change: UavChange) -> dict[str, Any]:
@@ -202,7 +202,7 @@ def _figure_words(change: FigureChange) -> str:
         "rotor_disk_m2": (_("rotor area"), "m²", 1.0, ""),
         "hover_power_w": (_("power in the hover"), "W", 1.0, _("worked out")),
     }[change.name]
-    kept, now = _told_apart(_scaled(change.kept, scale), _scaled(change.now, scale), DECIMALS.get(change.name, 1))
+    kept, now = _distinguished(_scaled(change.kept, scale), _scaled(change.now, scale), DECIMALS.get(change.name, 1))
     return f"{words} {kept or nothing} → {now or nothing}{f' {unit}' if now else ''}"
 
 
@@ -210,10 +210,10 @@ def _scaled(value: Any, scale: float) -> float | None:
     return None if value is None else value / scale
 
 
-def _told_apart(kept: float | None, now: float | None, decimals: int) -> tuple[str, str]:
+def _distinguished(kept: float | None, now: float | None, decimals: int) -> tuple[str, str]:
     texts = tuple("" if value is None else _number(value, decimals) for value in (kept, now))
     if texts[0] == texts[1] and decimals < MAX_DECIMALS and kept is not None and now is not None:
-        return _told_apart(kept, now, decimals + 1)
+        return _distinguished(kept, now, decimals + 1)
     return texts[0], texts[1]
 
 

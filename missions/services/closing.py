@@ -35,12 +35,12 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
         still_open = {target.sequence: target for target in held.targets.filter(state__in=UNDECIDED)}
         if held.state in ENDED_STATES and not still_open:
             raise refuse("nothing_open", _("This mission is closed: no target is open."))
-        said = {place: reasons.get(place, "").strip() or target.unassigned_message for place, target in still_open.items()}
-        missing = [target.label for place, target in still_open.items() if not said[place]]
+        stated = {place: reasons.get(place, "").strip() or target.unassigned_message for place, target in still_open.items()}
+        missing = [target.label for place, target in still_open.items() if not stated[place]]
         if missing:
             raise refuse("reason_missing", _("Say why each open target is left: %(targets)s.") % {"targets": ", ".join(missing)})
         for place, target in still_open.items():
-            target.state, target.state_reason, target.state_at = TargetState.SKIPPED, said[place][:MAX_REASON_LENGTH], timezone.now()
+            target.state, target.state_reason, target.state_at = TargetState.SKIPPED, stated[place][:MAX_REASON_LENGTH], timezone.now()
         facts = {"targets": {str(place): target.state_reason for place, target in still_open.items()}}
         InspectionTarget.objects.bulk_update(still_open.values(), ["state", "state_reason", "state_at"])
         if held.state in ENDED_STATES:

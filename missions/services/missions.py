@@ -46,13 +46,13 @@ MAX_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
 
-def as_said_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
+def as_stated_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
     """Own figures that are sent again as they were are not said anew: what the stored UAV had when they were said is kept."""
     old = next((other for other in before if other.uav is not None and other.uav == uav.uav), None)
     if old is None or not old.fleet_figures:
         return uav
-    values, said = ({**vars(one), **vars(one.performance)} for one in (uav, old))
-    kept = {name: value for name, value in old.fleet_figures.items() if name in uav.fleet_figures and values[name] == said[name]}
+    values, stated = ({**vars(one), **vars(one.performance)} for one in (uav, old))
+    kept = {name: value for name, value in old.fleet_figures.items() if name in uav.fleet_figures and values[name] == stated[name]}
     return replace(uav, fleet_figures={**uav.fleet_figures, **kept})
 
 
@@ -169,9 +169,9 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         elif targets is not None:
             locked.locks = []
         if change.uavs is not None:
-            said_before = request_of_mission(mission=locked).uavs
+            stated_before = request_of_mission(mission=locked).uavs
             locked.mission_uavs.all().delete()
-            _store_uavs(locked, tuple(as_said_before(uav, said_before) for uav in change.uavs))
+            _store_uavs(locked, tuple(as_stated_before(uav, stated_before) for uav in change.uavs))
         if targets is not None:
             locked.targets.all().delete()
             _store_targets(locked, targets)

@@ -148,8 +148,8 @@ class MissionAbort(APIView):
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.WhyInputSerializer, request)
         with api_problems(has_precondition=expected is not None), refusals():
-            told = abort_mission(mission=mission, actor=request.user, why=values["why"], expected_revision=expected)
-        return _sent(request.user, mission_id, told)
+            reported = abort_mission(mission=mission, actor=request.user, why=values["why"], expected_revision=expected)
+        return _sent(request.user, mission_id, reported)
 
 
 class MissionClose(APIView):

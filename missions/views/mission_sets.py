@@ -140,9 +140,9 @@ class MissionPresence(APIView):
             raise Http404
         serializer = inputs.PresenceInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
-        told = serializer.validated_data
+        reported = serializer.validated_data
         others = report_presence(
-            mission_id=mission_id, user=user, editor=told["editor"], is_here=told["here"], is_planning=told["planning"]
+            mission_id=mission_id, user=user, editor=reported["editor"], is_here=reported["here"], is_planning=reported["planning"]
         )
         return Response({
             "others": [{"name": other.name, "is_me": other.user == user.pk, "is_planning": other.is_planning} for other in others],

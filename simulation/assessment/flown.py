@@ -49,7 +49,7 @@ class FlownTrack:
     is_coming_down: BoolArray
     attitude_deg: FloatArray
     ending: Ending
-    said: tuple[str, ...] = ()
+    stated: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.t_s)

@@ -119,8 +119,8 @@ def judge(routes: Sequence[FlownRoute], around: Surroundings, limits: Limits, *,
     findings = [*known, *_of_meetings(meetings, limits)]
     verdicts = []
     for route in routes:
-        told, verdict = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])
-        findings += told
+        reported, verdict = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])
+        findings += reported
         verdicts.append(verdict)
     return Verdict(level_of(findings), tuple(findings), tuple(verdicts), tuple(meetings))
 
@@ -142,13 +142,13 @@ def _of_route(route: FlownRoute, around: Surroundings, limits: Limits, met: Sequ
         *_of_ground(route, lowest, limits),
         *_of_standing(route, standing, limits),
     ]
-    told = [*met, *findings]
-    by_target = [_with_level(verdict, told) for verdict in targets]
+    reported = [*met, *findings]
+    by_target = [_with_level(verdict, reported) for verdict in targets]
     passed_m = [visit.closest_m for visit in visits if visit.closest_m is not None]
     return findings, RouteVerdict(
         uav=route.uav,
         name=route.name,
-        level=level_of(told),
+        level=level_of(reported),
         endings=tuple(None if flown.track is None else flown.track.ending for flown in route.flights),
         following=following,
         energy=tuple(energy),
@@ -202,9 +202,9 @@ def _of_endings(route: FlownRoute) -> Iterator[Finding]:
         if flown.track is None:
             yield Finding(Level.FAIL, "not-begun", route.uav, facts=facts)
         elif not flown.track.is_over_well:
-            said = flown.track.said[-1] if flown.track.said else ""
+            stated = flown.track.stated[-1] if flown.track.stated else ""
             at_s = float(flown.track.t_s[-1]) if len(flown.track) else None
-            yield Finding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": said, "at_s": at_s})
+            yield Finding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": stated, "at_s": at_s})
 
 
 def _of_energy(route: FlownRoute, energy: Sequence[FlightEnergy], visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
@@ -249,8 +249,8 @@ def _of_visits(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> It
         elif visit.closest_m > limits.waypoint_fail_m:
             yield Finding(Level.FAIL, "missed", route.uav, target, facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_fail_m})
         elif visit.closest_m > limits.waypoint_warn_m:
-            told = facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_warn_m}
-            yield Finding(Level.WARNINGS, "passed-wide", route.uav, target, told)
+            reported = facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_warn_m}
+            yield Finding(Level.WARNINGS, "passed-wide", route.uav, target, reported)
         if target is not None and visit.closest_m is not None and visit.held_s < _hold_s(visit) - limits.hold_slack_s:
             yield Finding(Level.FAIL, "not-held", route.uav, target, facts | {"held_s": visit.held_s, "hold_s": _hold_s(visit)})
 

@@ -38,15 +38,15 @@ class Limits:
             late_warn_s=separation.time_s,
             zone_beside_m=max(zone_beside_m - TRACKING_M, 0.0),
             zone_height_m=max(zone_height_m - TRACKING_M, 0.0),
-            obstacle_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.obstacle_fail_m),
-            ground_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.ground_fail_m),
+            obstacle_warn_m=max(flight.clearance_m - REPORTED_SHORT_M, cls.obstacle_fail_m),
+            ground_warn_m=max(flight.clearance_m - REPORTED_SHORT_M, cls.ground_fail_m),
             apart_warn_beside_m=separation.lateral_m,
             apart_warn_height_m=separation.vertical_m,
         )
 
 
 TRACKING_M = 2.0  # how far a UAV in simulated turbulence may stray from its line: the bar of the flight model
-TOLD_SHORT_M = 5.0  # by which a flown line comes short of a planned clearance: tracking, and 2 m that plans round by
+REPORTED_SHORT_M = 5.0  # by which a flown line comes short of a planned clearance: tracking, and 2 m that plans round by
 SOURCES: Mapping[str, str] = {
     "waypoint_warn_m": "acceptance radius of the simulated autopilot",
     "waypoint_fail_m": "PX4, NAV_ACC_RAD, default",

@@ -37,7 +37,7 @@ class Failsafes:
             return None
         self._battery_level = level
         if level == 1:
-            cockpit.say(f"Battery {percent:.0f} %", Severity.WARNING)
+            cockpit.report(f"Battery {percent:.0f} %", Severity.WARNING)
             return None
         action = settings.battery_low_action if level == 2 else settings.battery_critical_action
         severity = Severity.WARNING if level == 2 else Severity.CRITICAL
@@ -46,12 +46,12 @@ class Failsafes:
     def _gps(self, cockpit: Cockpit, mode: Mode, *, is_gps_lost: bool) -> Manoeuvre | None:
         if not is_gps_lost:
             if self._gps_lost_since_s is not None:
-                cockpit.say("GPS fix again")
+                cockpit.report("GPS fix again")
             self._gps_lost_since_s, self._has_acted_on_gps = None, False
             return None
         if self._gps_lost_since_s is None:
             self._gps_lost_since_s = cockpit.now_s
-            cockpit.say("No GPS fix, dead reckoning", Severity.WARNING)
+            cockpit.report("No GPS fix, dead reckoning", Severity.WARNING)
         if self._has_acted_on_gps or cockpit.now_s - self._gps_lost_since_s < cockpit.settings.gps_lost_patience_s:
             return None
         self._has_acted_on_gps = True
@@ -61,9 +61,9 @@ class Failsafes:
 def _act(cockpit: Cockpit, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
     manoeuvre = _manoeuvre(action)
     if manoeuvre is None or not cockpit.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
-        cockpit.say(why, severity)
+        cockpit.report(why, severity)
         return None
-    cockpit.say(f"{why}: {manoeuvre.mode}", severity)
+    cockpit.report(f"{why}: {manoeuvre.mode}", severity)
     return manoeuvre
 
 
@@ -148,7 +148,7 @@ class Autopilot:
         if not cockpit.is_armed:
             return
         if self.body.battery_percent <= 0.0:
-            cockpit.say("Battery empty: the motors stop", Severity.CRITICAL)
+            cockpit.report("Battery empty: the motors stop", Severity.CRITICAL)
             self.disarm()
             return
         own = self._failsafes.step(cockpit, self.manoeuvre.mode, self.body.battery_percent, is_gps_lost=self.is_gps_lost)
@@ -189,7 +189,7 @@ class Autopilot:
         if self._armed_ticks * GUIDANCE_STEP_S > self.cockpit.settings.disarm_on_ground_s and not (
             self.manoeuvre.lifts_off and not self.manoeuvre.is_done
         ):
-            self.cockpit.say("Disarmed: no take-off")
+            self.cockpit.report("Disarmed: no take-off")
             self.disarm()
 
     def _look_around(self) -> None:
@@ -216,7 +216,7 @@ class Autopilot:
             self._crash(f"It hit the ground at {body.impact_mps:.1f} m/s.")
         elif contact is Contact.SOFT:
             if cockpit.is_armed and not self.manoeuvre.is_landing:
-                cockpit.say("Touched the ground outside of a landing", Severity.WARNING)
+                cockpit.report("Touched the ground outside of a landing", Severity.WARNING)
             self._landed()
 
     def _landed(self) -> None:
@@ -248,7 +248,7 @@ class Autopilot:
         cockpit.is_in_air = False
         self.disarm()
         cockpit.events.append(Crashed(self.now_s, self.body.position, reason))
-        cockpit.say(f"Crashed: {reason}", Severity.CRITICAL)
+        cockpit.report(f"Crashed: {reason}", Severity.CRITICAL)
         self.body.stop()
 
     def _take_photo(self) -> None:

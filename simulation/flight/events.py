@@ -43,7 +43,7 @@ class PhotoTaken:
 
 
 @dataclass(frozen=True, slots=True)
-class Said:
+class StatusText:
     """A text for the operator."""
 
     at_s: float
@@ -81,4 +81,4 @@ class Crashed:
     reason: str
 
 
-Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | Said | Armed | Disarmed | TookOff | LandedAt | Crashed
+Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | StatusText | Armed | Disarmed | TookOff | LandedAt | Crashed

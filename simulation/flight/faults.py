@@ -90,11 +90,11 @@ class WrongFaults(ValueError):
     """Faults that no UAV can be given."""
 
 
-def faults_told(told: Any) -> Changed:
+def faults_from(reported: Any) -> Changed:
     """From the faults before and simulated seconds to those from now on; what is not told stays as it is. Raises WrongFaults."""
-    if not isinstance(told, Mapping) or not told.keys() <= FAULTS:
+    if not isinstance(reported, Mapping) or not reported.keys() <= FAULTS:
         raise WrongFaults(f"only {', '.join(sorted(FAULTS))} can be told")
-    values: dict[str, Any] = {name: _value(name, value) for name, value in told.items()}
+    values: dict[str, Any] = {name: _value(name, value) for name, value in reported.items()}
     lasting = {f"{name}_until_s": values.pop(f"{name}_for_s") or 0.0 for name in LASTING if f"{name}_for_s" in values}
 
     def changed(before: Faults, now_s: float) -> Faults:

@@ -66,7 +66,7 @@ class Reference:
         self._acceleration_mps2 = acceleration_mps2
         self.speed_mps, self.gain_mps2 = speed_mps, 0.0
         self.is_at_end = not pieces
-        self._is_told = False
+        self._is_ordered = False
         self.place, self.along, self._curve = pieces[0].at(0.0) if pieces else ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0)
 
     def step(self, dt_s: float, share: float) -> list[int]:
@@ -92,9 +92,9 @@ class Reference:
         while True:
             piece = self._pieces[self._number]
             is_past = self._s_m >= piece.length_m - NEAR_ENOUGH_M
-            if piece.mark is not None and not self._is_told and (is_past or (piece.radius_m and self._s_m >= 0.5 * piece.length_m)):
+            if piece.mark is not None and not self._is_ordered and (is_past or (piece.radius_m and self._s_m >= 0.5 * piece.length_m)):
                 marks.append(piece.mark)
-                self._is_told = True
+                self._is_ordered = True
             if not is_past:
                 break
             if self._number + 1 == len(self._pieces):
@@ -103,7 +103,7 @@ class Reference:
                 break
             self._s_m = max(self._s_m - piece.length_m, 0.0)
             self._number += 1
-            self._is_told = False
+            self._is_ordered = False
         self.place, self.along, self._curve = self._pieces[self._number].at(self._s_m)
         return marks
 

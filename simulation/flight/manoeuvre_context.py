@@ -8,7 +8,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.camera import Camera
 from simulation.flight.course import Vector, Via, course
-from simulation.flight.events import Event, Said
+from simulation.flight.events import Event, StatusText
 from simulation.flight.faults import Faults
 from simulation.flight.guidance import Gate, Guidance
 from simulation.flight.orders import Above, Place
@@ -46,8 +46,8 @@ class Cockpit:
     heading_deg: float | None = None
     events: list[Event] = field(default_factory=list)
 
-    def say(self, text: str, severity: Severity = Severity.INFO) -> None:
-        self.events.append(Said(self.now_s, text, severity))
+    def report(self, text: str, severity: Severity = Severity.INFO) -> None:
+        self.events.append(StatusText(self.now_s, text, severity))
 
     def level_of(self, position: LonLat) -> tuple[float, float]:
         """East and north of home [m]."""

@@ -14,7 +14,7 @@ from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
 from planning.trajectory.waypoints import WaypointKind
 from simulation.flight.airframe import Airframe
-from simulation.flight.events import ItemReached, ModeChanged, Said
+from simulation.flight.events import ItemReached, ModeChanged, StatusText
 from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending, Flown, fly_mission
 from simulation.flight.orders import FlyTo, orders
@@ -205,7 +205,9 @@ def _reasons(
     own = next((event for event in flown.events if isinstance(event, ModeChanged) and event.is_own and event.mode is not Mode.HOLD), None)
     if own is not None:
         why = [
-            said.text for said in flown.events if isinstance(said, Said) and said.severity is not Severity.INFO and said.at_s <= own.at_s
+            stated.text
+            for stated in flown.events
+            if isinstance(stated, StatusText) and stated.severity is not Severity.INFO and stated.at_s <= own.at_s
         ]
         reasons.append(f"The UAV gave the mission up after {own.at_s:.0f} s. {why[-1] if why else ''}".strip())
     if flown.ending is Ending.FLYING:

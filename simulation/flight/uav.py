@@ -24,7 +24,7 @@ SETTLES_S = 2.0  # on the ground, until the model rests
 MIN_SPEED_MPS = 0.2
 
 
-def told(
+def reported(
     body: Body, cockpit: Cockpit, manoeuvre: Manoeuvre, *, current_item: int, mission: MissionState, is_crashed: bool, is_gps_lost: bool
 ) -> UavState:
     motion = body.motion
@@ -166,7 +166,7 @@ class SimulatedUav:
         if faults.motor_failed != before.motor_failed:
             self._body.plant.fail_motor(faults.motor_failed)
             if faults.motor_failed is not None:
-                self._cockpit.say(f"Motor {faults.motor_failed + 1} has failed", Severity.CRITICAL)
+                self._cockpit.report(f"Motor {faults.motor_failed + 1} has failed", Severity.CRITICAL)
         if faults.battery_wh_left is not None and faults.battery_wh_left != before.battery_wh_left:
             self._body.weaken(faults.battery_wh_left)
         self._cockpit.faults = faults
@@ -328,7 +328,7 @@ class SimulatedUav:
         """Of this step; made when it is asked for."""
         if self._state is None or self._told_at != self._pilot.revision:
             self._told_at = self._pilot.revision
-            self._state = told(
+            self._state = reported(
                 self._body,
                 self._cockpit,
                 self._pilot.manoeuvre,

@@ -215,7 +215,7 @@ class _Flyer:
             is_coming_down=columns[:, 9].astype(bool),
             attitude_deg=columns[:, 10:13],
             ending=ending,
-            said=tuple(self._rows.texts),
+            stated=tuple(self._rows.texts),
         )
         self._flown.append(FlownFlight(self._flight, track))
         self._begins_s, self._vehicle = float(track.t_s[-1]) + self._turnaround_s, None

@@ -10,7 +10,7 @@ from drf_spectacular.utils import extend_schema_field
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.faults import WrongFaults, faults_told
+from simulation.flight.faults import WrongFaults, faults_from
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
 from simulation.vehicle_models import reason_words
@@ -56,7 +56,7 @@ class FaultsSerializer(KnownFieldsSerializer):
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         try:
-            faults_told(attrs)
+            faults_from(attrs)
         except WrongFaults as error:
             raise serializers.ValidationError(str(error)) from error
         return attrs
@@ -232,7 +232,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
 
 
 def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
-    told = {name: vehicle.told[name] for name in TOLD if name in vehicle.told}
+    reported = {name: vehicle.reported[name] for name in TOLD if name in vehicle.reported}
     airframe = AIRFRAMES.get(vehicle.airframe)
     own_wh = 0.0 if airframe is None else airframe.battery_wh
     return {
@@ -252,7 +252,7 @@ def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
         "message": reason_words(vehicle.reason),
         "restarts": vehicle.restarts,
         "conditions": vehicle.conditions,
-        "told": {"at": vehicle.told_at, **told} if told else None,
+        "told": {"at": vehicle.reported_at, **reported} if reported else None,
         "connect": None if vehicle.port is None else connection_json(settings.SIMULATOR_HOST, vehicle.port),
     }
 

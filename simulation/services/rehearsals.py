@@ -23,7 +23,7 @@ from simulation.assessment.judging import Verdict, judge, wind_finding
 from simulation.assessment.limits import Finding, Level, Limits, limits_to_json, worst
 from simulation.assessment.stored import track_to_json, verdict_to_json
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.events import Crashed, Said
+from simulation.flight.events import Crashed, StatusText
 from simulation.flight.states import Mode, Outcome, Severity, UavState
 from simulation.flight.uav import SimulatedUav
 from simulation.models import Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack, VerdictLevel
@@ -80,8 +80,8 @@ class RehearsedUav:
         """What it has said of trouble since it was last asked. Why it has crashed is told once."""
         events = self._uav.take_events()
         reasons = [event.reason for event in events if isinstance(event, Crashed)]
-        said = [event.text for event in events if isinstance(event, Said) and event.severity is not Severity.INFO]
-        return [text for text in said if not any(text.endswith(reason) for reason in reasons)] + reasons
+        stated = [event.text for event in events if isinstance(event, StatusText) and event.severity is not Severity.INFO]
+        return [text for text in stated if not any(text.endswith(reason) for reason in reasons)] + reasons
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
@@ -227,10 +227,10 @@ def limits_of_settings() -> Limits:
 
 
 def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:
-    def told(share: float) -> None:
+    def reported(share: float) -> None:
         progress(f"Flying {number + 1} of {runs}", (number + share) / runs)
 
-    return told
+    return reported
 
 
 def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: int, on_progress: Callable[[float], None]) -> None:

@@ -108,22 +108,22 @@ def change_simulation(
         held = Simulation.objects.select_for_update().get(pk=simulation.pk)
         if not held.is_present or held.end_wanted_at is not None:
             raise IsOver
-        told = None if sky is None else sky_to_json(sky)
+        reported = None if sky is None else sky_to_json(sky)
         if speed is not None:
             Simulation.objects.filter(pk=held.pk).update(speed=speed)
-        if told is not None:  # a vehicle that is put on the ground anew finds the same air
+        if reported is not None:  # a vehicle that is put on the ground anew finds the same air
             vehicles = SimulatedVehicle.objects.filter(simulation=held)
-            (vehicles if vehicle is None else vehicles.filter(pk=vehicle.pk)).update(conditions=told)
+            (vehicles if vehicle is None else vehicles.filter(pk=vehicle.pk)).update(conditions=reported)
         change = SimulationChange.objects.create(
             simulation=held,
             vehicle=vehicle,
             speed=speed,
-            conditions=told,
+            conditions=reported,
             faults=None if faults is None else dict(faults),
             created_by=actor,
         )
         facts = {
-            "vehicle": None if vehicle is None else vehicle.name, "speed": speed, "conditions": told, "faults": change.faults,
+            "vehicle": None if vehicle is None else vehicle.name, "speed": speed, "conditions": reported, "faults": change.faults,
         }  # fmt: skip
         note(held, actor, "change", {name: value for name, value in facts.items() if value is not None})
     return change

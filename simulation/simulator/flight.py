@@ -64,10 +64,10 @@ class Flight:
             "slipped_s": report.slipped_s,
         }  # fmt: skip
 
-    def told(self) -> dict[UUID, dict[str, Any]]:
+    def reported(self) -> dict[UUID, dict[str, Any]]:
         """By vehicle that flies. A step may be under way: each state is a value of its own."""
         both = zip(self.vehicles, self.fleet.uavs, strict=True)
-        return {vehicle.pk: _told(flying) for vehicle, flying in both if vehicle.pk not in self._dropped}
+        return {vehicle.pk: _reported(flying) for vehicle, flying in both if vehicle.pk not in self._dropped}
 
     def _is_no_longer_held(self) -> bool:
         if time.monotonic() > self.held_until_s:
@@ -88,7 +88,7 @@ def flight_of(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], la
     return Flight(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed, held_until_s)
 
 
-def _told(flying: FlyingUav) -> dict[str, Any]:
+def _reported(flying: FlyingUav) -> dict[str, Any]:
     state = flying.uav.state
     return {
         "at_s": round(state.at_s, 2),
@@ -100,6 +100,6 @@ def _told(flying: FlyingUav) -> dict[str, Any]:
         "is_in_air": state.is_in_air,
         "is_crashed": state.is_crashed,
         "is_link_lost": flying.uav.faults.is_link_lost(flying.uav.now_s),
-        "heard": flying.heard,
+        "heard": flying.received_count,
         "refused": flying.refused,
     }

@@ -13,7 +13,7 @@ from simulation.vehicle_endpoint.flying_uav import FlyingUav
 
 RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up
 logger = logging.getLogger(__name__)
-SPEED_UNHEARD = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
+UNACKNOWLEDGED_SPEED = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
 STEP_S = 0.04  # of simulated time, as SimulatedUav has it
 SLOWEST, FASTEST = 0.1, 60.0
 
@@ -90,7 +90,7 @@ class FleetReport:
     latest_s: float
     slipped_s: float
     sent: int
-    heard: int
+    received_count: int
     failed: int
 
 
@@ -129,7 +129,7 @@ class Fleet:
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
                 now_s = time.monotonic()
-                self._pace.limit = SPEED_UNHEARD if any(uav.radio.is_station_silent(now_s) for uav in self._flying()) else math.inf
+                self._pace.limit = UNACKNOWLEDGED_SPEED if any(uav.radio.is_station_silent(now_s) for uav in self._flying()) else math.inf
                 if self._pace.begin(now_s):
                     if until():
                         break
@@ -137,7 +137,7 @@ class Fleet:
                     for uav in self._flying():
                         self._guarded(uav, uav.step)
                 for key, _ in selector.select(max(self._pace.next_s - time.monotonic(), 0.0)):
-                    if not self._guarded(key.data, key.data.hear):
+                    if not self._guarded(key.data, key.data.receive_frames):
                         selector.unregister(key.fileobj)
         return self.report()
 
@@ -156,7 +156,7 @@ class Fleet:
             latest_s=round(pace.latest_s, 4),
             slipped_s=round(pace.slipped_s, 3),
             sent=sum(uav.sent for uav in self.uavs),
-            heard=sum(uav.heard for uav in self.uavs),
+            received_count=sum(uav.received_count for uav in self.uavs),
             failed=len(self._failed),
         )
 

@@ -24,7 +24,7 @@ class FlyingUav:
     flavour: Flavour = Flavour.PX4
     key: bytes | None = field(default=None, repr=False)
     sent: int = 0
-    heard: int = 0
+    received_count: int = 0
     refused: int = 0
     endpoint: Endpoint = field(init=False)
     _signed: SignedLink = field(init=False, repr=False)
@@ -40,7 +40,7 @@ class FlyingUav:
         self.endpoint.unix_at_zero_s = unix_s + self._signed.clock_offset_s - now_s
         self._send(self.endpoint.tick(now_s), unix_s)
 
-    def hear(self) -> None:
+    def receive_frames(self) -> None:
         """All that has come in, and the answers."""
         is_lost = self._is_link_lost
         for frame, address in self.radio.received():
@@ -54,7 +54,7 @@ class FlyingUav:
             link = self.radio.link_of(address)
             if message is None or link is None:
                 continue
-            self.heard += 1
+            self.received_count += 1
             self._send(self.endpoint.receive(message, Station(frame.system, frame.component, link), time.monotonic()), unix_s)
 
     def change(self, *, weather: Weather | None = None, faults: Faults | None = None) -> None:

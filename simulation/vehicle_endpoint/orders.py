@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
-from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFaults, faults_told
+from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFaults, faults_from
 from simulation.vehicle_endpoint.fleet import Change
 
 WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
@@ -40,32 +40,32 @@ def change_of(line: str) -> Change:
     )
 
 
-def weather_of(told: Any) -> Weather:
+def weather_of(reported: Any) -> Weather:
     """Raises WrongOrder."""
-    _known(told, WEATHER)
-    wind = told.get("wind", [0.0, 0.0])
+    _known(reported, WEATHER)
+    wind = reported.get("wind", [0.0, 0.0])
     if not (isinstance(wind, list) and len(wind) == 2):
         raise WrongOrder("wind is [speed in m/s, degrees that it blows from]")
     speed_mps, from_deg = (_number(value, "wind") for value in wind)
     try:
         layer = WindLayer(WIND_MEASURED_AGL_M, speed_mps, from_deg % 360.0)
-        conditions = Conditions((layer,), _number(told.get("temperature_c", 15.0), "temperature_c"))
-        gusts_mps, turbulence_mps = (_number(told.get(name, 0.0), name) for name in ("gusts_mps", "turbulence_mps"))
+        conditions = Conditions((layer,), _number(reported.get("temperature_c", 15.0), "temperature_c"))
+        gusts_mps, turbulence_mps = (_number(reported.get(name, 0.0), name) for name in ("gusts_mps", "turbulence_mps"))
         return Weather(conditions, gusts_mps=gusts_mps, turbulence_mps_at_20ft=turbulence_mps)
     except (InvalidConditions, ImpossibleWeather) as error:
         raise WrongOrder(str(error)) from error
 
 
-def faults_of(told: Any) -> Callable[[Faults, float], Faults]:
+def faults_of(reported: Any) -> Callable[[Faults, float], Faults]:
     """From the faults before and simulated seconds to those from now on. Raises WrongOrder."""
     try:
-        return faults_told(told)
+        return faults_from(reported)
     except WrongFaults as error:
         raise WrongOrder(str(error)) from error
 
 
-def _known(told: Any, names: frozenset[str]) -> None:
-    if not isinstance(told, dict) or not told.keys() <= names:
+def _known(reported: Any, names: frozenset[str]) -> None:
+    if not isinstance(reported, dict) or not reported.keys() <= names:
         raise WrongOrder(f"only {', '.join(sorted(names))} can be told")
 
 

@@ -39,7 +39,7 @@ def address_of(text: str) -> Address:
 @dataclass
 class _Peer:
     link: int
-    heard_s: float
+    last_message_s: float
     is_given: bool
 
 
@@ -106,7 +106,7 @@ class Radio:
         peer = self._peers.get(address) or self._add(address, is_given=False)
         if peer is None:
             return None
-        peer.heard_s = time.monotonic()
+        peer.last_message_s = time.monotonic()
         return peer.link
 
     def send(self, frame: bytes, link: int | None) -> None:
@@ -119,7 +119,7 @@ class Radio:
     def _add(self, address: Address, *, is_given: bool) -> _Peer | None:
         now_s = time.monotonic()
         for other, peer in list(self._peers.items()):
-            if not peer.is_given and now_s - peer.heard_s > FORGOTTEN_AFTER_S:
+            if not peer.is_given and now_s - peer.last_message_s > FORGOTTEN_AFTER_S:
                 del self._peers[other]
         if len(self._peers) >= MAX_PEERS and not is_given:
             return None

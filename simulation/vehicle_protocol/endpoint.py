@@ -65,7 +65,7 @@ class Endpoint:
         self._requests = Requests(flavour, system, self.streams, self._report)
         self._now_s = 0.0
         self._heartbeat_due_s = -math.inf
-        self._told: tuple[int, bool] | None = None  # mode and arming of the last heartbeat
+        self._reported: tuple[int, bool] | None = None  # mode and arming of the last heartbeat
         self._texts = 0
 
     def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
@@ -84,9 +84,9 @@ class Endpoint:
         self._now_s = now_s
         messages: list[Message] = []
         for event in self.vehicle.take_events():
-            told = _TOLD.get(type(event))
-            if told is not None:
-                messages += told(self, event)
+            reported = _TOLD.get(type(event))
+            if reported is not None:
+                messages += reported(self, event)
         state = self.vehicle.state
         messages += self._mind_fence(state)
         report = self._report()
@@ -195,13 +195,13 @@ class Endpoint:
     def _heartbeat(self, report: Report, now_s: float) -> list[Outgoing]:
         """Each second, and as soon as the mode or the arming is another."""
         shows = (report.custom_mode, report.state.is_armed)
-        if now_s < self._heartbeat_due_s and shows == self._told:
+        if now_s < self._heartbeat_due_s and shows == self._reported:
             return []
-        self._heartbeat_due_s, self._told = now_s + HEARTBEAT_S, shows
+        self._heartbeat_due_s, self._reported = now_s + HEARTBEAT_S, shows
         return [Outgoing(heartbeat(report))]
 
     def _changed_heartbeat(self, now_s: float) -> list[Outgoing]:
-        if self._told == (self.pilot.custom_mode, self.vehicle.state.is_armed):
+        if self._reported == (self.pilot.custom_mode, self.vehicle.state.is_armed):
             return []
         return self._heartbeat(self._report(), now_s)
 
@@ -221,7 +221,7 @@ class Endpoint:
     def _ended(self, event: events.MissionEnded) -> list[Message]:
         return [mission_current(self._report())]
 
-    def _said(self, event: events.Said) -> list[Message]:
+    def _stated(self, event: events.StatusText) -> list[Message]:
         return self._text(event.text, SEVERITIES[event.severity])
 
     def _landed(self, event: events.Event) -> list[Message]:
@@ -278,7 +278,7 @@ _HANDLERS: dict[str, Callable[[Endpoint, Any, Station, float], list[Outgoing]]] 
 _TOLD: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
     events.ItemReached: Endpoint._reached,
     events.MissionEnded: Endpoint._ended,
-    events.Said: Endpoint._said,
+    events.StatusText: Endpoint._stated,
     events.TookOff: Endpoint._landed,
     events.LandedAt: Endpoint._landed,
     events.Crashed: Endpoint._crashed,

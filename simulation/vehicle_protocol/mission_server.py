@@ -214,17 +214,17 @@ class MissionServer:
     # A list goes out
 
     def _listed(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
-        return [Outgoing(mavlink.MAVLink_mission_count_message(*station.ends, len(self._told(kind)), int(kind)), station)]
+        return [Outgoing(mavlink.MAVLink_mission_count_message(*station.ends, len(self._reported(kind)), int(kind)), station)]
 
     def _requested(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
-        told = self._told(kind)
-        if message.seq >= len(told):
+        reported = self._reported(kind)
+        if message.seq >= len(reported):
             return [_ack(mavlink.MAV_MISSION_INVALID_SEQUENCE, kind, station)]
         is_current = kind is MissionType.MISSION and message.seq == self.current()
         write = item_message if message.get_type() == "MISSION_REQUEST_INT" else float_item_message
-        return [Outgoing(write(told[message.seq], message.seq, kind, station, is_current=is_current), station)]
+        return [Outgoing(write(reported[message.seq], message.seq, kind, station, is_current=is_current), station)]
 
-    def _told(self, kind: MissionType) -> Sequence[MissionItem]:
+    def _reported(self, kind: MissionType) -> Sequence[MissionItem]:
         return self.held[kind] if self._first(kind) == 0 else (self.home(), *self.held[kind])
 
     def _partial(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:

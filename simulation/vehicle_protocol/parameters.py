@@ -116,7 +116,7 @@ class Parameters:
     def receive(self, message: Any, station: Station) -> list[Outgoing]:
         name = message.get_type()
         if name == "PARAM_REQUEST_LIST":
-            return [self._told(number, station) for number in range(len(self._names))]
+            return [self._reported(number, station) for number in range(len(self._names))]
         if name == "PARAM_REQUEST_READ":
             return self._read(message, station)
         return self._set(message, station) if name == "PARAM_SET" else []
@@ -127,7 +127,7 @@ class Parameters:
             number = self._names.index(message.param_id) if message.param_id in self._values else len(self._names)
         if not 0 <= number < len(self._names):
             return [_error(message.param_id, message.param_index, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, station)]
-        return [self._told(number, station)]
+        return [self._reported(number, station)]
 
     def _set(self, message: Any, station: Station) -> list[Outgoing]:
         """Answered by the value that holds from now on; what is refused is told besides."""
@@ -136,18 +136,18 @@ class Parameters:
             return [_error(message.param_id, BY_NAME, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, station)]
         number, value = self._names.index(parameter.name), message.param_value
         if value == self._values[parameter.name]:
-            return [self._told(number, station)]
+            return [self._reported(number, station)]
         if parameter.is_fixed:
-            return [_error(parameter.name, number, mavlink.MAV_PARAM_ERROR_READ_ONLY, station), self._told(number, station)]
+            return [_error(parameter.name, number, mavlink.MAV_PARAM_ERROR_READ_ONLY, station), self._reported(number, station)]
         if not (math.isfinite(value) and parameter.lowest <= value <= parameter.highest):
-            return [_error(parameter.name, number, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, station), self._told(number, station)]
+            return [_error(parameter.name, number, mavlink.MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE, station), self._reported(number, station)]
         self._values[parameter.name] = value
         if parameter.setting:
             self._settings = replace(self._settings, **{parameter.setting: value / parameter.per_unit})
             self._configure(self._settings)
-        return [Outgoing(self._told(number, station).message)]  # to all: what another station shows is no longer so
+        return [Outgoing(self._reported(number, station).message)]  # to all: what another station shows is no longer so
 
-    def _told(self, number: int, station: Station) -> Outgoing:
+    def _reported(self, number: int, station: Station) -> Outgoing:
         name = self._names[number]
         message = mavlink.MAVLink_param_value_message(name.encode(), self._values[name], REAL32, len(self._names), number)
         return Outgoing(message, station)

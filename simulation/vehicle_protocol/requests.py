@@ -95,7 +95,7 @@ class Requests:
         if number == mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION:
             return ACCEPTED, [version(self.flavour, self.system)]
         if number == mavlink.MAVLINK_MSG_ID_MESSAGE_INTERVAL:
-            return self._told_interval(command.whole(2))
+            return self._reported_interval(command.whole(2))
         if number is None or number not in REPORTS:
             return UNSUPPORTED, []
         return ACCEPTED, [REPORTS[number](self.report())]
@@ -108,9 +108,9 @@ class Requests:
         return (ACCEPTED if self.streams.set_interval(number, command[2]) else DENIED), []
 
     def _interval(self, command: Command) -> Answer:
-        return self._told_interval(command.whole(1))
+        return self._reported_interval(command.whole(1))
 
-    def _told_interval(self, number: int | None) -> Answer:
+    def _reported_interval(self, number: int | None) -> Answer:
         if number is None or not 0 <= number <= 0xFFFF:
             return DENIED, []
         return ACCEPTED, [mavlink.MAVLink_message_interval_message(number, self.streams.interval_us(number))]

@@ -3,6 +3,6 @@
 /** @param {string} name below /static/ */
 export function staticAddress(name) {
   /** @type {HTMLMetaElement | null | undefined} */
-  const said = globalThis.document?.querySelector(`meta[name="static:${name}"]`);
-  return new URL(said?.content ?? `/static/${name}`, globalThis.location?.origin ?? "http://localhost").href;
+  const summary = globalThis.document?.querySelector(`meta[name="static:${name}"]`);
+  return new URL(summary?.content ?? `/static/${name}`, globalThis.location?.origin ?? "http://localhost").href;
 }

@@ -5,7 +5,7 @@
  * @typedef {object} Store
  * @property {Readonly<State>} state
  * @property {(change: Partial<State>) => void} update Puts new values in and tells those who listen to one of the changed names.
- * @property {(names: (keyof State)[], tell: (state: Readonly<State>) => void) => () => void} listen
+ * @property {(names: (keyof State)[], notify: (state: Readonly<State>) => void) => () => void} listen
  *   tell(state) is called at once and after each change of one of the names. Returns a function that ends it.
  */
 
@@ -15,7 +15,7 @@
  * @returns {Store<State>}
  */
 export function createStore(initial) {
-  /** @type {Set<{ names: (keyof State)[], tell: (state: Readonly<State>) => void }>} */
+  /** @type {Set<{ names: (keyof State)[], notify: (state: Readonly<State>) => void }>} */
   const listeners = new Set();
   /** @type {Store<State>} */
   const store = {
@@ -28,14 +28,14 @@ export function createStore(initial) {
       if (!changed.length) return;
       store.state = Object.freeze({ ...store.state, ...change });
       for (const listener of [...listeners]) {
-        if (listener.names.some((name) => changed.includes(name))) listener.tell(store.state);
+        if (listener.names.some((name) => changed.includes(name))) listener.notify(store.state);
       }
     },
 
-    listen(names, tell) {
-      const listener = { names, tell };
+    listen(names, notify) {
+      const listener = { names, notify };
       listeners.add(listener);
-      tell(store.state);
+      notify(store.state);
       return () => listeners.delete(listener);
     },
   };

@@ -63,8 +63,8 @@ def own_act(mode: ModeKind | None, since_s: float | None, order: Order | None) -
 
 def answer_of(details: Mapping[str, Any]) -> tuple[Any, ...]:
     """Return what of an alert's details an operator acts by, without figures that change each second."""
-    said = details.get(ADVICE) or {}
-    return details.get("acts"), details.get(OWN_ACT), said.get("message")
+    status_texts = details.get(ADVICE) or {}
+    return details.get("acts"), details.get(OWN_ACT), status_texts.get("message")
 
 
 def figures_of(details: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -61,18 +61,18 @@ class BatteryForecast:
 
 def battery_forecast(situation: Situation, fresh: Report, left_percent: float) -> BatteryForecast:
     """Of a UAV in flight with a fresh report. The situation's memory is written to."""
-    told, model, memory = fresh.measurement, situation.model, situation.memory
+    reported, model, memory = fresh.measurement, situation.model, situation.memory
     consumption = None if model is None else model.consumption
     if consumption is None:
         consumption = Consumption(USUAL_CRUISE_MPS)
-    wind_mps = _wind(told, consumption)
-    kind, airspeed_mps = _flight_now(told, wind_mps)
+    wind_mps = _wind(reported, consumption)
+    kind, airspeed_mps = _flight_now(reported, wind_mps)
     per_s = consumption.percent_per_s(airspeed_mps)
     memory.drain.note(fresh.measured_s, left_percent, kind, per_s, situation.link.clock_rate)
     reserve_percent = USUAL_RESERVE_PERCENT if model is None else model.reserve_percent
-    ways = _Ways() if model is None else _ways(situation, model, told, consumption, wind_mps, position_of(fresh))
+    ways = _Ways() if model is None else _ways(situation, model, reported, consumption, wind_mps, position_of(fresh))
     moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * memory.drain.ratio(FlightKind.MOVING)
-    rest_percent = None if model is None else _rest_percent(situation, model, told, consumption)
+    rest_percent = None if model is None else _rest_percent(situation, model, reported, consumption)
     if rest_percent is not None and ways.down_percent is not None and _lands_at_end(situation):
         rest_percent = min(rest_percent, ways.down_percent)
     spare_percent = None if ways.home_percent is None else max(left_percent - reserve_percent - ways.home_percent, 0.0)
@@ -120,12 +120,12 @@ class _Ways:
 
 
 def _ways(
-    situation: Situation, model: FlightModel, told: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
+    situation: Situation, model: FlightModel, reported: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
 ) -> _Ways:
     """Straight from where it is; none without a position."""
     if position is None:
         return _Ways()
-    height_m, drain, home = told.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
+    height_m, drain, home = reported.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
     here = model.line.east_north(position)
     way, own = (home[0] - here[0], home[1] - here[1]), situation.link.own_return
     climb_m = 0.0 if own is None or situation.mode is ModeKind.LAND else own.level_m(height_m, math.hypot(*way), 0.0) - height_m
@@ -154,11 +154,11 @@ def _way_to(
     return climbs_s + flies_s + sinks_s, climbs_s * climbing + flies_s * moving + sinks_s * still, moving
 
 
-def _rest_percent(situation: Situation, model: FlightModel, told: Measurement, consumption: Consumption) -> float | None:
+def _rest_percent(situation: Situation, model: FlightModel, reported: Measurement, consumption: Consumption) -> float | None:
     place = situation.place
     if not situation.flies_mission or place is None or model.energy is None:
         return None
-    height_m, line, drain = told.altitude_relative_m, model.line, situation.memory.drain
+    height_m, line, drain = reported.altitude_relative_m, model.line, situation.memory.drain
     climbed = 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
     rest = model.energy.rest_at(place, model.energy.used_at(place, climbed))
     if drain.kind is FlightKind.STILL and math.isfinite(holds_s := line.planned_hold_s(place.along_m)):
@@ -166,12 +166,12 @@ def _rest_percent(situation: Situation, model: FlightModel, told: Measurement, c
     return max(rest, 0.0) * max(drain.ratio(FlightKind.MOVING), 1.0)
 
 
-def _wind(told: Measurement, consumption: Consumption) -> Wind:
-    if told.wind_east_mps is None or told.wind_north_mps is None:
+def _wind(reported: Measurement, consumption: Consumption) -> Wind:
+    if reported.wind_east_mps is None or reported.wind_north_mps is None:
         return consumption.wind_mps
-    return told.wind_east_mps, told.wind_north_mps
+    return reported.wind_east_mps, reported.wind_north_mps
 
 
-def _flight_now(told: Measurement, wind_mps: Wind) -> tuple[FlightKind, float]:
-    east, north = told.velocity_east_mps or 0.0, told.velocity_north_mps or 0.0
-    return kind_of(math.hypot(east, north), -(told.velocity_down_mps or 0.0)), math.hypot(east - wind_mps[0], north - wind_mps[1])
+def _flight_now(reported: Measurement, wind_mps: Wind) -> tuple[FlightKind, float]:
+    east, north = reported.velocity_east_mps or 0.0, reported.velocity_north_mps or 0.0
+    return kind_of(math.hypot(east, north), -(reported.velocity_down_mps or 0.0)), math.hypot(east - wind_mps[0], north - wind_mps[1])

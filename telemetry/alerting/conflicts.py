@@ -134,11 +134,11 @@ def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
     place, model, newest = situation.place, situation.model, situation.uav.newest
     if place is None or model is None or newest is None or not situation.flies_mission or place.across_m > situation.limits.off_route_m:
         return None
-    told, line = newest.measurement, model.line
-    if told.altitude_relative_m is None or moving.height_m is None:
+    reported, line = newest.measurement, model.line
+    if reported.altitude_relative_m is None or moving.height_m is None:
         return None
     seconds = [STEP_S * step for step in range(len(moving.ahead))]
-    points = line.planned_ahead(place, told.altitude_relative_m, max(moving.climb_mps, MIN_CLIMB_MPS), seconds)
+    points = line.planned_ahead(place, reported.altitude_relative_m, max(moving.climb_mps, MIN_CLIMB_MPS), seconds)
     if points is None:
         return None
     origin = line.frame.origin
@@ -149,7 +149,7 @@ def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
             (origin.lon + east / line.frame.metres_per_degree_east, origin.lat + north / line.frame.metres_per_degree_north)
             for east, north, _ in points
         ),
-        heights_m=tuple(moving.height_m + height_m - told.altitude_relative_m for _, _, height_m in points),
+        heights_m=tuple(moving.height_m + height_m - reported.altitude_relative_m for _, _, height_m in points),
     )
 
 
@@ -160,8 +160,8 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
     position = estimate.position if estimate is not None else None if newest is None else position_of(newest)
     if position is None or newest is None or not situation.is_in_flight:
         return None
-    told = newest.measurement
-    north_mps, east_mps = told.velocity_north_mps or 0.0, told.velocity_east_mps or 0.0
+    reported = newest.measurement
+    north_mps, east_mps = reported.velocity_north_mps or 0.0, reported.velocity_east_mps or 0.0
     speed_mps = math.hypot(north_mps, east_mps)
     degree_east_m = DEGREE_M * math.cos(math.radians(position.lat))
     seconds = [STEP_S * step for step in range(int(within_s / STEP_S) + 2)]
@@ -178,8 +178,8 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
         organisation=uav.organisation_id,
         is_twin=uav.is_twin,
         ahead=tuple(ahead),
-        height_m=told.altitude_amsl_m if estimate is None or estimate.altitude_amsl_m is None else estimate.altitude_amsl_m,
-        climb_mps=-(told.velocity_down_mps or 0.0),
+        height_m=reported.altitude_amsl_m if estimate is None or estimate.altitude_amsl_m is None else estimate.altitude_amsl_m,
+        climb_mps=-(reported.velocity_down_mps or 0.0),
         bound_m=0.0 if estimate is None else max(estimate.bound.along_m, estimate.bound.across_m),
         bound_height_m=0.0 if estimate is None else estimate.bound_height_m,
         clock_rate=situation.link.clock_rate,
@@ -210,17 +210,17 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     ones, others = ones[near], others[near]
     lateral_m, height_m, in_s = _closest(way[ones] - way[others], heights[ones] - heights[others])
     met = Counter[int]()
-    told: set[tuple[int, int]] = set()
+    reported: set[tuple[int, int]] = set()
     for pair in np.lexsort((in_s, np.maximum(lateral_m / FAR_M, height_m / FAR_HEIGHT_M))).tolist():
         if lateral_m[pair] > NEAR_M or height_m[pair] > NEAR_HEIGHT_M:
             continue
         first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
-        is_new = (first.uav_id, second.uav_id) not in told
+        is_new = (first.uav_id, second.uav_id) not in reported
         if is_new and met[first.uav_id] >= MAX_MET and met[second.uav_id] >= MAX_MET:
             continue
         found[first.uav_id].append(_meeting(first, second, float(lateral_m[pair]), float(height_m[pair]), float(in_s[pair])))
         if is_new:
-            told.add((first.uav_id, second.uav_id))
+            reported.add((first.uav_id, second.uav_id))
             met.update((first.uav_id, second.uav_id))
     return found
 

@@ -8,7 +8,7 @@ from telemetry.alerting.detector_state import Memory
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.modes import AT_THE_END, FLY_LIST, ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
-from telemetry.alerting.said import Said
+from telemetry.alerting.status_texts import StatusText
 from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
@@ -55,17 +55,17 @@ class Situation:
     order: Order | None = None
     zones: tuple[NearZone, ...] = ()
     meetings: tuple[Meeting, ...] = ()
-    said: tuple[Said, ...] = ()
+    status_texts: tuple[StatusText, ...] = ()
     is_accounted_for: bool = False  # it is down away from its plan, and a person has closed that alert
 
     def is_open(self, code: str, subject: str = "") -> bool:
         return (code, subject) in self.open_levels
 
     @property
-    def heard_s(self) -> float | None:
+    def last_message_s(self) -> float | None:
         received_s = None if self.uav.newest is None else self.uav.newest.received_s
-        told = [moment for moment in (self.link.heard_s, received_s) if moment is not None]
-        return max(told) if told else None
+        reported = [moment for moment in (self.link.last_message_s, received_s) if moment is not None]
+        return max(reported) if reported else None
 
     @property
     def report_interval_s(self) -> float:
@@ -112,34 +112,34 @@ class Situation:
         """As far as is known. A flight that was told to be over is, though no report has said so."""
         if self.link.is_in_air is False:
             return False
-        told = None if self.uav.newest is None else self.uav.newest.measurement
-        is_in_air = self.link.is_in_air if told is None or told.is_in_air is None else told.is_in_air
+        reported = None if self.uav.newest is None else self.uav.newest.measurement
+        is_in_air = self.link.is_in_air if reported is None or reported.is_in_air is None else reported.is_in_air
         if is_in_air is not None:
             return is_in_air
-        is_armed = self.link.is_armed if told is None or told.is_armed is None else told.is_armed
+        is_armed = self.link.is_armed if reported is None or reported.is_armed is None else reported.is_armed
         if is_armed is not None:
             return is_armed
-        return told is not None and (told.altitude_relative_m or 0.0) > AIRBORNE_M
+        return reported is not None and (reported.altitude_relative_m or 0.0) > AIRBORNE_M
 
     @property
     def is_known_down(self) -> bool:
         """On the ground by its own word, not by silence."""
-        told = None if self.uav.newest is None else self.uav.newest.measurement.is_in_air
-        return not self.is_in_flight and (self.link.is_in_air is False or told is False)
+        reported = None if self.uav.newest is None else self.uav.newest.measurement.is_in_air
+        return not self.is_in_flight and (self.link.is_in_air is False or reported is False)
 
     @property
     def is_disarmed(self) -> bool:
         """By its own word, not by silence."""
-        told = None if self.uav.newest is None else self.uav.newest.measurement.is_armed
-        return (self.link.is_armed if told is None else told) is False
+        reported = None if self.uav.newest is None else self.uav.newest.measurement.is_armed
+        return (self.link.is_armed if reported is None else reported) is False
 
     @property
     def agl_m(self) -> float | None:
         """As told; else above the ground as the plan has it there."""
-        told = None if self.uav.newest is None else self.uav.newest.measurement
-        if told is None or told.altitude_agl_m is not None:
-            return None if told is None else told.altitude_agl_m
+        reported = None if self.uav.newest is None else self.uav.newest.measurement
+        if reported is None or reported.altitude_agl_m is not None:
+            return None if reported is None else reported.altitude_agl_m
         place = self.memory.place
-        if told.altitude_relative_m is None or place is None or self.model is None or place.across_m > 200.0:
+        if reported.altitude_relative_m is None or place is None or self.model is None or place.across_m > 200.0:
             return None
-        return told.altitude_relative_m - self.model.line.ground_m(place)
+        return reported.altitude_relative_m - self.model.line.ground_m(place)

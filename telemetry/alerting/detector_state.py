@@ -98,22 +98,24 @@ class Memory:
 
 
 def position_of(report: Report) -> LonLat | None:
-    told = report.measurement
-    return None if told.longitude_deg is None or told.latitude_deg is None else LonLat(told.longitude_deg, told.latitude_deg)
+    reported = report.measurement
+    return (
+        None if reported.longitude_deg is None or reported.latitude_deg is None else LonLat(reported.longitude_deg, reported.latitude_deg)
+    )
 
 
 def _is_falling(report: Report, before: Report | None) -> bool:
     """By the speed that it reports, else by its heights and its own clock."""
-    told = report.measurement
-    if told.velocity_down_mps is not None:
-        return told.velocity_down_mps > FALL_MPS
+    reported = report.measurement
+    if reported.velocity_down_mps is not None:
+        return reported.velocity_down_mps > FALL_MPS
     earlier_m = None if before is None else before.measurement.altitude_relative_m
-    if before is None or earlier_m is None or told.altitude_relative_m is None:
+    if before is None or earlier_m is None or reported.altitude_relative_m is None:
         return False
     seconds = report.measured_s - before.measured_s
     if report.boot is not None and before.boot is not None and report.boot.stream == before.boot.stream:
         seconds = report.boot.clock_s - before.boot.clock_s
-    return seconds >= MIN_FALL_S and (earlier_m - told.altitude_relative_m) / seconds > FALL_MPS
+    return seconds >= MIN_FALL_S and (earlier_m - reported.altitude_relative_m) / seconds > FALL_MPS
 
 
 def _place(line: RouteLine, report: Report, before: Place | None) -> Place | None:

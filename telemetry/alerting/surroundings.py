@@ -14,13 +14,13 @@ from telemetry.alerting.route_line import RouteLine
 
 @dataclass(frozen=True, slots=True)
 class LinkFacts:
-    """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock.
+    """What is known of the UAV's link. `last_message_s` is when anything was last received, by the server's clock.
 
     `clock_rate`: the vehicle's seconds a second of the server's; not 1 where it is flown faster than real time.
     `battery_state`: as the vehicle itself has it, a name of mavlink/vehicle_state.py; empty: it does not tell.
     """
 
-    heard_s: float | None = None
+    last_message_s: float | None = None
     mode: str = ""
     is_armed: bool | None = None
     is_in_air: bool | None = None

@@ -229,5 +229,5 @@ def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen)
     by_profile_mps = float(np.linalg.norm(each[:, 0]))
     if by_profile_mps < MIN_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
         return 0.0
-    told_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
-    return NOW_SHARE * min(max(told_mps / by_profile_mps - 1.0, -0.5), 0.5)
+    reported_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
+    return NOW_SHARE * min(max(reported_mps / by_profile_mps - 1.0, -0.5), 0.5)

@@ -28,10 +28,10 @@ AT_ONCE = 500  # places
 
 @dataclass(eq=False)
 class Hearing:
-    """What is known of a profile's cells; `heard` (cells,) grows."""
+    """What is known of a profile's cells; `received` (cells,) grows."""
 
     profile: Profile
-    heard: NDArray[np.bool_] = field(init=False)
+    received: NDArray[np.bool_] = field(init=False)
     _along_m: FloatArray = field(init=False)
     _east_m: FloatArray = field(init=False)
     _north_m: FloatArray = field(init=False)
@@ -41,14 +41,14 @@ class Hearing:
         self._along_m = (np.arange(count, dtype=np.float64) + 0.5) * CELL_M
         self._east_m = np.interp(self._along_m, self.profile.along_m, self.profile.east_m)
         self._north_m = np.interp(self._along_m, self.profile.along_m, self.profile.north_m)
-        self.heard = np.zeros(count, dtype=np.bool_)
+        self.received = np.zeros(count, dtype=np.bool_)
 
     def learn(self, places_m: FloatArray) -> None:
         """Something was heard promptly from these places, (n, 2), east and north in the profile's frame."""
         for begin in range(0, len(places_m), AT_ONCE):
             part = places_m[begin : begin + AT_ONCE]
             far_m = np.hypot(self._east_m[:, None] - part[:, 0], self._north_m[:, None] - part[:, 1])
-            self.heard |= (far_m < NEAR_M).any(axis=1)
+            self.received |= (far_m < NEAR_M).any(axis=1)
 
     def expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
         """When it is heard again, by what is believed at `at_s`; None where its route is over by then."""
@@ -57,7 +57,7 @@ class Hearing:
             return None
         clock = clock_of(self.profile, track.pace)
         middle_s = float(np.interp(track.pace.nominal_s, self.profile.nominal_s, clock).mean())
-        ahead = np.flatnonzero(self.heard & (self._along_m - 0.5 * CELL_M > along_m))
+        ahead = np.flatnonzero(self.received & (self._along_m - 0.5 * CELL_M > along_m))
         if len(ahead):
             begins_m = float(self._along_m[ahead[0]]) - 0.5 * CELL_M
             return max(state.report_s + float(np.interp(begins_m, self.profile.along_m, clock)) - middle_s, at_s)

@@ -145,10 +145,10 @@ def _along(state: State, track: Track, after_s: float, *, with_reach: bool, is_s
     velocity_now = velocity(profile, clock, at_report)
     each_mps = velocity(profile, clock, later.reading_s)
     places, speeds, beside_mps = [], [], []
-    for place, column, told_mps, then, now_mps in zip(
+    for place, column, reported_mps, then, now_mps in zip(
         seen, columns, (state.east_mps, state.north_mps, state.up_mps), each_mps, velocity_now, strict=True
     ):
-        besides_mps = told_mps - float(now_mps.mean())
+        besides_mps = reported_mps - float(now_mps.mean())
         each = np.interp(later.reading_s, clock, column) + besides_mps * turned_s
         if place is not None:
             each += np.repeat(place - np.interp(at_report, clock, column), len(weight) // len(at_report)) * aside

@@ -36,72 +36,72 @@ class Course:
 
 def first_state(course: Course, report: Report) -> State | None:
     """None without a position."""
-    told, place = report.measurement, _place(course, report.measurement)
+    reported, place = report.measurement, _place(course, report.measurement)
     if place is None:
         return None
-    said = phase_of(told.mode, is_armed=told.is_armed, is_in_air=told.is_in_air)
-    phase = said or (Phase.MISSION if course.profile is not None else Phase.FREE)
-    east_mps, north_mps, up_mps = _velocity(told) or (0.0, 0.0, 0.0)
+    stated = phase_of(reported.mode, is_armed=reported.is_armed, is_in_air=reported.is_in_air)
+    phase = stated or (Phase.MISSION if course.profile is not None else Phase.FREE)
+    east_mps, north_mps, up_mps = _velocity(reported) or (0.0, 0.0, 0.0)
     route = None
     if course.profile is not None:
-        pace = at_start() if phase is Phase.GROUND else anywhere(course.profile, _sight(phase, told, place))
+        pace = at_start() if phase is Phase.GROUND else anywhere(course.profile, _sight(phase, reported, place))
         route = None if pace is None else Track(course.profile, pace)
     return _with_way(
         course,
         State(
-            report.measured_s, report.measured_s, _on_route(phase, route), told.mode, *place, told.altitude_relative_m,
+            report.measured_s, report.measured_s, _on_route(phase, route), reported.mode, *place, reported.altitude_relative_m,
             east_mps, north_mps, up_mps,
-            GPS_VARIANCE_M2, BARO_VARIANCE_M2, told.heading_deg, _amsl_above(told), route, None, told.waypoint_sequence,
-            _is_about_to_start(told, phase, route),
+            GPS_VARIANCE_M2, BARO_VARIANCE_M2, reported.heading_deg, _amsl_above(reported), route, None, reported.waypoint_sequence,
+            _is_about_to_start(reported, phase, route),
         ),
     )  # fmt: skip
 
 
 def next_state(course: Course, state: State, report: Report) -> State:
     """report: measured no earlier than the state's."""
-    told, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
+    reported, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
     belief = after(state, after_s, with_reach=False)
-    said = phase_of(told.mode, is_armed=told.is_armed, is_in_air=told.is_in_air)
-    phase = said or state.phase
-    place = _place(course, told)
+    stated = phase_of(reported.mode, is_armed=reported.is_armed, is_in_air=reported.is_in_air)
+    phase = stated or state.phase
+    place = _place(course, reported)
     east_m, north_m, variance_m2 = _fused(belief, place)
-    height_m, height_variance_m2 = _fused_height(belief, told.altitude_relative_m)
-    east_mps, north_mps, up_mps = _velocity(told) or _velocity_from(state, belief, place, report.measured_s)
-    sequence = told.waypoint_sequence if told.waypoint_sequence is not None else state.sequence
-    route = _route(course, state, phase, after_s, _sight(phase, told, place))
-    if phase is Phase.FREE and said is None and route is not None:
+    height_m, height_variance_m2 = _fused_height(belief, reported.altitude_relative_m)
+    east_mps, north_mps, up_mps = _velocity(reported) or _velocity_from(state, belief, place, report.measured_s)
+    sequence = reported.waypoint_sequence if reported.waypoint_sequence is not None else state.sequence
+    route = _route(course, state, phase, after_s, _sight(phase, reported, place))
+    if phase is Phase.FREE and stated is None and route is not None:
         phase = Phase.MISSION
     return _with_way(
         course,
         State(
-            report.measured_s, state.placed_s if place is None else report.measured_s, _on_route(phase, route), told.mode or state.mode,
+            report.measured_s, state.placed_s if place is None else report.measured_s, _on_route(phase, route), reported.mode or state.mode,
             east_m, north_m, height_m, east_mps, north_mps, up_mps, variance_m2, height_variance_m2,
-            state.heading_deg if told.heading_deg is None else told.heading_deg,
-            _kept_amsl(state, _amsl_above(told)), route, None, sequence,
-            _is_about_to_start(told, phase, route),
+            state.heading_deg if reported.heading_deg is None else reported.heading_deg,
+            _kept_amsl(state, _amsl_above(reported)), route, None, sequence,
+            _is_about_to_start(reported, phase, route),
         ),
     )  # fmt: skip
 
 
-def _place(course: Course, told: Measurement) -> tuple[float, float] | None:
-    if told.longitude_deg is None or told.latitude_deg is None:
+def _place(course: Course, reported: Measurement) -> tuple[float, float] | None:
+    if reported.longitude_deg is None or reported.latitude_deg is None:
         return None
-    east_m, north_m = course.frame.to_metres(np.array([[told.longitude_deg, told.latitude_deg]]))[0]
+    east_m, north_m = course.frame.to_metres(np.array([[reported.longitude_deg, reported.latitude_deg]]))[0]
     return float(east_m), float(north_m)
 
 
-def _velocity(told: Measurement) -> tuple[float, float, float] | None:
-    if told.velocity_east_mps is None or told.velocity_north_mps is None:
+def _velocity(reported: Measurement) -> tuple[float, float, float] | None:
+    if reported.velocity_east_mps is None or reported.velocity_north_mps is None:
         return None
-    return told.velocity_east_mps, told.velocity_north_mps, -(told.velocity_down_mps or 0.0)
+    return reported.velocity_east_mps, reported.velocity_north_mps, -(reported.velocity_down_mps or 0.0)
 
 
-def _sight(phase: Phase, told: Measurement, place: tuple[float, float] | None) -> Seen:
+def _sight(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> Seen:
     """The velocity only where it tells of the place on the route."""
-    velocity = _velocity(told) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
+    velocity = _velocity(reported) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
     east_m, north_m = place or (None, None)
     east_mps, north_mps, up_mps = velocity or (None, None, None)
-    return Seen(east_m, north_m, east_mps, north_mps, up_mps, told.waypoint_sequence)
+    return Seen(east_m, north_m, east_mps, north_mps, up_mps, reported.waypoint_sequence)
 
 
 def _velocity_from(state: State, belief: Belief, place: tuple[float, float] | None, at_s: float) -> tuple[float, float, float]:
@@ -122,14 +122,14 @@ def _fused(belief: Belief, place: tuple[float, float] | None) -> tuple[float, fl
     return east_m, north_m, gain * GPS_VARIANCE_M2
 
 
-def _fused_height(belief: Belief, told_m: float | None) -> tuple[float | None, float]:
+def _fused_height(belief: Belief, reported_m: float | None) -> tuple[float | None, float]:
     own_m2 = max(belief.height_sd_m**2 - SHARED_HEIGHT_M**2, 0.01)
-    if told_m is None:
+    if reported_m is None:
         return belief.height_m, own_m2
     if belief.height_m is None:
-        return told_m, BARO_VARIANCE_M2
+        return reported_m, BARO_VARIANCE_M2
     gain = own_m2 / (own_m2 + BARO_VARIANCE_M2)
-    return belief.height_m + gain * (told_m - belief.height_m), gain * BARO_VARIANCE_M2
+    return belief.height_m + gain * (reported_m - belief.height_m), gain * BARO_VARIANCE_M2
 
 
 def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Seen) -> Track | None:
@@ -151,9 +151,9 @@ def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Se
     return None if pace is None else Track(course.profile, pace)
 
 
-def _is_about_to_start(told: Measurement, phase: Phase, route: Track | None) -> bool:
-    flies_when_up = phase_of(told.mode, is_armed=None, is_in_air=None)
-    stands_ready = phase is Phase.GROUND and told.is_armed is True and flies_when_up in {Phase.MISSION, Phase.TAKE_OFF}
+def _is_about_to_start(reported: Measurement, phase: Phase, route: Track | None) -> bool:
+    flies_when_up = phase_of(reported.mode, is_armed=None, is_in_air=None)
+    stands_ready = phase is Phase.GROUND and reported.is_armed is True and flies_when_up in {Phase.MISSION, Phase.TAKE_OFF}
     return stands_ready and route is not None and not route.pace.nominal_s.any()
 
 
@@ -182,11 +182,11 @@ def _changed(state: State, phase: Phase, home: Track | None) -> State:
     return replace(state, phase=phase, home=home)
 
 
-def _amsl_above(told: Measurement) -> float | None:
-    if told.altitude_amsl_m is None or told.altitude_relative_m is None:
+def _amsl_above(reported: Measurement) -> float | None:
+    if reported.altitude_amsl_m is None or reported.altitude_relative_m is None:
         return None
-    return told.altitude_amsl_m - told.altitude_relative_m
+    return reported.altitude_amsl_m - reported.altitude_relative_m
 
 
-def _kept_amsl(state: State, told_m: float | None) -> float | None:
-    return state.amsl_above_m if told_m is None else told_m
+def _kept_amsl(state: State, reported_m: float | None) -> float | None:
+    return state.amsl_above_m if reported_m is None else reported_m

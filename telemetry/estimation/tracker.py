@@ -93,7 +93,7 @@ class Tracker:
             self._states.insert(place, None)
         self._go_through(place)
         self._outlook = None
-        self._note_heard(read)
+        self._note_received(read)
         self._forget()
 
     def estimate(self, at_s: float) -> Estimate | None:
@@ -103,7 +103,7 @@ class Tracker:
         if state is None or self._course is None:
             return None
         belief = after(state, self.time.own_s(at_s) - state.report_s)
-        return self._told(state, belief, at_s)
+        return self._reported(state, belief, at_s)
 
     def _go_through(self, place: int) -> None:
         state = self._states[place - 1] if place else None
@@ -116,22 +116,22 @@ class Tracker:
         return replace(report, measured_s=self.time.own_s(report.measured_s), received_s=self.time.own_s(report.received_s))
 
     def _begin(self, report: Report) -> State | None:
-        told = report.measurement
-        if told.longitude_deg is None or told.latitude_deg is None:
+        reported = report.measurement
+        if reported.longitude_deg is None or reported.latitude_deg is None:
             return None
         if self._course is None:
             profile = profile_of(self.knowledge)
-            frame = LocalFrame.around(told.longitude_deg, told.latitude_deg) if profile is None else profile.frame
+            frame = LocalFrame.around(reported.longitude_deg, reported.latitude_deg) if profile is None else profile.frame
             self._course = Course(self.knowledge, frame, profile)
             self._hearing = None if profile is None else Hearing(profile)
         return first_state(self._course, report)
 
-    def _note_heard(self, report: Report) -> None:
-        told = report.measurement
-        if self._hearing is None or told.longitude_deg is None or told.latitude_deg is None:
+    def _note_received(self, report: Report) -> None:
+        reported = report.measurement
+        if self._hearing is None or reported.longitude_deg is None or reported.latitude_deg is None:
             return
         if report.received_s - report.measured_s < PROMPT_S:
-            self._hearing.learn(self._frame.to_metres(np.array([[told.longitude_deg, told.latitude_deg]])))
+            self._hearing.learn(self._frame.to_metres(np.array([[reported.longitude_deg, reported.latitude_deg]])))
 
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
@@ -140,7 +140,7 @@ class Tracker:
         if gone > 0:
             del self._reports[:gone], self._states[:gone]
 
-    def _told(self, state: State, belief: Belief, at_s: float) -> Estimate:
+    def _reported(self, state: State, belief: Belief, at_s: float) -> Estimate:
         bound = _ellipse(belief)
         since_s = self.time.own_s(at_s) - state.placed_s
         lon, lat = self._frame.to_degrees(np.array([[belief.east_m, belief.north_m]]))[0]
@@ -177,15 +177,15 @@ class Tracker:
             return estimate
         arrivals, end = self._foreseen(state)
         at_s = estimate.at_s
-        told = replace(estimate, ends_at_s=None if end is None else max(end.at_s, at_s))
+        reported = replace(estimate, ends_at_s=None if end is None else max(end.at_s, at_s))
         if followed is not state.route:
-            return told
+            return reported
         profile = followed.profile
         along_m = float(np.interp(nominal_s, profile.nominal_s, profile.along_m))
         knot = min(int(np.searchsorted(profile.nominal_s, nominal_s)), len(profile.leg) - 1)
         sequence = int(profile.sequence[profile.leg[knot]])
         return replace(
-            told,
+            reported,
             waypoint_sequence=estimate.waypoint_sequence if sequence < 0 else sequence,
             along_route_m=along_m,
             to_go_m=profile.length_m - along_m,
@@ -208,8 +208,8 @@ class Tracker:
             followed = state.followed
             arrivals = () if state.route is None or followed is not state.route else arrivals_of(state, state.route)
             end = None if followed is None else end_of(state, followed)
-            told = tuple(self._by_server(arrival) for arrival in arrivals)
-            self._outlook = ((state.report_s, self.time.rate), told, None if end is None else self._by_server(end))
+            reported = tuple(self._by_server(arrival) for arrival in arrivals)
+            self._outlook = ((state.report_s, self.time.rate), reported, None if end is None else self._by_server(end))
         return self._outlook[1:]
 
     def _by_server(self, arrival: Arrival) -> Arrival:

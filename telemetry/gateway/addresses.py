@@ -15,7 +15,7 @@ MAX_RECENT = 512  # frames that are remembered, to know their copies
 
 
 @dataclass
-class Heard:
+class Received:
     since_s: float
     last_s: float
 
@@ -26,7 +26,7 @@ class Addresses:
 
     main: Peer | None = None
     copied: tuple[str, float] | None = None
-    _heard: dict[Peer, Heard] = field(default_factory=dict)
+    _received: dict[Peer, Received] = field(default_factory=dict)
     _first: dict[tuple[str, int], tuple[Peer, float]] = field(default_factory=dict)  # who brought a frame first, and when
     _order: deque[tuple[str, int]] = field(default_factory=deque)
 
@@ -36,7 +36,7 @@ class Addresses:
         self._order.append((stream, timestamp))
         if len(self._order) > MAX_RECENT:
             self._first.pop(self._order.popleft(), None)
-        self._hear(peer, now_s)
+        self._receive(peer, now_s)
         self._move(now_s)
 
     def copy(self, stream: str, timestamp: int, peer: Peer, now_s: float) -> bool:
@@ -44,7 +44,7 @@ class Addresses:
         first = self._first.get((stream, timestamp))
         if first is None or first[0] == peer or not 0 <= now_s - first[1] <= SAME_WITHIN_S:
             return False
-        self._hear(peer, now_s)
+        self._receive(peer, now_s)
         self.copied = (peer.name if first[0] == self.main else first[0].name, now_s)
         return True
 
@@ -52,7 +52,7 @@ class Addresses:
         """The main one first."""
         if self.main is None:
             return []
-        return [self.main, *(peer for peer, heard in self._heard.items() if peer != self.main and not _is_silent(heard, now_s))]
+        return [self.main, *(peer for peer, received in self._received.items() if peer != self.main and not _is_silent(received, now_s))]
 
     def believe(self, peer: Peer) -> None:
         """Where nothing is signed there is one address alone."""
@@ -61,45 +61,49 @@ class Addresses:
 
     def forget(self) -> None:
         self.main = self.copied = None
-        self._heard.clear()
+        self._received.clear()
         self._first.clear()
         self._order.clear()
 
-    def _hear(self, peer: Peer, now_s: float) -> None:
-        heard = self._heard.get(peer)
-        if heard is not None and not _is_silent(heard, now_s):
-            heard.last_s = now_s
-        elif heard is not None or self._has_room(peer, now_s):
-            self._heard[peer] = Heard(now_s, now_s)
+    def _receive(self, peer: Peer, now_s: float) -> None:
+        received = self._received.get(peer)
+        if received is not None and not _is_silent(received, now_s):
+            received.last_s = now_s
+        elif received is not None or self._has_room(peer, now_s):
+            self._received[peer] = Received(now_s, now_s)
 
     def _has_room(self, newcomer: Peer, now_s: float) -> bool:
         """Make some where a host has several addresses more than the newcomer's: many ports of one must not keep out another."""
-        self._heard = {peer: heard for peer, heard in self._heard.items() if peer == self.main or not _is_silent(heard, now_s)}
-        if len(self._heard) < MAX_ADDRESSES:
+        self._received = {
+            peer: received for peer, received in self._received.items() if peer == self.main or not _is_silent(received, now_s)
+        }
+        if len(self._received) < MAX_ADDRESSES:
             return True
-        hosts = Counter(_host(peer) for peer in self._heard)
+        hosts = Counter(_host(peer) for peer in self._received)
         host, number = hosts.most_common(1)[0]
         if number <= hosts[_host(newcomer)] + 1:
             return False
-        del self._heard[next(peer for peer in reversed(self._heard) if _host(peer) == host and peer != self.main)]
+        del self._received[next(peer for peer in reversed(self._received) if _host(peer) == host and peer != self.main)]
         return True
 
     def _move(self, now_s: float) -> None:
         """To the address that was heard for longest, once nothing came from the main one for a while."""
-        main = None if self.main is None else self._heard.get(self.main)
+        main = None if self.main is None else self._received.get(self.main)
         if main is not None and not _is_silent(main, now_s):
             return
-        others = [(heard.since_s, peer) for peer, heard in self._heard.items() if peer != self.main and not _is_silent(heard, now_s)]
+        others = [
+            (received.since_s, peer) for peer, received in self._received.items() if peer != self.main and not _is_silent(received, now_s)
+        ]
         since_s, peer = min(others, key=lambda other: other[0], default=(now_s, None))
         if peer is not None and (self.main is None or now_s - since_s >= MOVE_AFTER_S):
             if self.main is not None:
-                self._heard.pop(self.main, None)
+                self._received.pop(self.main, None)
             self.main = peer
 
 
-def _is_silent(heard: Heard, now_s: float) -> bool:
+def _is_silent(received: Received, now_s: float) -> bool:
     """Also where our clock of the day was set back since."""
-    return abs(now_s - heard.last_s) >= MOVE_AFTER_S
+    return abs(now_s - received.last_s) >= MOVE_AFTER_S
 
 
 def _host(peer: Peer) -> str:

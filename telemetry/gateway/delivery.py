@@ -16,7 +16,7 @@ from django.utils import timezone
 
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
-from mavlink.commands.actions import Order, blind_message, pause_s
+from mavlink.commands.actions import Order, pause_s, unacknowledged_message
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.commands.driver import CommandDriver
 from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
@@ -35,7 +35,7 @@ from missions.services.commands.commands import (
     note_read_back,
     note_released,
     note_sent,
-    note_sent_unheard,
+    note_sent_unacknowledged,
 )
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (
@@ -48,8 +48,8 @@ from telemetry.gateway.preparation import (
     task_of,
 )
 from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_aboard
-from telemetry.gateway.session import HEARD_WITHIN_S, Session
-from telemetry.services.alerts.mission_alerts import tell_of_mission, tell_of_other_list
+from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
+from telemetry.services.alerts.mission_alerts import raise_mission_mismatch, raise_other_list
 from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 
 RETRIES = 2  # a parameter that a vehicle does not have draws no answer
@@ -64,7 +64,7 @@ POLL_INTERVAL_S = 0.25
 logger = logging.getLogger(__name__)
 PROGRESS_INTERVAL_S = 0.5
 TRY_AGAIN_IN_S = 2.0
-UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
+UNACKNOWLEDGED = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
 NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
 CLEAR_AGAIN_IN_S = 15.0
 MAX_ATTEMPTS = 100
@@ -110,13 +110,15 @@ def _refusal(refused: tuple[LimitWarning, ...]) -> CannotCarry:
     return CannotCarry(first.code, " ".join(["The UAV would not fly it.", first.words, *more, *advice]))
 
 
-async def send_blind(order: Order, session: Session, may_send: Callable[[], bool], is_wanted: Callable[[], Awaitable[bool]]) -> None:
+async def send_unacknowledged(
+    order: Order, session: Session, may_send: Callable[[], bool], is_wanted: Callable[[], Awaitable[bool]]
+) -> None:
     """`may_send` is asked before each message, `is_wanted` after it."""
     sent, next_s = 0, time.monotonic()
     while may_send() and session.state.flavour is not None:
         if (now_s := time.monotonic()) >= next_s:
             session.commanded_s = now_s
-            session.send([blind_message(order, session.state.flavour, Ends(session.uav.system), sent)])
+            session.send([unacknowledged_message(order, session.state.flavour, Ends(session.uav.system), sent)])
             sent += 1
             next_s = now_s + pause_s(sent)
             if not await is_wanted():
@@ -126,13 +128,13 @@ async def send_blind(order: Order, session: Session, may_send: Callable[[], bool
 
 @dataclass
 class Delivery:
-    """`is_dropped`: the row is not ours any more, or is to be given back; `is_closing`: the latter. `is_blind`: nothing is heard."""
+    """`is_dropped`: the row is no longer ours, or is to be released; `is_closing`: the latter. `is_unacknowledged`: nothing is received."""
 
     command: UavCommand
     session: Session
     database: DatabaseThread
     held_until_s: float = 0.0  # monotonic: past it another gateway may carry the command
-    is_blind: bool = False
+    is_unacknowledged: bool = False
     is_dropped: bool = False
     is_closing: bool = False
     has_begun: bool = False
@@ -150,8 +152,8 @@ class Delivery:
 
     async def run(self) -> None:
         try:
-            if self.is_blind:
-                await self._send_blind()
+            if self.is_unacknowledged:
+                await self._send_unacknowledged()
                 return
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
@@ -176,13 +178,13 @@ class Delivery:
         finally:
             await asyncio.gather(*self._notes, return_exceptions=True)
 
-    async def _send_blind(self) -> None:
+    async def _send_unacknowledged(self) -> None:
         """Given back once it is heard: what it does then is seen, and told, as of any command."""
-        if await self._surely(note_sent_unheard, self.command.pk, **self._fence):
-            await send_blind(
+        if await self._surely(note_sent_unacknowledged, self.command.pk, **self._fence):
+            await send_unacknowledged(
                 Order(self.command.kind),
                 self.session,
-                may_send=lambda: self.is_ours and not self.session.is_served(time.time(), HEARD_WITHIN_S),
+                may_send=lambda: self.is_ours and not self.session.is_served(time.time(), RECEIVED_WITHIN_S),
                 is_wanted=lambda: self._surely(is_wanted, self.command.pk, **self._fence),
             )
         await self._end(note_released)
@@ -225,19 +227,19 @@ class Delivery:
             order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
             parameters=parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
         )  # fmt: skip
-        told = False
+        reported = False
 
         def change() -> None:
-            nonlocal told
+            nonlocal reported
             self.session.commanded_s = time.monotonic()
-            if keeper.is_acknowledged and not told:
-                told = True
+            if keeper.is_acknowledged and not reported:
+                reported = True
                 self._note(note_acknowledged, self.command.pk, **self._fence)
 
         self.session.commanded_s = time.monotonic()
         outcome = await ProtocolDriver(self.session, keeper, lambda: self.is_ours).run(on_change=change)
         if isinstance(outcome, CommandOutcome):
-            await self._tell_order(outcome)
+            await self._send_order(outcome)
         else:
             await self._end(note_released)
 
@@ -254,7 +256,7 @@ class Delivery:
         setting = ParameterSetting(*wanted, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES)
         outcome = await ProtocolDriver(self.session, setting, lambda: self.is_ours).run(on_change=lambda: None)
         if isinstance(outcome, CommandOutcome):
-            await self._tell_order(outcome)
+            await self._send_order(outcome)
         else:
             await self._end(note_released)
 
@@ -276,25 +278,25 @@ class Delivery:
         if reading is None:
             await self._end(note_released)
         elif reading.is_aboard:
-            await self._surely(tell_of_other_list, self.command)
+            await self._surely(raise_other_list, self.command)
             if before is not None:
                 await self._surely(confirm_loaded, self.carried, before)
             if await self._surely(note_read_back, self.command.pk, done=total, total=total, **self._fence):
                 return True
             await self._end(note_released)
-        elif reading.code in UNHEARD:
+        elif reading.code in UNACKNOWLEDGED:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words, code=reading.code)
         else:
             if reading.code == OTHER_LIST_READ:
-                await self._surely(tell_of_other_list, self.command, reading.words)
+                await self._surely(raise_other_list, self.command, reading.words)
             await self._end_with(fail_loading, None, reading.code, reading.words)
         return False
 
-    async def _tell_order(self, outcome: CommandOutcome) -> None:
+    async def _send_order(self, outcome: CommandOutcome) -> None:
         await asyncio.gather(*self._notes, return_exceptions=True)
         if outcome.state is CommandEnd.APPLIED:
             await self._end(note_applied, note=outcome.words)
-        elif outcome.code in UNHEARD:
+        elif outcome.code in UNACKNOWLEDGED:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=outcome.words)
         else:
             await self._end(note_failed, outcome.code or "failed", outcome.words or "The vehicle did not do it.")
@@ -314,7 +316,7 @@ class Delivery:
             if len(keeper.mixes) > mixes:
                 mixes = len(keeper.mixes)
                 words = "; ".join(mix.words for mix in keeper.mixes)
-                self._note(tell_of_mission, self.command, is_mixed=True, words=words)
+                self._note(raise_mission_mismatch, self.command, is_mixed=True, words=words)
             if time.monotonic() - noted_s >= PROGRESS_INTERVAL_S:
                 noted_s = time.monotonic()
                 progress = keeper.progress
@@ -325,25 +327,25 @@ class Delivery:
         if outcome is None:
             await self._end(note_released)
         else:
-            await self._tell_load(task, outcome)
+            await self._report_load(task, outcome)
 
-    async def _tell_load(self, task: Task, outcome: SyncOutcome) -> None:
+    async def _report_load(self, task: Task, outcome: SyncOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
         still_mixed = outcome.state is SyncState.MIXED or (outcome.state is SyncState.UNREAD and outcome.is_critical)
-        await self._surely(tell_of_mission, self.command, is_mixed=still_mixed, words=outcome.words)
+        await self._surely(raise_mission_mismatch, self.command, is_mixed=still_mixed, words=outcome.words)
         before = task.before if outcome.state is SyncState.INTACT else None
         if outcome.state is SyncState.READY:
-            await self._surely(tell_of_other_list, self.command)
+            await self._surely(raise_other_list, self.command)
             warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
-            told = " ".join(filter(None, [outcome.left_alone, warnings]))
+            reported = " ".join(filter(None, [outcome.left_alone, warnings]))
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
             self.session.forget_flown()
             self.session.questions.own_return.ask_anew(time.monotonic())  # also of the rally points that it holds now
-            await self._end_with(end_loading, wanted, note=outcome.words, warnings=told)
+            await self._end_with(end_loading, wanted, note=outcome.words, warnings=reported)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)
-        elif self.is_closing or (outcome.code in UNHEARD and not outcome.is_critical):
+        elif self.is_closing or (outcome.code in UNACKNOWLEDGED and not outcome.is_critical):
             await self._end(note_released, retry_in_s=0.0 if self.is_closing else TRY_AGAIN_IN_S, note=outcome.words)
         else:
             await self._end_with(fail_loading, before, outcome.code or outcome.state.value, outcome.words)

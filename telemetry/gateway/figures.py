@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from operation.snapshots import Described, Snapshot, Values
-from telemetry.gateway.session import HEARD_WITHIN_S, Session
+from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from telemetry.gateway.store import Store
 
 LINKS, LOSSES, RECORDS = "spanwise_gateway_links", "spanwise_gateway_losses", "spanwise_gateway_records"
@@ -20,7 +20,7 @@ DESCRIBED = (
 )
 
 
-class WhatIsTold(Protocol):
+class ReportedValue(Protocol):
     """A gateway, as far as this module knows it."""
 
     store: Store
@@ -32,16 +32,16 @@ class WhatIsTold(Protocol):
         """What was no frame of a UAV, by cause."""
 
 
-def figures_of(gateway: WhatIsTold) -> Snapshot:
+def figures_of(gateway: ReportedValue) -> Snapshot:
     """To be told for as long as it is entered."""
     return Snapshot(DESCRIBED, lambda: _read(gateway))
 
 
-def _read(gateway: WhatIsTold) -> Mapping[str, Values]:
+def _read(gateway: ReportedValue) -> Mapping[str, Values]:
     now_s, store = time.time(), gateway.store
     links = Counter({"heard": 0, "silent": 0, "elsewhere": 0})
     for session in list(gateway.sessions.values()):
-        state = "elsewhere" if not session.is_held else "heard" if now_s - session.heard_s <= HEARD_WITHIN_S else "silent"
+        state = "elsewhere" if not session.is_held else "heard" if now_s - session.last_message_s <= RECEIVED_WITHIN_S else "silent"
         links[state] += 1
     losses = Counter(gateway.dropped()) + Counter(gateway.lost_here)
     return {

@@ -160,8 +160,8 @@ class Flights:
             disarmed_s = self._disarmed_s.get(session.uav.system)
             if disarmed_s is not None and abs(now_s - disarmed_s) >= DISARMED_FOR_S:
                 self.end(session, disarmed_s)
-            elif now_s - session.heard_s > FORGOTTEN_AFTER_S:
-                self.end(session, session.heard_s)
+            elif now_s - session.last_message_s > FORGOTTEN_AFTER_S:
+                self.end(session, session.last_message_s)
 
     async def write_rows(self, database: DatabaseThread) -> None:
         """In order; what cannot be written now is written later."""

@@ -35,17 +35,17 @@ class Questions:
     _first_s: float | None = None  # when it was asked first
     _station_s: float = -math.inf  # when another ground station was heard last
     _are_streams_settled: bool = False  # stopped, or started as there is nothing else
-    _heard_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
+    _received_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
     _questioned_s: float = -math.inf
     _question_again_s: float = ASK_AGAIN_S
 
     def receive(self, message: Message, now_s: float) -> None:
         """Every message of the autopilot."""
-        self._heard_s[message.get_msgId()] = now_s
+        self._received_s[message.get_msgId()] = now_s
         if message.get_type() == "COMMAND_ACK" and message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._are_intervals_refused |= message.result == mavlink.MAV_RESULT_UNSUPPORTED
 
-    def hear_station(self, now_s: float) -> None:
+    def note_station(self, now_s: float) -> None:
         """Another ground station speaks on the channel by which the vehicle is heard."""
         self._station_s = now_s
 
@@ -98,12 +98,12 @@ class Questions:
         return now_s - self._first_s >= LISTENS_S and now_s - self._station_s >= STATION_GONE_S
 
     def _is_missing(self, number: int, every_s: float, now_s: float) -> bool:
-        return now_s - self._heard_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)
+        return now_s - self._received_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)
 
     def may_ask_limits(self, state: VehicleState) -> bool:
         return state.flavour is Flavour.PX4 and self.limits_left > 0 and any(name not in state.parameters for name in PARAMETERS)
 
     def _once(self, state: VehicleState) -> list[Message]:
-        is_told = state.firmware is not None and state.home is not None
+        is_reported = state.firmware is not None and state.home is not None
         limits = heartbeat.limit_questions(state.system) if self.may_ask_limits(state) else []
-        return [*([] if is_told else heartbeat.questions(state.system)), *limits]
+        return [*([] if is_reported else heartbeat.questions(state.system)), *limits]

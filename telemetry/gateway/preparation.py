@@ -249,8 +249,8 @@ def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s
     return None
 
 
-def _is_new(told_at_s: float | None, now_s: float) -> bool:
-    return told_at_s is not None and now_s - told_at_s <= NEW_S
+def _is_new(sent_at_s: float | None, now_s: float) -> bool:
+    return sent_at_s is not None and now_s - sent_at_s <= NEW_S
 
 
 def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, stands: str, reports: str, code: str) -> CannotCarry | None:

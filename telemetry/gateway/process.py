@@ -32,7 +32,7 @@ from telemetry.gateway.reporter import Telling
 from telemetry.gateway.sender_authentication import UnknownSenders
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
-from telemetry.services.links.gateway_messages import HeardText
+from telemetry.services.links.gateway_messages import ReceivedText
 from telemetry.services.links.links import LinkState, release_leases
 
 RETRY_DELAY_S = 1.0
@@ -132,7 +132,7 @@ class Gateway:
         message = message_of(frame) if frame.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT else None
         if message is not None and message.type == mavlink.MAV_TYPE_GCS:
             for session in self.sessions.values():
-                session.hear_station(peer)
+                session.note_station(peer)
 
     def _receive_radio(self, frame: Frame, peer: Peer, now_s: float) -> None:
         for session in self.sessions.values():
@@ -186,8 +186,8 @@ class Gateway:
             "hints": listen(self.desk.hint),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_INTERVAL_S, self._sync_logs),
-            "counts": self._every(COUNTS_INTERVAL_S, self._tell_counts),
-            **{name: self._every(every_s, tell) for name, (every_s, tell) in self.telling.loops().items()},
+            "counts": self._every(COUNTS_INTERVAL_S, self._report_counts),
+            **{name: self._every(every_s, notify) for name, (every_s, notify) in self.telling.loops().items()},
         }
 
     async def _every(self, interval_s: float, do: Callable[[], Coroutine[Any, Any, None]]) -> None:
@@ -246,14 +246,16 @@ class Gateway:
             for session in self.sessions.values():
                 for text in session.texts:
                     received_at = datetime.fromtimestamp(text.received_s, UTC)
-                    self.store.texts.append(HeardText(session.uav.uav_id, text.severity, text.text, received_at))
+                    self.store.texts.append(ReceivedText(session.uav.uav_id, text.severity, text.text, received_at))
                 session.texts.clear()
             if not await self.store.flush():
                 await asyncio.sleep(RETRY_S if self.store.is_away else self.options.flush_s)
 
     def _link_states(self) -> list[LinkState]:
         """Of vehicles that were heard since they were last asked about."""
-        unsaved = [session for session in self.sessions.values() if session.is_unsaved and session.lease is not None and session.heard_s]
+        unsaved = [
+            session for session in self.sessions.values() if session.is_unsaved and session.lease is not None and session.last_message_s
+        ]
         for session in unsaved:
             session.is_unsaved = False
         return [session.link_state() for session in unsaved]
@@ -269,8 +271,8 @@ class Gateway:
         now_s, is_manned = time.time(), time.monotonic() - self.leasing.answered_s <= settings.GATEWAY_ALONE_S
         if is_manned != self._is_manned:
             self._is_manned = is_manned
-            told = "is back: UAVs get heartbeats" if is_manned else "is away for too long: UAVs get no heartbeats any more"
-            logger.warning("the database %s", told)
+            reported = "is back: UAVs get heartbeats" if is_manned else "is away for too long: UAVs get no heartbeats any more"
+            logger.warning("the database %s", reported)
         for session in self.sessions.values():
             session.tick(now_s, is_manned=is_manned)
 
@@ -278,10 +280,10 @@ class Gateway:
         await self.flights.sync(time.time())
         await self.flights.write_rows(self.telling.database)
 
-    async def _tell_counts(self) -> None:
+    async def _report_counts(self) -> None:
         if counts := self.dropped():
-            told = ", ".join(f"{cause} {number}" for cause, number in sorted(counts.items()))
-            logger.info("received since the start and dropped: %s", told)
+            reported = ", ".join(f"{cause} {number}" for cause, number in sorted(counts.items()))
+            logger.info("received since the start and dropped: %s", reported)
 
 
 async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:

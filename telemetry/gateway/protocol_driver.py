@@ -48,13 +48,13 @@ class ProtocolDriver:
     session: Session
     keeper: StateMachine
     is_wanted: Callable[[], bool]
-    _heard: asyncio.Event = field(default_factory=asyncio.Event)
+    _received: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self, *, on_change: Callable[[], None]) -> Any:
         """The outcome; None once it is not wanted any more, which is asked before anything is sent."""
         if not self.is_wanted():
             return None
-        self.session.listeners.append(self._hear)
+        self.session.listeners.append(self._receive)
         try:
             self.session.send(self.keeper.start(time.monotonic()))
             while self.keeper.outcome is None:
@@ -67,18 +67,18 @@ class ProtocolDriver:
                 on_change()
             return self.keeper.outcome
         finally:
-            self.session.listeners.remove(self._hear)
+            self.session.listeners.remove(self._receive)
 
-    def _hear(self, message: Message, now_s: float) -> None:
+    def _receive(self, message: Message, now_s: float) -> None:
         if self.keeper.outcome is None and self.is_wanted():
             self.session.send(self.keeper.receive(message, now_s))
-        self._heard.set()
+        self._received.set()
 
     async def _wait(self) -> None:
         wake_at_s = self.keeper.wake_at_s
         nap_s = MAX_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), MAX_NAP_S)
-        if await wait_for_event(self._heard, nap_s):
-            self._heard.clear()
+        if await wait_for_event(self._received, nap_s):
+            self._received.clear()
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class Reading:
     words: str = ""
 
 
-def _tell(on_item: Callable[[int], None], before: int, done: int) -> None:
+def _notify(on_item: Callable[[int], None], before: int, done: int) -> None:
     on_item(before + done)
 
 
@@ -104,7 +104,7 @@ async def read_aboard(
     before = 0
     for kind in MissionType:
         for _ in range(READINGS):
-            reading = await _read(session, load, kind, beside, is_wanted, partial(_tell, on_item, before))
+            reading = await _read(session, load, kind, beside, is_wanted, partial(_notify, on_item, before))
             if reading is None or reading.is_aboard:
                 break
         if reading is None or not reading.is_aboard:

@@ -11,7 +11,7 @@ from missions.services.commands.rtl_check import note_own_return
 from missions.services.fleet.credentials import note_mavlink_key_use
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.session import Session
-from telemetry.services.alerts.alerts import tell_of_second_sender
+from telemetry.services.alerts.alerts import raise_second_sender
 from telemetry.services.flown import note_flown
 from telemetry.services.links.onboard_lists import doubt_loaded
 
@@ -52,32 +52,32 @@ class Telling:
             if now_s - last_s < SECOND_SENDER_GONE_S:
                 is_signed = session.belief.addresses.copied is not None
                 await self.database.run(
-                    tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other, is_signed=is_signed
+                    raise_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other, is_signed=is_signed
                 )
             else:
                 session.belief.second_sender = None
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id)
+                await self.database.run(raise_second_sender, uav_id=session.uav.uav_id)
 
     async def flown(self) -> None:
         """In order, each as often as it takes."""
         for session in self.sessions():
             while session.flown:
                 flown = session.flown[0]
-                await self._tell(session, f"what it has flown ({flown})", note_flown, flown=flown)
+                await self._notify(session, f"what it has flown ({flown})", note_flown, flown=flown)
                 session.flown.pop(0)
 
     async def own_returns(self) -> None:
         for session in self.sessions():
-            told = session.questions.own_return.news(session.state)
-            if told is not None:
-                await self._tell(session, "its own return", note_own_return, autopilot=told.autopilot, parameters=told.parameters)
-                session.questions.own_return.note(told)
+            reported = session.questions.own_return.news(session.state)
+            if reported is not None:
+                await self._notify(session, "its own return", note_own_return, autopilot=reported.autopilot, parameters=reported.parameters)
+                session.questions.own_return.note(reported)
 
     async def doubts(self) -> None:
         for session in self.sessions():
             while session.lists.found:
                 doubt, at_s = session.lists.found[0]
-                await self._tell(
+                await self._notify(
                     session, f"what speaks for another list ({doubt})", doubt_loaded, doubt=doubt, ago_s=time.monotonic() - at_s
                 )
                 if session.lists.found[:1] == [(doubt, at_s)]:
@@ -93,7 +93,7 @@ class Telling:
             await self.database.run(note_mavlink_key_use, credential_ids=used)
             self._keys_noted_s |= dict.fromkeys(used, now_s)
 
-    async def _tell(self, session: Session, what: str, note: Callable[..., Any], **values: Any) -> None:
+    async def _notify(self, session: Session, what: str, note: Callable[..., Any], **values: Any) -> None:
         """What cannot be told of one UAV holds up no other."""
         try:
             await self.database.run(note, uav_id=session.uav.uav_id, **values)

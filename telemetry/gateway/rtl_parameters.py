@@ -15,7 +15,7 @@ MAX_QUESTIONS = 5  # a vehicle that has no such parameters says nothing
 
 
 @dataclass(frozen=True)
-class ToldReturn:
+class ReportedReturn:
     """`at_s` is when the last of them was heard, monotonic."""
 
     autopilot: str
@@ -30,7 +30,7 @@ class OwnReturn:
     _wanted_since_s: float = 0.0
     _asked_s: float = -REQUEST_INTERVAL_S
     _questions_left: int = MAX_QUESTIONS
-    _told_s: float = 0.0
+    _reported_s: float = 0.0
 
     def ask_anew(self, now_s: float) -> None:
         """Somebody may have set them since."""
@@ -49,13 +49,13 @@ class OwnReturn:
         names = [name for group in untold for name in group]
         return [mavlink.MAVLink_param_request_read_message(state.system, AUTOPILOT, name.encode(), BY_NAME) for name in names]
 
-    def news(self, state: VehicleState) -> ToldReturn | None:
+    def news(self, state: VehicleState) -> ReportedReturn | None:
         """What was told since `note` was called last, also without having been asked: all that is known."""
         flavour = state.flavour or ""
-        heard_s = {name: state.parameters_at_s[name] for name in NAMES.get(flavour, ()) if name in state.parameters_at_s}
-        if not heard_s or max(heard_s.values()) <= self._told_s:
+        last_message_s = {name: state.parameters_at_s[name] for name in NAMES.get(flavour, ()) if name in state.parameters_at_s}
+        if not last_message_s or max(last_message_s.values()) <= self._reported_s:
             return None
-        return ToldReturn(str(flavour), {name: state.parameters[name] for name in heard_s}, max(heard_s.values()))
+        return ReportedReturn(str(flavour), {name: state.parameters[name] for name in last_message_s}, max(last_message_s.values()))
 
-    def note(self, told: ToldReturn) -> None:
-        self._told_s = max(self._told_s, told.at_s)
+    def note(self, reported: ReportedReturn) -> None:
+        self._reported_s = max(self._reported_s, reported.at_s)

@@ -85,7 +85,7 @@ class UnknownSenders:
 
 @dataclass
 class Belief:
-    """Times are seconds since 1970. The last frame was believed at `heard_s`, of `addresses.main` unless it was a second one's.
+    """Times are seconds since 1970. The last frame was believed at `last_message_s`, of `addresses.main` unless it was a second one's.
 
     `credential_id` is that of the key by which the last one was signed, `used` those since somebody asked last, and `ahead_s` by how much
     the UAV's signing clock was ahead of ours then.
@@ -93,7 +93,7 @@ class Belief:
 
     uav: KnownUav
     addresses: Addresses = field(default_factory=Addresses)
-    heard_s: float = 0.0
+    last_message_s: float = 0.0
     second_sender: tuple[str, float] | None = None  # who, and when last
     credential_id: int | None = None
     used: set[int] = field(default_factory=set)
@@ -117,7 +117,7 @@ class Belief:
         """None: it is believed."""
         refused = self._refusal(frame, peer, now_s)
         if refused is None:
-            self.heard_s = now_s
+            self.last_message_s = now_s
         return refused
 
     def could_be(self, frame: Frame, now_s: float) -> bool:
@@ -170,7 +170,7 @@ class Belief:
             return self._signed_refusal(frame, frame.timestamp, peer, now_s)
         if not self.uav.allows_unsigned or self._has_shown_its_key:
             return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
-        if self.peer is None or peer == self.peer or not is_within(self.heard_s, now_s, SENDER_SILENT_S):
+        if self.peer is None or peer == self.peer or not is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             self.addresses.believe(peer)
             return None
         self.second_sender = (peer.name, now_s)

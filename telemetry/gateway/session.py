@@ -39,12 +39,12 @@ TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISS
 QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
 logger = logging.getLogger(__name__)
 MAX_WAITING = 5_000  # frames of a vehicle that is not served yet
-HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
+RECEIVED_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
 GREET_AGAIN_S = 1.0
 LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
-TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
+SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
 ADDRESS_GOOD_S = 3_600.0  # no flight lasts longer: whoever has an address for longer without a word may not be the UAV any more
 Listener = Callable[[Message, float], None]
 
@@ -187,10 +187,10 @@ class Session:
         self.losses[cause] += 1
         self.lost_here[cause] += 1
 
-    def hear_station(self, peer: Peer) -> None:
+    def note_station(self, peer: Peer) -> None:
         """Another ground station was heard from this address."""
         if peer == self.peer:
-            self.questions.hear_station(time.monotonic())
+            self.questions.note_station(time.monotonic())
 
     def receive_radio(self, frame: Frame, now_s: float) -> None:
         """Of the radio that the vehicle's frames come through; it cannot sign."""
@@ -224,8 +224,8 @@ class Session:
         return self.belief.peer
 
     @property
-    def heard_s(self) -> float:
-        return self.belief.heard_s
+    def last_message_s(self) -> float:
+        return self.belief.last_message_s
 
     @property
     def is_held(self) -> bool:
@@ -233,15 +233,15 @@ class Session:
 
     def is_served(self, now_s: float, within_s: float) -> bool:
         """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
-        is_here = is_within(self.heard_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
+        is_here = is_within(self.last_message_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
         return self.is_held and is_here and self.state.flavour is not None
 
-    def may_hear(self, now_s: float) -> bool:
+    def may_receive(self, now_s: float) -> bool:
         """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
         return self.is_held and self._has_address(now_s) and self.state.can_be_stopped
 
     def _has_address(self, now_s: float) -> bool:
-        return self.peer is not None and is_within(self.heard_s, now_s, ADDRESS_GOOD_S)
+        return self.peer is not None and is_within(self.last_message_s, now_s, ADDRESS_GOOD_S)
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
         """Until when what was sent before may still arrive; monotonic."""
@@ -275,7 +275,7 @@ class Session:
             return
         if is_manned:
             self._send([heartbeat.heartbeat()], now_s)
-        if is_within(self.heard_s, now_s, SENDER_SILENT_S):
+        if is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
             self.send(self.questions.due(self.state, time.monotonic(), has_position=has_position), now_s)
 
@@ -291,7 +291,7 @@ class Session:
         home, rate = state.home, self.rate.at(time.time())
         return LinkState(
             uav_id=self.uav.uav_id,
-            heard_ago_s=max(time.time() - self.heard_s, 0.0),
+            last_message_ago_s=max(time.time() - self.last_message_s, 0.0),
             address=self.peer.name[:100] if self.peer else "",
             autopilot=state.flavour or "",
             firmware=".".join(map(str, state.firmware)) if state.firmware else "",
@@ -330,11 +330,11 @@ class Session:
         kind = message.get_type()
         if kind == "HEARTBEAT" and not is_vehicle(message):
             return
-        stamp = self._stamp(message, now_s) if kind in TELL_TIME else None
+        stamp = self._stamp(message, now_s) if kind in SEND_TIME else None
         self._reporter.receive(message, now_s)
         monotonic_s = time.monotonic()
         self.questions.receive(message, monotonic_s)
-        if not _tells_no_place(message):
+        if not _reports_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))
             self.lists.look(message, self.state, monotonic_s)
@@ -384,7 +384,7 @@ class Session:
         return self.state.flavour
 
 
-def _tells_no_place(message: Message) -> bool:
+def _reports_no_place(message: Message) -> bool:
     """A position or a home that is none; the rest of such a message is no use to the vehicle's state either."""
     if message.get_type() == "GLOBAL_POSITION_INT":
         return not is_place(message.lat, message.lon)

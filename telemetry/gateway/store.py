@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.services.ingest import NewRecord
-from telemetry.services.links.gateway_messages import Heard, HeardText, store_heard
+from telemetry.services.links.gateway_messages import Received, ReceivedText, store_received
 from telemetry.services.links.links import LinkState
 from telemetry.services.links.sightings import Sighting
 
@@ -27,7 +27,7 @@ class Store:
     links: Callable[[], list[LinkState]]
     unsaved: Callable[[Sequence[LinkState]], None]
     records: deque[NewRecord] = field(default_factory=deque)
-    texts: deque[HeardText] = field(default_factory=lambda: deque(maxlen=MAX_TEXTS))
+    texts: deque[ReceivedText] = field(default_factory=lambda: deque(maxlen=MAX_TEXTS))
     sightings: dict[int, Sighting] = field(default_factory=dict)
     stored: int = 0
     duplicates: int = 0
@@ -44,42 +44,42 @@ class Store:
         records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
         texts, self.texts = self.texts, deque(maxlen=MAX_TEXTS)
         sightings, self.sightings = self.sightings, {}
-        heard = Heard(records, self.links(), list(texts), list(sightings.values()))
-        if not heard:
+        received = Received(records, self.links(), list(texts), list(sightings.values()))
+        if not received:
             return False
         is_stored = False
         try:
-            await self._store(heard)
+            await self._store(received)
             is_stored = True
         except DatabaseAway as error:
-            self._tell(is_away=True, why=str(error))
+            self._notify(is_away=True, why=str(error))
             return False
         finally:
             if not is_stored:  # also when the loop is cancelled: what is stored after all is stored once
                 self.records.extendleft(reversed(records))
                 self.texts.extendleft(reversed(texts))
                 self.sightings = sightings | self.sightings
-                self.unsaved(heard.links)
-        self._tell(is_away=False)
+                self.unsaved(received.links)
+        self._notify(is_away=False)
         return bool(self.records)
 
-    async def _store(self, heard: Heard) -> None:
+    async def _store(self, received: Received) -> None:
         try:
-            counted = await self.database.run(store_heard, heard=heard, holder=self.holder)
+            counted = await self.database.run(store_received, received=received, holder=self.holder)
         except DatabaseAway:
             raise
         except Exception:
-            await self._store_what_can_be(heard)
+            await self._store_what_can_be(received)
         else:
             self.stored += counted.stored
             self.duplicates += counted.duplicates
 
-    async def _store_what_can_be(self, heard: Heard) -> None:
+    async def _store_what_can_be(self, received: Received) -> None:
         """One value that the database refuses must not keep out the rest."""
-        for part in _parts(heard):
-            if len(part.records) <= 1 and part == heard:
-                logger.exception("this could not be stored: %s", heard.records or heard)
-                self.lost += len(heard.records)
+        for part in _parts(received):
+            if len(part.records) <= 1 and part == received:
+                logger.exception("this could not be stored: %s", received.records or received)
+                self.lost += len(received.records)
             else:
                 await self._store(part)
 
@@ -100,7 +100,7 @@ class Store:
         self.records.extend(kept)
         self.lost += before - len(kept)
 
-    def _tell(self, *, is_away: bool, why: str = "") -> None:
+    def _notify(self, *, is_away: bool, why: str = "") -> None:
         if is_away != self.is_away:
             self.is_away = is_away
             logger.warning("the database is %s; %s records wait. %s", "away" if is_away else "back", len(self.records), why)
@@ -118,14 +118,14 @@ def _most_of_each(numbers: Iterable[int], most: int) -> int:
     return most
 
 
-def _parts(heard: Heard) -> Sequence[Heard]:
+def _parts(received: Received) -> Sequence[Received]:
     """Records by halves; apart from them links, texts and sightings one by one."""
-    if len(heard.records) > 1 or (heard.records and (heard.links or heard.texts or heard.sightings)):
-        middle = max(len(heard.records) // 2, 1)
-        halves = [Heard(records) for records in (heard.records[:middle], heard.records[middle:]) if records]
-        rest = replace(heard, records=())
+    if len(received.records) > 1 or (received.records and (received.links or received.texts or received.sightings)):
+        middle = max(len(received.records) // 2, 1)
+        halves = [Received(records) for records in (received.records[:middle], received.records[middle:]) if records]
+        rest = replace(received, records=())
         return [*halves, rest] if rest else halves
-    if heard.records:
-        return [heard]
+    if received.records:
+        return [received]
     kinds = ("links", "texts", "sightings")
-    return [Heard(**{kind: [entry]}) for kind in kinds for entry in getattr(heard, kind)]
+    return [Received(**{kind: [entry]}) for kind in kinds for entry in getattr(received, kind)]

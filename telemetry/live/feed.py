@@ -30,20 +30,20 @@ class Feed:
         self._look = look
         self._seen = Look()
         self._waiting: set[Reader] = set()  # for the first look that has begun since they came
-        self._word = asyncio.Event()
+        self._message = asyncio.Event()
         self._bodies: dict[tuple[UUID | None, str, frozenset[Key] | None], str] = {}
 
     def join(self, reader: Reader) -> None:
         self.readers.add(reader)
         self._waiting.add(reader)
-        self._word.set()
+        self._message.set()
 
     def leave(self, reader: Reader) -> None:
         self.readers.discard(reader)
         self._waiting.discard(reader)
 
     def hint(self) -> None:
-        self._word.set()
+        self._message.set()
 
     def next_message(self, reader: Reader) -> str:
         """Of a reader to whom something is to be told. Pages that are told the same share the work."""
@@ -57,10 +57,10 @@ class Feed:
 
     async def run(self) -> None:
         while True:
-            self._word.clear()
+            self._message.clear()
             await self._look_once()
             await asyncio.sleep(LOOK_PAUSE_S)
-            await wait_for_event(self._word, POLL_INTERVAL_S - LOOK_PAUSE_S)
+            await wait_for_event(self._message, POLL_INTERVAL_S - LOOK_PAUSE_S)
 
     async def _look_once(self) -> None:
         newcomers, self._waiting = self._waiting, set()
@@ -78,9 +78,9 @@ class Feed:
             return
         before, self._seen = self._seen, seen
         self._bodies.clear()
-        self._tell(before, newcomers)
+        self._notify(before, newcomers)
 
-    def _tell(self, before: Look, newcomers: set[Reader]) -> None:
+    def _notify(self, before: Look, newcomers: set[Reader]) -> None:
         changed: dict[UUID | None, set[Key]] = {}
         for reader in self.readers:
             if reader.mission is not None and reader not in self._waiting and not self._seen.is_shown(_mission_key(reader), reader.mission):

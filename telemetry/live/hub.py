@@ -33,8 +33,8 @@ async def listen(on_hint: Callable[[int], None]) -> None:
             redis = Redis.from_url(settings.REDIS_URL, socket_connect_timeout=CONNECT_S, health_check_interval=HEALTH_INTERVAL_S)
             async with redis, redis.pubsub(ignore_subscribe_messages=True) as channels:
                 await channels.psubscribe(every)
-                async for word in channels.listen():
-                    on_hint(int(word["channel"].decode().removeprefix(prefix)))
+                async for message in channels.listen():
+                    on_hint(int(message["channel"].decode().removeprefix(prefix)))
         except (RedisError, OSError, ValueError) as error:
             logger.debug("no hints: %r", error)
         await asyncio.sleep(RETRY_DELAY_S)

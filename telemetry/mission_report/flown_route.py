@@ -140,8 +140,8 @@ def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix
     number = 0
     for fix in fixes:
         if fix.waypoint_sequence is not None:
-            told = next((place for place, end in enumerate(ends) if fix.waypoint_sequence <= end), len(ends) - 1)
-            number = max(number, told)
+            reported = next((place for place, end in enumerate(ends) if fix.waypoint_sequence <= end), len(ends) - 1)
+            number = max(number, reported)
         found[number].append(fix)
     return found
 

@@ -31,8 +31,8 @@ class IncidentKind(StrEnum):
     DOWN = "down"  # on the ground where its flight does not end
     FAILSAFE_RETURN = "failsafe-return"
     FAILSAFE_LAND = "failsafe-land"
-    TOLD_RETURN = "told-return"
-    TOLD_LAND = "told-land"
+    ORDERED_RETURN = "told-return"
+    ORDERED_LAND = "told-land"
     ABORTED = "aborted"
     BATTERY = "battery"
     LINK_LOST = "link-lost"
@@ -94,7 +94,7 @@ class Outcome:
 
 def cause_in(texts: Iterable[tuple[float, str]], at_s: float) -> str:
     """Return motor, battery, position or link where what a vehicle said about then [Unix s, text] names it, else nothing."""
-    about = [text for said_s, text in texts if at_s - CAUSE_BEFORE_S <= said_s <= at_s + CAUSE_AFTER_S]
+    about = [text for stated_s, text in texts if at_s - CAUSE_BEFORE_S <= stated_s <= at_s + CAUSE_AFTER_S]
     return next((cause for cause, pattern in _CAUSES.items() if any(pattern.search(text) for text in about)), "")
 
 

@@ -59,14 +59,14 @@ class Visit:
 def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[Visit]:
     """Of each waypoint with a target, in the order of the route. fixes: in order, of one UAV; fastest_mps: over ground, wind and all."""
     in_air = airborne(fixes)
-    told = _waypoints_told(in_air) or _waypoints_by_place(route, in_air)
+    reported = _waypoints_reported(in_air) or _waypoints_by_place(route, in_air)
     found = []
     for place, waypoint in enumerate(route.waypoints):
         if waypoint.target is None:
             continue
         following = route.waypoints[place + 1 : place + 2]
         is_followed_here = any(_apart_m(waypoint, other) <= REACHED_M for other in following)
-        passes = [(in_air, 0)] if told is None else _passes(waypoint.sequence, in_air, told, is_followed_here=is_followed_here)
+        passes = [(in_air, 0)] if reported is None else _passes(waypoint.sequence, in_air, reported, is_followed_here=is_followed_here)
         found.append(_best([_visit(waypoint, own, before, fastest_mps) for own, before in passes or [([], 0)]]))
     return found
 
@@ -113,15 +113,15 @@ def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_m
     )
 
 
-def _waypoints_told(fixes: Sequence[Fix]) -> list[int] | None:
+def _waypoints_reported(fixes: Sequence[Fix]) -> list[int] | None:
     """The waypoint that each flies to; one that tells none flies to that of the one before. None: none tells it."""
     if all(fix.waypoint_sequence is None for fix in fixes):
         return None
-    told: list[int] = []
+    reported: list[int] = []
     for fix in fixes:
-        before = told[-1] if told else -1
-        told.append(before if fix.waypoint_sequence is None else fix.waypoint_sequence)
-    return told
+        before = reported[-1] if reported else -1
+        reported.append(before if fix.waypoint_sequence is None else fix.waypoint_sequence)
+    return reported
 
 
 def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] | None:
@@ -129,7 +129,7 @@ def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] |
     if len(route.flights) != 1 or len(route.waypoints) < 2:
         return None
     line = RouteLine(route.flights[0], route.charging_stops)
-    told, leg, farthest_m = [], 0, 0.0
+    reported, leg, farthest_m = [], 0, 0.0
     for fix in fixes:
         here = line.east_north(fix.position)
         on_leg = line.beside(leg, fix.position)
@@ -142,8 +142,8 @@ def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] |
             ahead = line.place_from(fix.position, Place(line.along_m[leg], 0.0, leg, 0.0))
             leg = ahead.leg if ahead.across_m + OFF_LEG_M < on_leg.across_m else leg
         farthest_m = max(farthest_m, line.along_m[leg])
-        told.append(line.sequences[leg + 1])
-    return told
+        reported.append(line.sequences[leg + 1])
+    return reported
 
 
 def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[float]) -> float:
@@ -159,7 +159,7 @@ def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[
     return min(float(np.hypot(*(start + share * along).T).min()), *away_m)
 
 
-def _passes(sequence: int, fixes: Sequence[Fix], told: Sequence[int], *, is_followed_here: bool) -> list[Pass]:
+def _passes(sequence: int, fixes: Sequence[Fix], reported: Sequence[int], *, is_followed_here: bool) -> list[Pass]:
     """The reports of each time at which the UAV was on its way to a waypoint, at it and on the leg after it, one more at either end.
 
     A route may pass one place several times, and a vehicle may count from the begin again: what it was seen doing there while it flew to
@@ -168,13 +168,13 @@ def _passes(sequence: int, fixes: Sequence[Fix], told: Sequence[int], *, is_foll
     last = sequence if is_followed_here else sequence + 1
     found: list[Pass] = []
     begin: int | None = None
-    for place, number in enumerate(told):
+    for place, number in enumerate(reported):
         is_on_it = sequence <= number <= last
         if is_on_it and begin is None:
             begin = max(place - 1, 0)
         elif not is_on_it and begin is not None:
-            found.append((fixes[begin : place + 1], int(told[begin] < sequence)))
+            found.append((fixes[begin : place + 1], int(reported[begin] < sequence)))
             begin = None
-        elif not is_on_it and place > 0 and told[place - 1] < sequence and number > last:  # passed between two reports
+        elif not is_on_it and place > 0 and reported[place - 1] < sequence and number > last:  # passed between two reports
             found.append((fixes[place - 1 : place + 1], 1))
-    return found if begin is None else [*found, (fixes[begin:], int(told[begin] < sequence))]
+    return found if begin is None else [*found, (fixes[begin:], int(reported[begin] < sequence))]

@@ -15,13 +15,13 @@ from mavlink.rtl import OwnReturn, own_return
 from missions.command_rules import ALONG_ROUTE
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.modes import RETURN_ALONG
-from telemetry.alerting.said import KEPT_S, Said
+from telemetry.alerting.status_texts import KEPT_S, StatusText
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.own_time import believed_rate
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alerts import BY_PERSON
 
-WARNING_SEVERITY, MAX_SAID = 4, 30  # MAV_SEVERITY_WARNING
+WARNING_SEVERITY, MAX_TEXTS = 4, 30  # MAV_SEVERITY_WARNING
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,26 +45,26 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     found = {}
     for row in rows:
         uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
-        sha256, approval, flight, doubt, autopilot, battery, told = row[7:]
+        sha256, approval, flight, doubt, autopilot, battery, reported = row[7:]
         rate = believed_rate(clock_rate if is_simulated else None)
-        heard_s = None if heard_at is None else heard_at.timestamp()
-        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(told))
+        last_message_s = None if heard_at is None else heard_at.timestamp()
+        facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(reported))
         found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
     return found
 
 
-def _own_return(told: Mapping[str, Any]) -> OwnReturn | None:
-    return own_return(told.get("autopilot", ""), told.get("parameters", {}))
+def _own_return(reported: Mapping[str, Any]) -> OwnReturn | None:
+    return own_return(reported.get("autopilot", ""), reported.get("parameters", {}))
 
 
-def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...]]:
+def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[StatusText, ...]]:
     """Warnings and worse of UAVs in their own words of late, the newest last."""
     since = datetime.fromtimestamp(now_s - KEPT_S, UTC)
     rows = VehicleText.objects.filter(uav__in=uav_ids, received_at__gt=since, severity__lte=WARNING_SEVERITY).order_by("received_at", "pk")
-    found: dict[int, list[Said]] = defaultdict(list)
+    found: dict[int, list[StatusText]] = defaultdict(list)
     for uav_id, received_at, text in rows.values_list("uav_id", "received_at", "text"):
-        found[uav_id].append(Said(received_at.timestamp(), text))
-    return {uav_id: tuple(words[-MAX_SAID:]) for uav_id, words in found.items()}
+        found[uav_id].append(StatusText(received_at.timestamp(), text))
+    return {uav_id: tuple(words[-MAX_TEXTS:]) for uav_id, words in found.items()}
 
 
 def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:

@@ -62,4 +62,4 @@ def _measured(mission_id: UUID, uav_id: int) -> list[Measured]:
     rows = in_time.order_by("measured_at").values_list(
         unix_s("measured_at"), longitude(), latitude(), "altitude_relative_m", "velocity_east_mps", "velocity_north_mps"
     )
-    return [Measured(at_s, LonLat(lon, lat), *told) for at_s, lon, lat, *told in rows.iterator(chunk_size=ROWS_AT_ONCE)]
+    return [Measured(at_s, LonLat(lon, lat), *reported) for at_s, lon, lat, *reported in rows.iterator(chunk_size=ROWS_AT_ONCE)]

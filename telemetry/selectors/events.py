@@ -48,13 +48,13 @@ def _of_alert(alert: Alert, step: str) -> MissionEvent:
     who = facts.get("by")
     with translation.override("en"):
         english = alert_words(alert.message, alert.values)
-    said = _WORDS.get(kind, "") + (f" by {who}" if who else "")
+    stated = _WORDS.get(kind, "") + (f" by {who}" if who else "")
     level = facts.get("level", alert.level) if kind in (EventKind.ALERT_OPENED, EventKind.ALERT_RAISED) else None
     values = {"alert": alert.pk, "code": alert.code, "message": alert_words(alert.message, alert.values)}
     if kind is EventKind.ALERT_RESOLVED:
         values["reason"] = facts.get("reason", alert.close_reason)
     return MissionEvent(
-        kind, f"{said}: {english}" if said else english, alert.uav_id, "" if alert.uav is None else alert.uav.name,
+        kind, f"{stated}: {english}" if stated else english, alert.uav_id, "" if alert.uav is None else alert.uav.name,
         alert.uav is not None and alert.uav.is_simulated, who, level, values,
     )  # fmt: skip
 

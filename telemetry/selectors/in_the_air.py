@@ -26,10 +26,10 @@ def reported_in_the_air(uav_ids: Collection[int]) -> set[int]:
 def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
     """Where those that `reported_in_the_air` names were last; None where they have told no place."""
     in_the_air = reported_in_the_air(uav_ids)
-    told = UavWatch.objects.filter(uav__in=in_the_air, measured__position__isnull=False).values_list(
+    reported = UavWatch.objects.filter(uav__in=in_the_air, measured__position__isnull=False).values_list(
         "uav_id", "measured__position__position"
     )
-    return dict.fromkeys(in_the_air) | {uav_id: LonLat(*place) for uav_id, place in told}
+    return dict.fromkeys(in_the_air) | {uav_id: LonLat(*place) for uav_id, place in reported}
 
 
 def reported_on_the_ground(uav_ids: Collection[int]) -> set[int]:
@@ -39,7 +39,7 @@ def reported_on_the_ground(uav_ids: Collection[int]) -> set[int]:
     return set(links.values_list("uav_id", flat=True))
 
 
-def never_heard(uav_ids: Collection[int]) -> set[int]:
+def never_connected(uav_ids: Collection[int]) -> set[int]:
     """Of these UAVs, neither by a link nor by a report."""
     by_link = UavLink.objects.filter(uav__in=uav_ids, heard_at__isnull=False).values_list("uav_id", flat=True)
     by_report = UavWatch.objects.filter(uav__in=uav_ids, measured__isnull=False).values_list("uav_id", flat=True)

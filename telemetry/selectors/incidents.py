@@ -19,7 +19,7 @@ NEAR_S = 60.0  # of an incident: a report that tells where the UAV was
 ABOUT = timedelta(minutes=2)  # before its first and after its last report, in which a UAV may speak of the flight
 ONE_FALL_S = 180.0  # between the words of a crash and the alert that the UAV is down: the same one
 _CRASH = re.compile(r"\bcrash", re.IGNORECASE)
-_TOLD = {CommandKind.RETURN: IncidentKind.TOLD_RETURN, CommandKind.LAND: IncidentKind.TOLD_LAND}
+_TOLD = {CommandKind.RETURN: IncidentKind.ORDERED_RETURN, CommandKind.LAND: IncidentKind.ORDERED_LAND}
 _REACHED_UAV = (CommandState.SENT, CommandState.ACKNOWLEDGED, CommandState.APPLIED)
 
 Flown = tuple[int, str, Sequence[Fix]]  # place in the mission, name, reports
@@ -75,14 +75,14 @@ def _with_cause(kind: IncidentKind, name: str, cause: str, at_s: float) -> Reaso
 
 def _with_crash(found: list[Incident], place: int, name: str, fixes: Sequence[Fix], texts: list[tuple[float, str]]) -> list[Incident]:
     """A UAV that says that it has crashed: that stands for the alert that it is down."""
-    said_s = next((at_s for at_s, text in texts if _CRASH.search(text)), None)
-    if said_s is None:
+    stated_s = next((at_s for at_s, text in texts if _CRASH.search(text)), None)
+    if stated_s is None:
         return found
     downs = [one for one in found if one.place == place and one.kind is IncidentKind.DOWN]
-    down = next((one for one in downs if abs(one.at_s - said_s) <= ONE_FALL_S), None)
-    position = down.position if down is not None else _position(fixes, said_s)
-    reason = _with_cause(IncidentKind.CRASHED, name, cause_in(texts, said_s), said_s)
-    return [*(one for one in found if one is not down), Incident(IncidentKind.CRASHED, reason, said_s, place, position)]
+    down = next((one for one in downs if abs(one.at_s - stated_s) <= ONE_FALL_S), None)
+    position = down.position if down is not None else _position(fixes, stated_s)
+    reason = _with_cause(IncidentKind.CRASHED, name, cause_in(texts, stated_s), stated_s)
+    return [*(one for one in found if one is not down), Incident(IncidentKind.CRASHED, reason, stated_s, place, position)]
 
 
 def _of_commands(mission: Mission, flown: Mapping[int, Flown]) -> list[Incident]:

@@ -55,7 +55,7 @@ member AS (
         AND (flown.mission_id IS NULL OR flown.mission_id = mission.id)
     GROUP BY place.uav_id
 ),
-told AS (
+reported AS (
     SELECT id, bool_or(is_in_whole) AS is_in_whole FROM (
         SELECT alert.id, true AS is_in_whole FROM asked JOIN telemetry_alert alert ON alert.organisation_id = asked.organisation_id
         WHERE alert.closed_at IS NULL
@@ -85,12 +85,12 @@ SELECT 'uavs', uav.id::text, hashtextextended(ROW(watch.version, floor(extract(e
         link.is_in_air, link.autopilot, link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_read_at,
         link.loaded_doubt, link.waypoint_sequence, round(link.clock_rate::numeric, 1), uav.name, uav.link, uav.is_simulated,
         flown.mission_id, flown.sequence)::text, 0),
-    flown.uav_id IS NOT NULL OR heard.recently, coalesce(member.missions, '{{}}')
+    flown.uav_id IS NOT NULL OR received.recently, coalesce(member.missions, '{{}}')
 FROM asked JOIN missions_uav uav ON uav.organisation_id = asked.organisation_id
     LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id LEFT JOIN telemetry_uavwatch watch ON watch.uav_id = uav.id
     LEFT JOIN flown ON flown.uav_id = uav.id LEFT JOIN member ON member.uav_id = uav.id,
-    LATERAL (SELECT coalesce(greatest(link.heard_at, watch.updated_at) > now() - interval '1 day', false) AS recently) heard
-WHERE flown.uav_id IS NOT NULL OR member.uav_id IS NOT NULL OR heard.recently
+    LATERAL (SELECT coalesce(greatest(link.heard_at, watch.updated_at) > now() - interval '1 day', false) AS recently) received
+WHERE flown.uav_id IS NOT NULL OR member.uav_id IS NOT NULL OR received.recently
 UNION ALL
 SELECT 'missions', mission.id::text, hashtextextended(ROW(mission.revision, mission.state, mission.name, mission.departs_at,
         mission.started_at, mission.ended_at, digest.targets)::text, 0),
@@ -104,8 +104,8 @@ WHERE mission.deleted_at IS NULL AND (mission.state IN ('dispatched', 'active') 
 UNION ALL
 SELECT 'alerts', alert.id::text, hashtextextended(ROW(alert.revision, alert.level, alert.code, alert.message, alert.values, alert.details,
         alert.closed_at, alert.acknowledged_at, (SELECT count(*) FROM telemetry_alertnote note WHERE note.alert_id = alert.id))::text, 0),
-    told.is_in_whole, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{{}}') ELSE ARRAY[alert.mission_id] END
-FROM told JOIN telemetry_alert alert ON alert.id = told.id LEFT JOIN member ON member.uav_id = alert.uav_id
+    reported.is_in_whole, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{{}}') ELSE ARRAY[alert.mission_id] END
+FROM reported JOIN telemetry_alert alert ON alert.id = reported.id LEFT JOIN member ON member.uav_id = alert.uav_id
 UNION ALL
 SELECT 'commands', command.id::text, hashtextextended(ROW(command.state, command.attempts, command.expires_at, command.sent_at,
         command.acknowledged_at, command.finished_at, command.progress, command.outcome_code, command.outcome)::text, 0),

@@ -94,8 +94,8 @@ def _fix(
 
 def fastest_mps(route: FrozenRoute, figures: dict[str, Any]) -> float:
     """Over ground, by any means."""
-    told = [route.cruise_speed_mps, (figures.get("performance") or {}).get("max_airspeed_mps") or 0.0]
-    return HASTE * max([*told, *(waypoint.speed_mps or 0.0 for waypoint in route.waypoints)])
+    assigned_speeds = [route.cruise_speed_mps, (figures.get("performance") or {}).get("max_airspeed_mps") or 0.0]
+    return HASTE * max([*assigned_speeds, *(waypoint.speed_mps or 0.0 for waypoint in route.waypoints)])
 
 
 def routes_on_record(mission: Mission, approval: Approval | None) -> list[RouteOnRecord]:

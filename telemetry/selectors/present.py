@@ -52,7 +52,7 @@ class Present:
 
 
 @dataclass(frozen=True)
-class Heard:
+class Received:
     """A UAV with what is known of it now. `battery` is what the watch has made of it, `battery_age_s` old; see battery_forecast.py."""
 
     uav: Uav
@@ -70,16 +70,16 @@ class Heard:
     waypoint_sequence: int | None = None
 
 
-def heard_of(uavs: Iterable[Uav], now: datetime) -> list[Heard]:
+def last_received(uavs: Iterable[Uav], now: datetime) -> list[Received]:
     """In the order of the UAVs."""
     found = list(uavs)
     keys = [uav.pk for uav in found]
     links = {link.uav_id: link for link in UavLink.objects.filter(uav__in=keys)}
     watches = {watch.uav_id: watch for watch in UavWatch.objects.filter(uav__in=keys)}
-    return [_heard(uav, links.get(uav.pk), watches.get(uav.pk), now) for uav in found]
+    return [_received(uav, links.get(uav.pk), watches.get(uav.pk), now) for uav in found]
 
 
-def _heard(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime) -> Heard:
+def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime) -> Received:
     measured: dict[str, Any] = {} if watch is None or not watch.measured else watch.measured
     estimated: dict[str, Any] | None = None if watch is None else watch.estimated
     state, heights = measured.get("state", {}), measured.get("height", {})
@@ -87,7 +87,7 @@ def _heard(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime
     if link is not None and link.is_in_air is not None:
         is_in_air = link.is_in_air
     waypoint = measured.get("waypoint", {}).get("waypoint_sequence")
-    return Heard(
+    return Received(
         uav,
         present=_present(measured, estimated, now),
         is_in_air=is_in_air,
@@ -106,11 +106,11 @@ def _heard(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime
 
 def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, now: datetime) -> Present | None:
     """The estimate while a watch makes one; else the last report, from which it may have come away since at its last speed."""
-    told, report = measured.get("position"), measured.get("report", {})
+    reported, report = measured.get("position"), measured.get("report", {})
     age_s = None
-    if told is not None:
-        is_newest = told["measured_at"] == report.get("measured_at")
-        age_s = _age_s(report["received_at"] if is_newest else told["measured_at"], now)
+    if reported is not None:
+        is_newest = reported["measured_at"] == report.get("measured_at")
+        age_s = _age_s(report["received_at"] if is_newest else reported["measured_at"], now)
     if estimated is not None and not estimated["is_lost"] and (age_s is None or _age_s(estimated["at"], now) <= max(age_s, MEASURED_FOR_S)):
         bound = estimated["bound"]
         return Present(
@@ -122,12 +122,12 @@ def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, n
             across_m=bound["across_m"],
             bearing_deg=bound["bearing_deg"],
         )
-    if told is None or age_s is None:
+    if reported is None or age_s is None:
         return None
     speed_mps = measured.get("speed", {}).get("speed_mps")
     off_m = 0.0 if age_s <= MEASURED_FOR_S else age_s * (LAST_SPEED_MPS if speed_mps is None else float(speed_mps))
     height_m = measured.get("height", {}).get("altitude_relative_m")
-    return Present(LonLat(*told["position"]), height_m, is_measured=True, age_s=age_s, along_m=off_m, across_m=off_m)
+    return Present(LonLat(*reported["position"]), height_m, is_measured=True, age_s=age_s, along_m=off_m, across_m=off_m)
 
 
 def _age_s(at: str, now: datetime) -> float:

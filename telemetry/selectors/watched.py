@@ -79,7 +79,7 @@ FROM unnest(%s::bigint[]) AS uav(id), LATERAL (
     SELECT * FROM telemetry_telemetryrecord WHERE uav_id = uav.id AND NOT is_from_future ORDER BY measured_at DESC LIMIT %s
 ) record {_STREAMS} ORDER BY measured_at
 """  # noqa: S608
-_HEARD = """
+_RECEIVED = """
 SELECT ST_X(position), ST_Y(position) FROM (
     SELECT position, received_at - measured_at AS took, row_number() OVER () AS number FROM (
         SELECT position, measured_at, received_at FROM telemetry_telemetryrecord
@@ -145,10 +145,10 @@ def newest_reports(uav_ids: Sequence[int], *, most: int) -> list[StoredReport]:
     return _reports(_NEWEST, [list(uav_ids), most])
 
 
-def places_heard(uav_id: int, *, most: int, every: int) -> list[LonLat]:
+def places_received(uav_id: int, *, most: int, every: int) -> list[LonLat]:
     """Where the newest records of a UAV were measured that came promptly: one of so many."""
     with connection.cursor() as cursor:
-        cursor.execute(_HEARD, [uav_id, most, PROMPT_S, every])
+        cursor.execute(_RECEIVED, [uav_id, most, PROMPT_S, every])
         return [LonLat(lon, lat) for lon, lat in cursor.fetchall()]
 
 

@@ -24,11 +24,11 @@ class Report(Protocol):
 
 def note_take_offs_and_landings(reports: Iterable[Report]) -> None:
     """Of reports that are not from the future; called before they are noted as the latest. What comes late changes nothing."""
-    told = sorted((report for report in reports if report.measurement.is_in_air is not None), key=lambda report: report.measured_at)
-    if not told:
+    reported = sorted((report for report in reports if report.measurement.is_in_air is not None), key=lambda report: report.measured_at)
+    if not reported:
         return
-    before = _in_air_before({report.uav_id for report in told})
-    for report in told:
+    before = _in_air_before({report.uav_id for report in reported})
+    for report in reported:
         is_in_air, since = before.get(report.uav_id, (None, None))
         if since is not None and report.measured_at <= since:
             continue

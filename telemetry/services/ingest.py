@@ -71,9 +71,9 @@ def store_records(records: Sequence[NewRecord]) -> StoredCount:
     rows = _flagged(_with_heights_above_ground(kept), _newest_measured(kept))
     stored = _insert(rows)
     note_reported_positions(reports=_newest_positions(stored))
-    told = [row.record for row in stored if not row.is_from_future]
-    note_take_offs_and_landings(told)
-    note_latest(told)
+    reported = [row.record for row in stored if not row.is_from_future]
+    note_take_offs_and_landings(reported)
+    note_latest(reported)
     for organisation_id in organisations:
         transaction.on_commit(partial(publish_live, organisation_id))
     return StoredCount(
@@ -122,14 +122,14 @@ def _with_heights_above_ground(records: Sequence[NewRecord]) -> list[NewRecord]:
     """As measured, else above the terrain model where there is one."""
     nan = float("nan")
     place = ("longitude_deg", "latitude_deg", "altitude_amsl_m")
-    told = np.array(
+    reported = np.array(
         [[nan if (value := getattr(record.measurement, name)) is None else value for name in place] for record in records], dtype=np.float64
     )
-    above = np.full(len(told), nan)
+    above = np.full(len(reported), nan)
     has_no_height = np.array([record.measurement.altitude_agl_m is None for record in records], dtype=bool)
-    asked = np.asarray(np.isfinite(told).all(axis=1)) & has_no_height
+    asked = np.asarray(np.isfinite(reported).all(axis=1)) & has_no_height
     if asked.any():
-        above[asked] = told[asked, 2] - ground_heights_m(told[asked, :2])
+        above[asked] = reported[asked, 2] - ground_heights_m(reported[asked, :2])
     return [
         record if math.isnan(height) else replace(record, measurement=replace(record.measurement, altitude_agl_m=height))
         for record, height in zip(records, above.tolist(), strict=True)
@@ -168,13 +168,18 @@ def _flagged(records: Sequence[NewRecord], newest: dict[int, datetime]) -> list[
 def _newest_positions(rows: Sequence[_Row]) -> list[ReportedPosition]:
     newest: dict[int, ReportedPosition] = {}
     for row in rows:
-        record, told = row.record, row.record.measurement
-        if row.is_from_future or told.longitude_deg is None or told.latitude_deg is None:
+        record, reported = row.record, row.record.measurement
+        if row.is_from_future or reported.longitude_deg is None or reported.latitude_deg is None:
             continue
         before = newest.get(record.uav_id)
         if before is None or before.measured_at < record.measured_at:
             newest[record.uav_id] = ReportedPosition(
-                record.uav_id, record.measured_at, told.longitude_deg, told.latitude_deg, told.heading_deg, told.battery_percent
+                record.uav_id,
+                record.measured_at,
+                reported.longitude_deg,
+                reported.latitude_deg,
+                reported.heading_deg,
+                reported.battery_percent,
             )
     return list(newest.values())
 

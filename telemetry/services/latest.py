@@ -32,8 +32,8 @@ class Report(Protocol):
 _IS_NEWER = """(watch.measured -> key ->> 'measured_at' COLLATE "C" >= value ->> 'measured_at') IS NOT TRUE"""
 NOTE = f"""
 INSERT INTO telemetry_uavwatch AS watch (uav_id, organisation_id, holder, measured)
-SELECT uav.id, uav.organisation_id, '', told.measured
-FROM unnest(%s::bigint[], %s::jsonb[]) AS told(uav_id, measured) JOIN missions_uav uav ON uav.id = told.uav_id
+SELECT uav.id, uav.organisation_id, '', reported.measured
+FROM unnest(%s::bigint[], %s::jsonb[]) AS reported(uav_id, measured) JOIN missions_uav uav ON uav.id = reported.uav_id
 ORDER BY uav.id
 ON CONFLICT (uav_id) DO UPDATE SET version = watch.version + 1, updated_at = statement_timestamp(),
     measured = coalesce(watch.measured, '{{}}')
@@ -71,27 +71,27 @@ def _report(report: Report) -> dict[str, Any]:
 
 
 def _position(report: Report) -> dict[str, Any] | None:
-    told = report.measurement
-    return None if told.longitude_deg is None else {"position": [told.longitude_deg, told.latitude_deg]}
+    reported = report.measurement
+    return None if reported.longitude_deg is None else {"position": [reported.longitude_deg, reported.latitude_deg]}
 
 
 def _speed(report: Report) -> dict[str, Any] | None:
-    told = report.measurement
-    if told.velocity_north_mps is None or told.velocity_east_mps is None:
+    reported = report.measurement
+    if reported.velocity_north_mps is None or reported.velocity_east_mps is None:
         return None
-    climb_mps = None if told.velocity_down_mps is None else -told.velocity_down_mps
-    return {"speed_mps": math.hypot(told.velocity_north_mps, told.velocity_east_mps), "climb_mps": climb_mps}
+    climb_mps = None if reported.velocity_down_mps is None else -reported.velocity_down_mps
+    return {"speed_mps": math.hypot(reported.velocity_north_mps, reported.velocity_east_mps), "climb_mps": climb_mps}
 
 
 def _wind(report: Report) -> dict[str, Any] | None:
-    """Pilots are told where it comes from; the log keeps where the air goes."""
+    """Pilots are reported where it comes from; the log keeps where the air goes."""
     north_mps, east_mps = report.measurement.wind_north_mps, report.measurement.wind_east_mps
     if north_mps is None or east_mps is None:
         return None
     return {"wind_speed_mps": math.hypot(north_mps, east_mps), "wind_from_deg": math.degrees(math.atan2(-east_mps, -north_mps)) % 360.0}
 
 
-def _as_told(fields: Sequence[str]) -> Callable[[Report], dict[str, Any] | None]:
+def _as_reported(fields: Sequence[str]) -> Callable[[Report], dict[str, Any] | None]:
     """Together as soon as one of them is known."""
 
     def read(report: Report) -> dict[str, Any] | None:
@@ -106,11 +106,11 @@ _READ: dict[str, Callable[[Report], dict[str, Any] | None]] = {
     "position": _position,
     "speed": _speed,
     "wind": _wind,
-    "height": _as_told(("altitude_relative_m", "altitude_amsl_m", "altitude_agl_m")),
-    "attitude": _as_told(("heading_deg", "roll_deg", "pitch_deg")),
-    "battery": _as_told(("battery_percent", "battery_v", "battery_a")),
-    "state": _as_told(("mode", "is_armed", "is_in_air")),
-    "link": _as_told(("link_quality_percent",)),
-    "gps": _as_told(("gps_fix", "satellites", "hdop")),
-    "waypoint": _as_told(("waypoint_sequence",)),
+    "height": _as_reported(("altitude_relative_m", "altitude_amsl_m", "altitude_agl_m")),
+    "attitude": _as_reported(("heading_deg", "roll_deg", "pitch_deg")),
+    "battery": _as_reported(("battery_percent", "battery_v", "battery_a")),
+    "state": _as_reported(("mode", "is_armed", "is_in_air")),
+    "link": _as_reported(("link_quality_percent",)),
+    "gps": _as_reported(("gps_fix", "satellites", "hdop")),
+    "waypoint": _as_reported(("waypoint_sequence",)),
 }

@@ -34,7 +34,7 @@ from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.alerts.approved_flights import approved_content
 from workspace.models import Organisation
 
-HEARD_WITHIN = timedelta(seconds=15)  # companions report every 10 s
+RECEIVED_WITHIN = timedelta(seconds=15)  # companions report every 10 s
 BATTERY_WITHIN = timedelta(seconds=60)
 MAP_CHECK_PERIOD_S = 15.0
 FIX_IN_SPACE = 3  # GPS_FIX_TYPE of MAVLink: 3D
@@ -144,14 +144,14 @@ def _checked_on_the_map(
 def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
     """Connected UAVs without the mission come first. Those that nobody hears, and those that refused it, hold up no other's start."""
     states = [{check.code: check.state for check in row.checks} for row in rows if not row.is_loaded]
-    heard = [found["mission"] for found in states if found["link"] == CheckState.OK]
-    if CheckState.WAITING in heard:
+    links = [found["mission"] for found in states if found["link"] == CheckState.OK]
+    if CheckState.WAITING in links:
         return NextAct.WAIT
-    if CheckState.UNKNOWN in heard:
+    if CheckState.UNKNOWN in links:
         return NextAct.UPLOAD
     if not states or any(row.is_ready for row in rows):
         return NextAct.START
-    return NextAct.UPLOAD if heard else NextAct.CONNECT
+    return NextAct.UPLOAD if links else NextAct.CONNECT
 
 
 def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[Reason]:
@@ -194,14 +194,14 @@ def _crash(uav: Uav, down: Collection[int]) -> Iterator[Check]:
 
 def _link(link: UavLink, reported: Reported, now: datetime) -> Check:
     received = parse_datetime(reported["report"]["received_at"]) if "report" in reported else None
-    heard = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
-    if heard is None:
+    links = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
+    if links is None:
         words = _("Never connected. Switch it on, and check its connection.")
         if link.uav.is_simulated:
             words = _("Not connected. It connects by itself once its simulation runs.")
         return Check("link", CheckState.FAILED, words)
-    age_s = max((now - heard).total_seconds(), 0.0)
-    if age_s > HEARD_WITHIN.total_seconds():
+    age_s = max((now - links).total_seconds(), 0.0)
+    if age_s > RECEIVED_WITHIN.total_seconds():
         words = _("Last heard %(age)s ago. Switch it on, and check its connection.")
         if link.uav.is_simulated:
             words = _("Last heard %(age)s ago. It connects by itself once its simulation runs.")
@@ -279,8 +279,8 @@ def _fence(uav: Uav, name: str, approval: Approval, link: UavLink) -> Iterator[C
     approved = approved_content(approval.pk, uav.pk, 1)
     if approved is None or not approved.has_fence:
         return
-    told = uav.autopilot_return
-    autopilot, parameters = told.get("autopilot", ""), told.get("parameters", {})
+    reported = uav.autopilot_return
+    autopilot, parameters = reported.get("autopilot", ""), reported.get("parameters", {})
     if off_by := fence_off_by(autopilot, parameters):
         words = _("%(uav)s ignores the fence that goes with the mission: its autopilot has %(parameter)s.")
         yield Check("fence", CheckState.WARNING, words % {"uav": name, "parameter": off_by})

@@ -83,8 +83,8 @@ def _estimates(mission: Mission) -> Iterator[str]:
         .order_by("estimated_for", "uav_id")
         .values_list(*_ESTIMATED, longitude(), latitude())
     )
-    for *told, lon, lat in rows.iterator(chunk_size=5_000):
-        values = dict(zip(_ESTIMATED, told, strict=True)) | {"longitude_deg": lon, "latitude_deg": lat}
+    for *reported, lon, lat in rows.iterator(chunk_size=5_000):
+        values = dict(zip(_ESTIMATED, reported, strict=True)) | {"longitude_deg": lon, "latitude_deg": lat}
         yield json.dumps(values, cls=DjangoJSONEncoder) + "\n"
 
 

@@ -14,7 +14,7 @@ from missions.selectors.given import approvals_given_to, is_end_known, number_of
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
-from telemetry.services.alerts.down_alerts import tell_of_failed_flight
+from telemetry.services.alerts.down_alerts import raise_failed_flight
 from telemetry.services.alerts.replan_hooks import UAV_OUT
 from telemetry.services.flight_events import note_landing
 from telemetry.services.links.http_messages import note_on_ground_over_http
@@ -78,7 +78,7 @@ def take_results(
             mission_id = approval.mission_id
             mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
             if flight.end is FlightEnd.FAILED:
-                tell_of_failed_flight(uav_id=uav_id, approval_id=approval.pk, flight=flight.flight)
+                raise_failed_flight(uav_id=uav_id, approval_id=approval.pk, flight=flight.flight)
                 suggest(mission_id=mission_id, code=UAV_OUT, cause={"uav": uav_id, "flight": flight.flight})
     return TakenResults(
         stored=stored,

@@ -27,7 +27,7 @@ from telemetry.serializers.uav_link import (
     read_result,
 )
 from telemetry.services.links.companion_reports import USED_AGAIN, take_reports
-from telemetry.services.links.http_messages import note_heard_over_http
+from telemetry.services.links.http_messages import note_received_over_http
 from telemetry.services.links.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.services.results import EndedFlight, take_results
 from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_access
@@ -96,7 +96,7 @@ class UavView(APIView):
 
     def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
         super().initial(request, *args, **kwargs)
-        note_heard_over_http(uav_id=uav_access(request).uav_id, address=address_of(request))
+        note_received_over_http(uav_id=uav_access(request).uav_id, address=address_of(request))
 
 
 class UavTelemetry(UavView):
@@ -164,8 +164,8 @@ class UavResults(UavView):
         )
         refused |= {read[place][0]: {"place": "It is no target that this UAV was sent to."} for place in taken.refused_results}
         refused |= {read[place][0]: {"sequence": USED_AGAIN} for place in taken.reused_results}
-        told = [_refused(index, envelope["results"][index], faults) for index, faults in sorted(refused.items())]
-        return Response({"stored": taken.stored, "known": taken.known, "refused": told, "refused_flights": taken.refused_flights})
+        reported = [_refused(index, envelope["results"][index], faults) for index, faults in sorted(refused.items())]
+        return Response({"stored": taken.stored, "known": taken.known, "refused": reported, "refused_flights": taken.refused_flights})
 
 
 class UavRoute(UavView):
@@ -217,10 +217,10 @@ class UavAcknowledgements(UavView):
         responses=NotedListSerializer,
     )
     def post(self, request: Request) -> Response:
-        told = _envelope(AcknowledgementsSerializer, request)["acknowledgements"]
+        reported = _envelope(AcknowledgementsSerializer, request)["acknowledgements"]
         acknowledgements = [
             Acknowledgement(entry["command"], CommandState(entry["state"]), entry.get("reason", ""), entry.get("content_sha256"))
-            for entry in told
+            for entry in reported
         ]
         noted = note_acknowledgements(uav_id=uav_access(request).uav_id, acknowledgements=acknowledgements)
         return Response(

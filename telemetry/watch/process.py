@@ -27,7 +27,7 @@ from telemetry.selectors.watched import (
     WatchedFlight,
     last_record_id,
     newest_reports,
-    places_heard,
+    places_received,
     reports_stored_after,
     watched_flights,
 )
@@ -58,7 +58,7 @@ READ_BACK = 60  # reports of a UAV, to know again what was known of it
 FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
 WITHOUT_RECORD_S = 3.0
 LEARN_AT_ONCE = 3  # UAVs a round
-HEARD_BACK, HEARD_EVERY = 20_000, 20  # records of a UAV
+RECEIVED_BACK, RECEIVED_INTERVAL = 20_000, 20  # records of a UAV
 
 
 @dataclass
@@ -91,16 +91,16 @@ class Judged(Protocol):
 
 def judge(watched: Judged, report: Report) -> None:
     """Before the estimator takes the report: what did it think of this moment? One in a while tells enough, and costs nothing."""
-    told, newest = report.measurement, watched.tracker.newest
+    reported, newest = report.measurement, watched.tracker.newest
     if newest is None or report.measured_s <= newest.measured_s or report.measured_s < watched.judged_s + CHECK_INTERVAL_S:
         return
-    if told.longitude_deg is None or told.latitude_deg is None:
+    if reported.longitude_deg is None or reported.latitude_deg is None:
         return
     watched.judged_s = report.measured_s
     estimate = watched.tracker.estimate(report.measured_s)
     if estimate is None or estimate.is_lost:
         return
-    found = innovation(estimate, LonLat(told.longitude_deg, told.latitude_deg))
+    found = innovation(estimate, LonLat(reported.longitude_deg, reported.latitude_deg))
     ESTIMATOR_ERROR_M.observe(found.error_m)
     ESTIMATOR_INNOVATIONS.labels("within" if found.is_within else "outside").inc()
 
@@ -179,7 +179,7 @@ class Watch:
         self._learn(now_s)
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
         count_states(made.values(), held=len(self.held))
-        self._tell(list(made.values()))
+        self._notify(list(made.values()))
         seen = [_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()]
         for uav_id, battery in look(watched=seen, now=datetime.fromtimestamp(now_s, UTC)).items():
             self.held[uav_id].battery = battery
@@ -229,8 +229,8 @@ class Watch:
             replace_estimates(reports=sorted(self._replaced))
             self._replaced.clear()
         for watched in self.held.values():
-            if (told := _told_by_link(watched)) is not None:
-                self._take(watched, told, is_record=False)
+            if (reported := _reported_by_link(watched)) is not None:
+                self._take(watched, reported, is_record=False)
 
     def _take(self, watched: Watched, report: Report, *, is_record: bool = True, is_new: bool = False) -> None:
         if is_record:
@@ -240,13 +240,13 @@ class Watch:
                 judge(watched, report)
             watched.tracker.take(report)
         except FAULTS:
-            self._tell_fault(watched)
+            self._report_fault(watched)
 
     def _learn(self, now_s: float) -> None:
         """Of UAVs that have fallen silent: where they were heard on earlier flights; a few in a round."""
         silent = [watched for watched in self.held.values() if not watched.has_learnt and watched.tracker.is_silent(now_s)]
         for watched in silent[:LEARN_AT_ONCE]:
-            watched.tracker.learn(places_heard(watched.flight.uav_id, most=HEARD_BACK, every=HEARD_EVERY))
+            watched.tracker.learn(places_received(watched.flight.uav_id, most=RECEIVED_BACK, every=RECEIVED_INTERVAL))
             watched.has_learnt = True
 
     def _estimated(self, watched: Watched, now_s: float) -> Made | None:
@@ -254,10 +254,10 @@ class Watch:
         try:
             return _made(watched, now_s)
         except FAULTS:
-            self._tell_fault(watched)
+            self._report_fault(watched)
             return None
 
-    def _tell_fault(self, watched: Watched) -> None:
+    def _report_fault(self, watched: Watched) -> None:
         if time.monotonic() >= self._quiet_about_faults_until_s:
             self._quiet_about_faults_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
             about = {"uav": watched.flight.uav_id, "mission": watched.flight.mission_id}
@@ -272,7 +272,7 @@ class Watch:
 
     # What is told
 
-    def _tell(self, made: list[Made]) -> None:
+    def _notify(self, made: list[Made]) -> None:
         if not made:
             return
         with transaction.atomic():
@@ -321,14 +321,16 @@ def _seen(watched: Watched, made: Made | None) -> WatchedUav:
     )
 
 
-def _told_by_link(watched: Watched) -> Report | None:
+def _reported_by_link(watched: Watched) -> Report | None:
     """How it does, where no record has told for a while: an autopilot without a position makes none."""
     flight, newest = watched.flight, watched.tracker.newest
     if flight.heard_at is None or newest is None or flight.heard_at.timestamp() < newest.measured_s + WITHOUT_RECORD_S:
         return None
-    heard_s = flight.heard_at.timestamp()
-    told = Measurement(mode=flight.mode, is_armed=flight.is_armed, is_in_air=flight.is_in_air, waypoint_sequence=flight.waypoint_sequence)
-    return Report(heard_s, heard_s, told)
+    last_message_s = flight.heard_at.timestamp()
+    reported = Measurement(
+        mode=flight.mode, is_armed=flight.is_armed, is_in_air=flight.is_in_air, waypoint_sequence=flight.waypoint_sequence
+    )
+    return Report(last_message_s, last_message_s, reported)
 
 
 def _flight_of(flight: WatchedFlight) -> tuple[UUID, int]:

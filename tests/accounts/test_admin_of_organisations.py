@@ -61,7 +61,7 @@ def addresses(model: type[Model], key: Any) -> list[str]:
     return [reverse(f"admin:{pattern.name}", args=[key]) for pattern in patterns]
 
 
-def told(answer: Any, key: Any) -> tuple[int, str]:
+def reported(answer: Any, key: Any) -> tuple[int, str]:
     return answer.status_code, answer.headers.get("Location", "").replace(str(key), "KEY")
 
 
@@ -84,7 +84,7 @@ def test_administrators_of_two_organisations_find_none_of_each_others_rows_at_an
             for method in ("get", "post"):
                 body = {"post": "yes"} if method == "post" else {}
                 answers = [getattr(client, method)(address, body) for address in (there, nowhere)]
-                assert told(answers[0], row.pk) == told(answers[1], NOWHERE), (method, there)
+                assert reported(answers[0], row.pk) == reported(answers[1], NOWHERE), (method, there)
                 assert answers[0].status_code in (302, 403, 404), (method, there)
                 asked += 1
     assert asked > 80

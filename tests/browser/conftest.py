@@ -253,7 +253,7 @@ class Visitor:
         page.set_viewport_size({"width": size[0], "height": size[1]})
         page.emulate_media(color_scheme=theme)  # type: ignore[arg-type]
         page.set_default_timeout(TIMEOUT_MS)
-        page.on("console", self._heard)
+        page.on("console", self._received)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: self._asked(request.url))
         page.goto(path)
@@ -279,7 +279,7 @@ class Visitor:
         self.site.came_in[name] = since_s, page.context.cookies()
         return page
 
-    def _heard(self, message: ConsoleMessage) -> None:
+    def _received(self, message: ConsoleMessage) -> None:
         if message.type == "error" or (message.type == "warning" and not any(words in message.text for words in NO_COMPLAINTS)):
             self.complaints.append(message.text)
 

@@ -40,7 +40,7 @@ def is_saved(page: Page, name: str) -> None:
 
 def forgives(visitor: Visitor, *words: str) -> None:
     """What the browser says itself of an answer that the test provoked."""
-    visitor.complaints[:] = [said for said in visitor.complaints if not any(word in said for word in words)]
+    visitor.complaints[:] = [stated for stated in visitor.complaints if not any(message in stated for message in words)]
 
 
 def tab(page: Page, name: str) -> None:

@@ -16,7 +16,7 @@ from tests.browser.test_fleet import Picture, details, fleet, writes
 pytestmark = pytest.mark.browser
 
 YARD = region.at(0.01, 0.01)
-HEARD = f"""
+RECEIVED = f"""
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 from telemetry.models import UnknownVehicle
@@ -84,7 +84,7 @@ def test_an_unknown_vehicle_is_adopted_and_another_ignored(site: Site, visitor: 
     page = visitor.signs_in("ada")
     fleet(page)
     expect(unknown(page).get_by_text("None. Vehicles with an unknown system ID")).to_be_visible()
-    site.does(HEARD)
+    site.does(RECEIVED)
     fleet(page)
     expect(unknown(page).get_by_text("System 41")).to_be_visible()
     assert faults(page) == []

@@ -15,7 +15,7 @@ from tests.browser.regions import region
 
 pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("without_leftovers")]
 
-SAID = """() => {
+STATED = """() => {
     const said = new Set();
     const add = (words) => words && said.add(words.replace(/\\s+/g, " ").trim());
     const roots = [document.body, ...[...document.querySelectorAll("template")].map((template) => template.content)];
@@ -64,7 +64,7 @@ class Reader:
         self.found: dict[str, list[str]] = {}
 
     def reads(self, page: Page, what: str) -> None:
-        left = [words for words in page.evaluate(SAID) if self.english.fullmatch(words) or len(set(ENGLISH.findall(words.lower()))) > 1]
+        left = [words for words in page.evaluate(STATED) if self.english.fullmatch(words) or len(set(ENGLISH.findall(words.lower()))) > 1]
         if left:
             self.found[what] = left
 

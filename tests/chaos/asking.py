@@ -104,11 +104,11 @@ class Askers:
         while not self._ends.wait(self.pause_s):
             began_s = time.monotonic()
             try:
-                told = question()
+                reported = question()
             except (OSError, http.client.HTTPException) as error:
-                told = type(error).__name__
+                reported = type(error).__name__
                 self.faults.append(f"{time.strftime('%H:%M:%S')} {error!r}")
                 self._ends.wait(0.05)
             else:
                 self.waits_s.append((began_s, time.monotonic() - began_s))
-            self.counted[told] += 1
+            self.counted[reported] += 1

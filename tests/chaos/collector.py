@@ -15,6 +15,6 @@ def pytest_runtest_logreport(report: pytest.TestReport) -> None:
         return
     figures = [str(value) for name, value in report.user_properties if name == "figure"]
     reason = report.longrepr[2] if report.skipped and isinstance(report.longrepr, tuple) else ""
-    told = {"node": report.nodeid, "outcome": report.outcome, "figures": figures, "reason": reason}
+    reported = {"node": report.nodeid, "outcome": report.outcome, "figures": figures, "reason": reason}
     with Path(os.environ["SPANWISE_CHAOS_REPORT"]).open("a") as lines:
-        lines.write(json.dumps(told) + "\n")
+        lines.write(json.dumps(reported) + "\n")

@@ -19,10 +19,10 @@ def put_in_document(figures: Sequence[Figure], *, seed: int, at: datetime, order
     old, _, after = rest.partition(ENDS)
     run = {figure.row for figure in figures}
     kept = [line for line in old.splitlines() if line.startswith("| ") and _row(line) in order and _row(line) not in run]
-    told = (
+    reported = (
         f"{at:%Y-%m-%d}, seed {seed}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f} at the end, Python {platform.python_version()}"
     )
-    new = [_line((*figure.cells, told)) for figure in figures]
+    new = [_line((*figure.cells, reported)) for figure in figures]
     lines = sorted([*kept, *new], key=lambda line: order.index(_row(line)))
     table = "\n".join([_line((*HEAD, "run")), _line(("---",) * (len(HEAD) + 1)), *lines])
     document.write_text(f"{before}{BEGINS}\n{table}\n{ENDS}{after}")

@@ -24,7 +24,7 @@ class Course:
     def __post_init__(self) -> None:
         self.chance = random.Random(self.seed)
 
-    def tell(self, test: str, figure: str, target: str, is_met: bool) -> None:
+    def record(self, test: str, figure: str, target: str, is_met: bool) -> None:
         self._put(Figure(self.row, test, figure, target, Verdict.MET if is_met else Verdict.MISSED))
 
     def leave_out(self, test: str, reason: str, target: str) -> None:
@@ -50,7 +50,7 @@ def main(do: Callable[[Course], None]) -> None:
     try:
         do(course)
     except CannotStart as error:
-        course.tell("could not begin", str(error), "begins", False)
+        course.record("could not begin", str(error), "begins", False)
     sys.exit(1 if any(figure.verdict == Verdict.MISSED for figure in course.figures) else 0)
 
 

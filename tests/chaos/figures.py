@@ -42,7 +42,7 @@ def written(path: Path) -> list[Figure]:
     found = []
     for line in path.read_text().splitlines() if path.exists() else []:
         try:
-            found.append(Figure(**(told := json.loads(line)) | {"verdict": Verdict(told["verdict"])}))
+            found.append(Figure(**(reported := json.loads(line)) | {"verdict": Verdict(reported["verdict"])}))
         except ValueError:
             continue
     return found

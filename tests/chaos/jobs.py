@@ -22,9 +22,9 @@ def large_plan_body(site: Site, chance: random.Random) -> dict[str, Any]:
     }
 
 
-def job_of(told: dict[str, Any]) -> str:
+def job_of(reported: dict[str, Any]) -> str:
     """Its id, of an answer 202."""
-    job = told.get("job", told)
+    job = reported.get("job", reported)
     return str(job["id"] if isinstance(job, dict) else job)
 
 

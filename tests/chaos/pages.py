@@ -70,13 +70,13 @@ class Page:
         finally:
             self._socket.close()
 
-    def _take(self, word: dict[str, Any]) -> None:
-        if word["type"] == "still-there":
+    def _take(self, message: dict[str, Any]) -> None:
+        if message["type"] == "still-there":
             return
         self.messages += 1
-        self.gaps += word["type"] == "changes" and word["sequence"] != self._sequence + 1
-        self._sequence = word["sequence"]
-        for uav in word["live"]["uavs"] if word["type"] == "snapshot" else word["uavs"]:
+        self.gaps += message["type"] == "changes" and message["sequence"] != self._sequence + 1
+        self._sequence = message["sequence"]
+        for uav in message["live"]["uavs"] if message["type"] == "snapshot" else message["uavs"]:
             if uav["measured"]:
                 self.measured_at = max(self.measured_at, datetime.fromisoformat(uav["measured"]["received_at"]))
         assert self._socket is not None

@@ -29,8 +29,8 @@ def answer_of(path: Path, address: str = "/readyz", **headers: str) -> tuple[int
     try:
         connection.request("GET", address, headers={"X-Forwarded-Proto": "https", **headers})
         answer = connection.getresponse()
-        told = answer.read()
-        return answer.status, json.loads(told).get("reasons", []) if answer.getheader("Content-Type", "").startswith(
+        reported = answer.read()
+        return answer.status, json.loads(reported).get("reasons", []) if answer.getheader("Content-Type", "").startswith(
             "application/json"
         ) else []
     except (OSError, http.client.HTTPException, ValueError):

@@ -43,12 +43,12 @@ def _of_tests(row: Row, part: Tests, settings: Settings, report: Path) -> Figure
     command = [sys.executable, "-m", "pytest", "-m", "long or not long", "-p", "tests.chaos.collector", "-p", "no:cacheprovider", "-q"]
     command += [*(["-k", part.select] if part.select else []), *part.nodes]
     code = _run(command, settings.environment | {"SPANWISE_CHAOS_REPORT": str(report)}, row.limit_s)
-    told = [json.loads(line) for line in report.read_text().splitlines()] if report.exists() else []
-    failed = [one["node"] for one in told if one["outcome"] == "failed"]
-    skipped = [one["reason"] or one["node"] for one in told if one["outcome"] == "skipped"]
-    passed = len([one for one in told if one["outcome"] == "passed"])
+    reported = [json.loads(line) for line in report.read_text().splitlines()] if report.exists() else []
+    failed = [one["node"] for one in reported if one["outcome"] == "failed"]
+    skipped = [one["reason"] or one["node"] for one in reported if one["outcome"] == "skipped"]
+    passed = len([one for one in reported if one["outcome"] == "passed"])
     words = [part.figure.format(passed=f"{passed:,}", all=f"{passed + len(set(failed)):,}")]
-    words += dict.fromkeys(figure for one in told for figure in one["figures"])
+    words += dict.fromkeys(figure for one in reported for figure in one["figures"])
     words += [f"failed: {name}" for name in failed[:3]] + [f"left out: {reason}" for reason in dict.fromkeys(skipped)]
     if code != 0 and not failed:
         words.append(f"pytest ended with {code}")

@@ -84,17 +84,17 @@ def demo_site(
     """With the demo region, operators and UAVs."""
     with shipped(name, counts, settings=settings, folder=folder) as installation:
         for command in DEMO:
-            installation.manage(*[word.format(demo=installation.places.state / "demo") for word in command])
+            installation.manage(*[message.format(demo=installation.places.state / "demo") for message in command])
         yield Site(installation, people_of(installation))
 
 
 def people_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
     """Operators with tokens, made beside those that may be there, and what they ask with."""
     command = [sys.executable, "-m", "tests.chaos.people", str(organisation)]
-    told = subprocess.run(  # noqa: S603
+    reported = subprocess.run(  # noqa: S603
         command, env=installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=True
     ).stdout
-    found: dict[str, Any] = json.loads(told.splitlines()[-1])
+    found: dict[str, Any] = json.loads(reported.splitlines()[-1])
     return found
 
 

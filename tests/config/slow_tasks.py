@@ -39,7 +39,7 @@ def take(seconds: float) -> None:
 
 
 @app.task
-def take_and_hear_nothing(seconds: float) -> None:
+def take_and_receive_nothing(seconds: float) -> None:
     """As work in a library that swallows whatever is raised in it."""
     note("began")
     end_s = time.monotonic() + seconds

@@ -76,7 +76,7 @@ def test_of_what_a_worker_has_under_way_nothing_is_lost_when_it_is_told_to_stop(
     with queue.worker() as process:
         queue.send(1.0)
         queue.send(3_600.0)
-        queue.send(3_600.0, "take_and_hear_nothing")
+        queue.send(3_600.0, "take_and_receive_nothing")
         wait_for(lambda: queue.notes().count("began") == 3)
         process.terminate()
         assert process.wait(TIMEOUT_S) >= 0, "it had to be killed"

@@ -15,13 +15,13 @@ from operation.log_context import about, facts
 
 TIMEOUT_S = 120
 
-_heard: list[dict[str, str]] = []
+_received: list[dict[str, str]] = []
 _is_done = threading.Event()
 
 
 @app.task(name="tests.note_what_it_is_about")
 def note_what_it_is_about(job_id: str) -> None:
-    _heard.append(dict(facts()))
+    _received.append(dict(facts()))
     _is_done.set()
 
 
@@ -32,8 +32,8 @@ def fall() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _nothing_heard() -> None:
-    _heard.clear()
+def _nothing_received() -> None:
+    _received.clear()
     _is_done.clear()
 
 
@@ -63,7 +63,7 @@ def test_what_the_work_is_about_goes_with_a_task(queue: str) -> None:
     with about(request="request-of-today", mission="m-7", uav="3", job="another"):
         note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
     assert _is_done.wait(TIMEOUT_S)
-    assert _heard == [{"request": "request-of-today", "mission": "m-7", "uav": "3", "job": "job-9"}]
+    assert _received == [{"request": "request-of-today", "mission": "m-7", "uav": "3", "job": "job-9"}]
     wait_for(lambda: counted(note_what_it_is_about.name, "done") == before + 1)
 
 
@@ -71,7 +71,7 @@ def test_a_task_of_nobodys_request_is_about_its_job_alone_and_a_failed_one_is_co
     before = counted(fall.name, "failed")
     note_what_it_is_about.apply_async(args=["job-9"], queue=queue)
     assert _is_done.wait(TIMEOUT_S)
-    assert _heard == [{"job": "job-9"}]
+    assert _received == [{"job": "job-9"}]
     _is_done.clear()
     fall.apply_async(queue=queue)
     assert _is_done.wait(TIMEOUT_S)

@@ -106,8 +106,8 @@ def test_behind_an_ingress_the_proxy_asks_for_names_again(tmp_path: Path, monkey
 
 
 def test_the_proxy_asks_the_name_server_that_it_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    told = {"SPANWISE_PROXY_NAME_SERVER": "127.0.0.1:5353", "SPANWISE_PROXY_RESOLVES": "1", "SPANWISE_PROXY_WEB": "web.site:8000"}
-    assert "resolver 127.0.0.1:5353 valid=2s;" in proxy_configuration(tmp_path, monkeypatch, **told)
+    reported = {"SPANWISE_PROXY_NAME_SERVER": "127.0.0.1:5353", "SPANWISE_PROXY_RESOLVES": "1", "SPANWISE_PROXY_WEB": "web.site:8000"}
+    assert "resolver 127.0.0.1:5353 valid=2s;" in proxy_configuration(tmp_path, monkeypatch, **reported)
 
 
 def test_with_a_certificate_the_proxy_speaks_nothing_older_than_tls_1_2(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

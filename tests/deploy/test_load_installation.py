@@ -66,8 +66,8 @@ def test_the_certificate_is_good_for_this_machine_alone(tmp_path: Path) -> None:
     assert certificate.read_text() != before
     assert key.stat().st_mode & 0o777 == 0o600
     command = ["openssl", "verify", "-CAfile", str(authority), str(certificate)]
-    told = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert "OK" in told.stdout
+    reported = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "OK" in reported.stdout
     assert make_authority(tmp_path).read_text() == authority.read_text()
     ssl.create_default_context(cafile=str(authority))
 

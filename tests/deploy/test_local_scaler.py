@@ -85,9 +85,9 @@ def question(name: str, kind: int = 1) -> bytes:
 
 def test_the_name_server_names_every_replica() -> None:
     known = {"web.load.test": ("127.77.0.1", "127.77.0.2"), "live.load.test": ()}
-    told = answer(question("web.load.test"), known)
-    assert struct.unpack_from(">HHHH", told) == (77, 0x8580, 1, 2)
-    assert told.endswith(bytes([127, 77, 0, 2])) and bytes([127, 77, 0, 1]) in told
+    reported = answer(question("web.load.test"), known)
+    assert struct.unpack_from(">HHHH", reported) == (77, 0x8580, 1, 2)
+    assert reported.endswith(bytes([127, 77, 0, 2])) and bytes([127, 77, 0, 1]) in reported
     assert struct.unpack_from(">HHHH", answer(question("web.load.test", kind=28), known)) == (77, 0x8580, 1, 0)  # no IPv6 address
     assert struct.unpack_from(">HHHH", answer(question("live.load.test"), known)) == (77, 0x8580, 1, 0)
     assert struct.unpack_from(">HHHH", answer(question("no.load.test"), known)) == (77, 0x8583, 1, 0)

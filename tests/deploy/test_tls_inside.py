@@ -32,8 +32,8 @@ def addresses(servers: Servers, host: str = "localhost", authority: Path | None 
     """As deploy/make-secrets writes them, but for where the servers and the authority's certificate are."""
     authority = authority or servers.secrets / "ca.crt"
     named = {"DATABASE_URL": servers.database_url, "REDIS_URL": servers.redis_url}
-    told = {name: url.replace("/run/secrets/ca-certificate", str(authority)) for name, url in named.items()}
-    return {name: url.replace("@postgresql:", f"@{host}:").replace("@redis:", f"@{host}:") for name, url in told.items()}
+    reported = {name: url.replace("/run/secrets/ca-certificate", str(authority)) for name, url in named.items()}
+    return {name: url.replace("@postgresql:", f"@{host}:").replace("@redis:", f"@{host}:") for name, url in reported.items()}
 
 
 def tried(folder: Path, addresses: dict[str, str]) -> dict[str, str]:
@@ -44,19 +44,19 @@ def tried(folder: Path, addresses: dict[str, str]) -> dict[str, str]:
         cwd=PROJECT_DIR, env=os.environ | own | addresses, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    told: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
-    assert set(told) == set(WAYS)
-    return told
+    reported: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
+    assert set(reported) == set(WAYS)
+    return reported
 
 
-def refused(told: dict[str, str]) -> set[str]:
-    return {way for way, said in told.items() if said.startswith("refused")}
+def refused(reported: dict[str, str]) -> set[str]:
+    return {way for way, stated in reported.items() if stated.startswith("refused")}
 
 
 def test_every_way_to_the_servers_speaks_tls(servers: Servers, tmp_path: Path) -> None:
-    told = tried(tmp_path, addresses(servers))
-    assert refused(told) == set(), json.dumps(told)
-    assert told["database"] in {"TLSv1.2", "TLSv1.3"}
+    reported = tried(tmp_path, addresses(servers))
+    assert refused(reported) == set(), json.dumps(reported)
+    assert reported["database"] in {"TLSv1.2", "TLSv1.3"}
 
 
 def test_a_server_with_another_name_than_its_certificate_is_refused(servers: Servers, tmp_path: Path) -> None:

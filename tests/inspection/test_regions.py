@@ -71,10 +71,10 @@ def test_operators_delete_no_region() -> None:
 
 def test_the_command_shows_what_would_go_before_it_goes() -> None:
     tower((10.0, 56.0))
-    told = StringIO()
-    call_command("delete_region", "--bbox=9,55,11,57", stdout=told)
-    assert (told.getvalue(), on_the_ground()) == ("1 tower would go; --yes does it\n", 1)
-    call_command("delete_region", "--bbox=9,55,11,57", "--yes", stdout=told)
+    reported = StringIO()
+    call_command("delete_region", "--bbox=9,55,11,57", stdout=reported)
+    assert (reported.getvalue(), on_the_ground()) == ("1 tower would go; --yes does it\n", 1)
+    call_command("delete_region", "--bbox=9,55,11,57", "--yes", stdout=reported)
     assert on_the_ground() == 0
     with pytest.raises(CommandError, match="four numbers"):
         call_command("delete_region", "--bbox=here")

@@ -80,9 +80,9 @@ def test_the_demo_region_in_3d_is_that_of_rows_terrain_and_planners(client: Clie
     assert drawn == counted
 
     positions = np.array([support["position"] for support in supports])
-    told = np.array([support["ground_amsl_m"] for support in supports])
+    reported = np.array([support["ground_amsl_m"] for support in supports])
     assert shown["ground"]["kind"] == "terrain"
-    assert np.abs(told - ground_heights_m(positions)).max() < WITHIN_M
+    assert np.abs(reported - ground_heights_m(positions)).max() < WITHIN_M
     for support in supports:
         assert max(slot[1] for slot in support["slots"] + support["earth"]) <= support["likely_m"] <= support["height_m"]
     for span in spans:
@@ -131,10 +131,10 @@ def test_a_pole_without_a_height_is_drawn_as_is_likely_and_counted_as_planners_d
     tower = ground.tower((10.01, 56.0))
     ground.line((10.01, 56.0), (10.014, 56.0), voltages_v=[110_000])
     shown = scene(client)
-    told = [(one["id"], one["kind"], one["height_m"], one["likely_m"]) for one in shown["supports"]]
-    assert (pole.pk, "pole", 45.0, 10.4) in told
-    assert (tower.pk, "tower", 45.0, 45.0) in told
-    assert sorted(one[1:] for one in told if one[0] is None) == [("vertex", 45.0, 10.4), ("vertex", 45.0, 45.0)]
+    reported = [(one["id"], one["kind"], one["height_m"], one["likely_m"]) for one in shown["supports"]]
+    assert (pole.pk, "pole", 45.0, 10.4) in reported
+    assert (tower.pk, "tower", 45.0, 45.0) in reported
+    assert sorted(one[1:] for one in reported if one[0] is None) == [("vertex", 45.0, 10.4), ("vertex", 45.0, 45.0)]
     assert max(slot[1] for one in shown["supports"] if one["voltage_v"] == 20_000 for slot in one["slots"]) <= 10.4
 
 

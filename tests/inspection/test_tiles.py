@@ -209,8 +209,8 @@ def test_a_zone_up_to_the_pole_and_round_the_earth_can_be_drawn() -> None:
 def test_a_zone_says_when_it_applies_unless_that_is_very_long() -> None:
     period = {"startDateTime": None, "endDateTime": "2026-06-01T00:00:00Z", "schedule": []}
     always, seasonal, long = (zone(schedule=schedule) for schedule in (None, [period], [period] * 99))
-    told = {feature.id: feature.properties.get("schedule") for feature in layers_at(14)["zones"]}
-    assert (told[always.pk], json.loads(told[seasonal.pk]), told[long.pk]) == (None, [period], None)
+    reported = {feature.id: feature.properties.get("schedule") for feature in layers_at(14)["zones"]}
+    assert (reported[always.pk], json.loads(reported[seasonal.pk]), reported[long.pk]) == (None, [period], None)
 
 
 def test_a_far_tile_is_kept_until_the_ground_changes_and_a_near_one_is_not() -> None:

@@ -36,7 +36,7 @@ const silent = (change) =>
     code: "link-lost",
     level: "warning",
     message: "UAV 1: no telemetry for 6 s.",
-    details: { heard_s: NOW_MS / 1000 - 6 },
+    details: { received_s: NOW_MS / 1000 - 6 },
     ...change,
   });
 
@@ -58,9 +58,9 @@ test("other alerts, ended ones and those of UAVs that are not on the page say wh
 
 test("beside the alert of a silent link stands what the UAV does by itself, and what the expected time rests on", () => {
   const advice = "Planned for link loss: it continues its mission by itself.";
-  const said = plain(besideWords(silent({ advice }), uav({ estimated: estimate() }), NOW_MS));
+  const summary = plain(besideWords(silent({ advice }), uav({ estimated: estimate() }), NOW_MS));
   assert.match(
-    said,
+    summary,
     /^Planned for link loss: it continues its mission by itself\. Next contact expected \S+.*\. Calculated from/,
   );
   assert.match(
@@ -72,15 +72,15 @@ test("beside the alert of a silent link stands what the UAV does by itself, and 
 });
 
 test("an alert says that its UAV returns or lands already, by itself or as commanded, and since when", () => {
-  const said = (own_act) => besideWords(anAlert({ own_act, advice: "It lands with about 8 %." }), uav(), NOW_MS);
+  const summary = (own_act) => besideWords(anAlert({ own_act, advice: "It lands with about 8 %." }), uav(), NOW_MS);
   const [since, is_commanded] = [ago(60), false];
   assert.match(
-    said({ kind: "return", since, is_commanded }),
+    summary({ kind: "return", since, is_commanded }),
     /^Returning by itself since \S+.*: failsafe or pilot\. It lands with/,
   );
-  assert.match(said({ kind: "land", since, is_commanded }), /^Landing by itself since/);
-  assert.match(said({ kind: "return", since, is_commanded: true }), /^Returning since \S+.*, as commanded\./);
-  assert.match(said({ kind: "land", since: null, is_commanded }), /^Landing by itself: failsafe or pilot\./);
+  assert.match(summary({ kind: "land", since, is_commanded }), /^Landing by itself since/);
+  assert.match(summary({ kind: "return", since, is_commanded: true }), /^Returning since \S+.*, as commanded\./);
+  assert.match(summary({ kind: "land", since: null, is_commanded }), /^Landing by itself: failsafe or pilot\./);
 });
 
 test("no act is offered that the UAV does already", () => {

@@ -108,11 +108,11 @@ test("Return of all says of each way home what Return of one says", () => {
 });
 
 test("the answer says who is told, and of each other one why not", () => {
-  const told = { name: "Tern", is_accepted: true, reasons: [] };
+  const reported = { name: "Tern", is_accepted: true, reasons: [] };
   const refused = {
     name: "Kite",
     is_accepted: false,
     reasons: [{ code: "on_the_ground", message: "Kite is on the ground." }],
   };
-  assert.equal(answerWords([told, refused]), "Sending to 1 UAV. Not sent to Kite: Kite is on the ground.");
+  assert.equal(answerWords([reported, refused]), "Sending to 1 UAV. Not sent to Kite: Kite is on the ground.");
 });

@@ -1,21 +1,24 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { heardWords, loadedText } from "../../static/js/fleet/connection.js";
+import { loadedText, receivedWords } from "../../static/js/fleet/connection.js";
 import { aboutVehicle } from "../../static/js/fleet/unknown_vehicles.js";
 import { agoText } from "../../static/js/units.js";
 
-const heard = (heard_at, heard_by = "mavlink") =>
-  heardWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
+const received = (heard_at, heard_by = "mavlink") =>
+  receivedWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
 
 test("when a UAV was heard is told by the server's clock, with the door", () => {
-  assert.deepEqual(heard("2026-11-22T12:00:00Z"), { words: "Last contact 12 s ago by MAVLink.", isHeard: false });
-  assert.deepEqual(heard("2026-11-22T12:00:07Z", "http"), { words: "Last contact 5 s ago over HTTP.", isHeard: true });
-  assert.deepEqual(heard(null, null), { words: "Never connected.", isHeard: false });
+  assert.deepEqual(received("2026-11-22T12:00:00Z"), { words: "Last contact 12 s ago by MAVLink.", isReceived: false });
+  assert.deepEqual(received("2026-11-22T12:00:07Z", "http"), {
+    words: "Last contact 5 s ago over HTTP.",
+    isReceived: true,
+  });
+  assert.deepEqual(received(null, null), { words: "Never connected.", isReceived: false });
 });
 
 test("what was heard a moment ahead of the clock was heard now", () => {
-  assert.equal(heard("2026-11-22T12:00:13Z").words, "Last contact 0 s ago by MAVLink.");
+  assert.equal(received("2026-11-22T12:00:13Z").words, "Last contact 0 s ago by MAVLink.");
 });
 
 test("an age is told in seconds, then in minutes", () => {

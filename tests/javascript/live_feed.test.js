@@ -20,7 +20,7 @@ class Socket {
   constructor(address) {
     this.address = address;
     this.readyState = Socket.OPEN;
-    this.said = [];
+    this.sent = [];
     this.listeners = {};
     Socket.all.push(this);
   }
@@ -33,12 +33,12 @@ class Socket {
     this.listeners[name] = listener;
   }
 
-  says(word) {
-    this.listeners.message({ data: JSON.stringify({ server_time: TIME, ...word }) });
+  receives(message) {
+    this.listeners.message({ data: JSON.stringify({ server_time: TIME, ...message }) });
   }
 
   send(text) {
-    this.said.push(JSON.parse(text));
+    this.sent.push(JSON.parse(text));
   }
 
   close() {
@@ -67,7 +67,7 @@ function page(context, { answers = [new Error("away")], ...options } = {}) {
   Socket.all = [];
   const asked = [];
   const states = [];
-  const told = [];
+  const reported = [];
   const get = async (address, { headers }) => {
     asked.push({ address, ...headers });
     const answer = answers.length > 1 ? answers.shift() : answers[0];
@@ -79,14 +79,14 @@ function page(context, { answers = [new Error("away")], ...options } = {}) {
     get,
     random: () => 1,
     onState: ({ state }) => states.push(state),
-    onChange: (touched) => told.push(touched),
+    onChange: (touched) => reported.push(touched),
     ...options,
   });
   const pass = async (ms) => {
     context.mock.timers.tick(ms);
     await settle();
   };
-  return { feed, asked, states, told, pass };
+  return { feed, asked, states, reported, pass };
 }
 
 const answer = (live, etag = '"1"') => ({
@@ -96,9 +96,9 @@ const answer = (live, etag = '"1"') => ({
 });
 
 test("a page shows everything, then what changes, and confirms each word", (context) => {
-  const { feed, states, told } = page(context);
+  const { feed, states, reported } = page(context);
   assert.equal(Socket.last.address, "wss://spanwise.example/ws/live");
-  Socket.last.says(
+  Socket.last.receives(
     snapshot(1, {
       uavs: [
         { id: 1, name: "Tern" },
@@ -106,11 +106,11 @@ test("a page shows everything, then what changes, and confirms each word", (cont
       ],
     }),
   );
-  assert.equal(told.at(-1), null);
-  Socket.last.says(changes(2, { uavs: [{ id: 1, name: "Arctic tern" }] }, { uavs: [2] }));
+  assert.equal(reported.at(-1), null);
+  Socket.last.receives(changes(2, { uavs: [{ id: 1, name: "Arctic tern" }] }, { uavs: [2] }));
   assert.deepEqual([...feed.shown.uavs.values()], [{ id: 1, name: "Arctic tern" }]);
-  assert.deepEqual([...told.at(-1).uavs], [1, 2]);
-  assert.deepEqual(Socket.last.said, [
+  assert.deepEqual([...reported.at(-1).uavs], [1, 2]);
+  assert.deepEqual(Socket.last.sent, [
     { type: "have", sequence: 1 },
     { type: "have", sequence: 2 },
   ]);
@@ -124,36 +124,36 @@ test("a page of one mission listens to that mission", (context) => {
 });
 
 test("after a gap the page asks once for everything and takes nothing before that", (context) => {
-  const { feed, told } = page(context);
-  Socket.last.says(snapshot(1, { uavs: [{ id: 1, at: "a" }] }));
-  Socket.last.says(changes(3, { uavs: [{ id: 1, at: "c" }] }));
-  Socket.last.says(changes(4, { uavs: [{ id: 1, at: "d" }] }));
+  const { feed, reported } = page(context);
+  Socket.last.receives(snapshot(1, { uavs: [{ id: 1, at: "a" }] }));
+  Socket.last.receives(changes(3, { uavs: [{ id: 1, at: "c" }] }));
+  Socket.last.receives(changes(4, { uavs: [{ id: 1, at: "d" }] }));
   assert.equal(feed.shown.uavs.get(1).at, "a");
   assert.deepEqual(
-    Socket.last.said.map(({ type }) => type),
+    Socket.last.sent.map(({ type }) => type),
     ["have", "again", "have", "have"],
   );
-  Socket.last.says(snapshot(5, { uavs: [{ id: 1, at: "e" }] }));
-  Socket.last.says(changes(6, { uavs: [{ id: 1, at: "f" }] }));
+  Socket.last.receives(snapshot(5, { uavs: [{ id: 1, at: "e" }] }));
+  Socket.last.receives(changes(6, { uavs: [{ id: 1, at: "f" }] }));
   assert.equal(feed.shown.uavs.get(1).at, "f");
-  assert.equal(told.length, 3);
+  assert.equal(reported.length, 3);
   feed.close();
 });
 
 test("a word that was lost last of all is found missing by the next sign of life", (context) => {
   const { feed } = page(context);
-  Socket.last.says(snapshot(1));
-  Socket.last.says({ type: "still-there", sequence: 1 });
-  assert.equal(Socket.last.said.length, 1);
-  Socket.last.says({ type: "still-there", sequence: 2 });
-  assert.deepEqual(Socket.last.said.at(-1), { type: "again" });
+  Socket.last.receives(snapshot(1));
+  Socket.last.receives({ type: "still-there", sequence: 1 });
+  assert.equal(Socket.last.sent.length, 1);
+  Socket.last.receives({ type: "still-there", sequence: 2 });
+  assert.deepEqual(Socket.last.sent.at(-1), { type: "again" });
   feed.close();
 });
 
 test("a page that fails to draw confirms all the same, so that it is told the next", (context) => {
   const { feed } = page(context, { onChange: () => assert.fail("not drawn") });
-  assert.throws(() => Socket.last.says(snapshot(1)), /not drawn/);
-  assert.deepEqual(Socket.last.said, [{ type: "have", sequence: 1 }]);
+  assert.throws(() => Socket.last.receives(snapshot(1)), /not drawn/);
+  assert.deepEqual(Socket.last.sent, [{ type: "have", sequence: 1 }]);
   feed.close();
 });
 
@@ -161,7 +161,7 @@ test("without a socket the page asks every two seconds and says so; the socket c
   const { feed, asked, states, pass } = page(context, {
     answers: [answer({ uavs: [{ id: 1 }] }), { status: 304, etag: '"1"' }],
   });
-  Socket.last.says(snapshot(1));
+  Socket.last.receives(snapshot(1));
   Socket.last.isLost();
   await pass(0);
   assert.deepEqual(states, ["connecting", "live", "connecting", "asked"]);
@@ -172,7 +172,7 @@ test("without a socket the page asks every two seconds and says so; the socket c
   await pass(1_500);
   assert.deepEqual(asked, [{ address: "/live" }, { address: "/live", "If-None-Match": '"1"' }]);
   assert.equal(Socket.all.length, 3);
-  Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
+  Socket.last.receives(snapshot(1, { uavs: [{ id: 7 }] }));
   await pass(4_000);
   assert.equal(asked.length, 2);
   assert.deepEqual([...feed.shown.uavs.keys()], [7]);
@@ -205,10 +205,10 @@ test("a socket that opens and says nothing is not waited for", async (context) =
 
 test("a page whose program is being stopped goes to the next one at once, and stays live", async (context) => {
   const { asked, states, feed, pass } = page(context);
-  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Tern" }] }));
+  Socket.last.receives(snapshot(1, { uavs: [{ id: 1, name: "Tern" }] }));
   Socket.last.isLost(1012);
   assert.equal(Socket.all.length, 2);
-  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Gull" }] }));
+  Socket.last.receives(snapshot(1, { uavs: [{ id: 1, name: "Gull" }] }));
   assert.equal(feed.shown.uavs.get(1).name, "Gull");
   assert.deepEqual([states, asked], [["connecting", "live"], []]);
   Socket.last.isLost(1012);
@@ -219,9 +219,9 @@ test("a page whose program is being stopped goes to the next one at once, and st
 
 test("a live socket that falls silent is replaced after 5 s: the server sends a heartbeat each 2 s", async (context) => {
   const { feed, states, pass } = page(context);
-  Socket.last.says(snapshot(1));
+  Socket.last.receives(snapshot(1));
   await pass(4_000);
-  Socket.last.says({ type: "still-there", sequence: 1 });
+  Socket.last.receives({ type: "still-there", sequence: 1 });
   await pass(4_000);
   assert.deepEqual(states, ["connecting", "live"]);
   await pass(1_000);
@@ -237,7 +237,7 @@ for (const [status, state] of [
 ]) {
   test(`after ${status} the page is ${state} for good`, async (context) => {
     const { feed, states, asked, pass } = page(context, { answers: [Object.assign(new Error("no"), { status })] });
-    Socket.last.says(snapshot(1));
+    Socket.last.receives(snapshot(1));
     Socket.last.isLost();
     await pass(0);
     await pass(60_000);
@@ -251,39 +251,39 @@ for (const [status, state] of [
 /** A clock of the test's own, by the server's time. */
 function testClock() {
   let now_ms = Date.parse(TIME);
-  return { heard() {}, now_ms: () => now_ms, pass: (ms) => (now_ms += ms) };
+  return { received() {}, now_ms: () => now_ms, pass: (ms) => (now_ms += ms) };
 }
 
 test("a page that hears nothing says so after 5 s, with the time of the last message, and what it shows stands still", (context) => {
   const clock = testClock();
   const { feed } = page(context, { clock });
-  const said = () =>
+  const sent = () =>
     staleWords({
       link: feed.state,
       since_ms: feed.since_ms,
       now_ms: feed.now_ms(),
       silent_ms: feed.silent_ms(),
-      heard_ms: feed.heard_ms,
+      received_ms: feed.received_ms,
     });
-  const heard_ms = clock.now_ms();
-  Socket.last.says(snapshot(1));
+  const received_ms = clock.now_ms();
+  Socket.last.receives(snapshot(1));
   clock.pass(4_900);
-  assert.equal(said(), null);
-  assert.equal(feed.shown_ms(), heard_ms + 2_500, "no age grows by the device's own loss");
+  assert.equal(sent(), null);
+  assert.equal(feed.shown_ms(), received_ms + 2_500, "no age grows by the device's own loss");
   clock.pass(600);
-  assert.deepEqual([said().words, said().isBad], ["No data on this device for 5 s.", true]);
-  assert.match(said().rest, /^Last message \d\d:00:00: everything here is as of then\./);
+  assert.deepEqual([sent().words, sent().isBad], ["No data on this device for 5 s.", true]);
+  assert.match(sent().rest, /^Last message \d\d:00:00: everything here is as of then\./);
   clock.pass(40_000);
-  assert.equal(feed.shown_ms(), heard_ms);
-  Socket.last.says({ type: "still-there", sequence: 1 });
-  assert.deepEqual([said(), feed.silent_ms()], [null, 0]);
+  assert.equal(feed.shown_ms(), received_ms);
+  Socket.last.receives({ type: "still-there", sequence: 1 });
+  assert.deepEqual([sent(), feed.silent_ms()], [null, 0]);
   feed.close();
 });
 
 test("no UAV is lost by the device's own loss", (context) => {
   const clock = testClock();
   const { feed } = page(context, { clock });
-  Socket.last.says(snapshot(1));
+  Socket.last.receives(snapshot(1));
   const uav = {
     measured: { measured_at: TIME, position: [10, 50], is_in_air: true },
     estimated: null,
@@ -303,7 +303,7 @@ test("what is answered after the socket is back changes nothing", async (context
   const { feed, pass } = page(context, { get: () => new Promise((resolve) => (answerNow = resolve)) });
   Socket.last.isLost();
   await pass(500);
-  Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
+  Socket.last.receives(snapshot(1, { uavs: [{ id: 7 }] }));
   answerNow(answer({ uavs: [{ id: 1 }] }));
   await pass(4_000);
   assert.deepEqual([...feed.shown.uavs.keys()], [7]);
@@ -312,13 +312,13 @@ test("what is answered after the socket is back changes nothing", async (context
 });
 
 test("a closed page neither hears nor asks", async (context) => {
-  const { feed, asked, told, pass } = page(context);
+  const { feed, asked, reported, pass } = page(context);
   const socket = Socket.last;
   feed.close();
-  socket.says(snapshot(1));
+  socket.receives(snapshot(1));
   socket.isLost();
   await pass(60_000);
-  assert.deepEqual([asked.length, told.length, Socket.all.length, socket.readyState], [0, 0, 1, 3]);
+  assert.deepEqual([asked.length, reported.length, Socket.all.length, socket.readyState], [0, 0, 1, 3]);
 });
 
 test("pages do not all come back at once, and wait 5 s at most", () => {
@@ -337,15 +337,15 @@ test("the server's time is known although the page's clock is wrong and words co
   const server_ms = Date.parse(TIME);
   const at = (ms) => new Date(server_ms + ms).toISOString();
   const clock = serverClock(() => ticks_ms, 0);
-  clock.heard(at(0 - 300)); // it took 300 ms
+  clock.received(at(0 - 300)); // it took 300 ms
   assert.equal(clock.now_ms(), server_ms - 300);
   ticks_ms += 1_000;
-  clock.heard(at(1_000 - 20));
+  clock.received(at(1_000 - 20));
   ticks_ms += 1_000;
-  clock.heard(at(2_000 - 900));
+  clock.received(at(2_000 - 900));
   assert.equal(clock.now_ms(), server_ms + 2_000 - 20);
   ticks_ms += 100_000; // the page slept, and what it knew is too old
-  clock.heard(at(90_000));
+  clock.received(at(90_000));
   assert.equal(clock.now_ms(), server_ms + 90_000);
 });
 
@@ -354,13 +354,13 @@ test("a page whose websocket is refused because too many are open asks, says so,
   Socket.last.isLost(4429);
   await settle();
   assert.deepEqual(states, ["connecting", "crowded"]);
-  const said = staleWords({ link: feed.state, since_ms: feed.since_ms, now_ms: feed.now_ms() });
-  assert.deepEqual([said.words, said.isBad], ["Too many live pages are open.", false]);
+  const sent = staleWords({ link: feed.state, since_ms: feed.since_ms, now_ms: feed.now_ms() });
+  assert.deepEqual([sent.words, sent.isBad], ["Too many live pages are open.", false]);
   await pass(59_000);
   assert.equal(Socket.all.length, 1);
   await pass(1_001);
   assert.equal(Socket.all.length, 2);
-  Socket.last.says(snapshot(1, {}));
+  Socket.last.receives(snapshot(1, {}));
   assert.equal(feed.state, "live");
   feed.close();
 });

@@ -28,14 +28,14 @@ class Socket extends EventTarget {
 }
 
 test("a job is told over its socket until it has ended", async () => {
-  const heard = [];
-  const ended = followLive("j1", { Socket, onProgress: (job) => heard.push(job.progress) });
+  const received = [];
+  const ended = followLive("j1", { Socket, onProgress: (job) => received.push(job.progress) });
   assert.equal(Socket.last.address, "wss://spanwise.example/ws/jobs/j1");
   Socket.last.says({ state: "running", progress: 0.5 });
   Socket.last.dispatchEvent(new MessageEvent("message", { data: '{"type":"still-there"}' }));
   Socket.last.says({ state: "done", result: { routes: [] } });
   assert.deepEqual((await ended).result, { routes: [] });
-  assert.deepEqual(heard, [0.5]);
+  assert.deepEqual(received, [0.5]);
   assert.ok(Socket.last.isClosed);
 });
 

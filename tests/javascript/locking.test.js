@@ -5,9 +5,9 @@ import { EMPTY, targetOf } from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
 const element = () => ({
-  said: "",
+  summary: "",
   append(...children) {
-    this.said = children.map((child) => child.said ?? child).join(" ");
+    this.summary = children.map((child) => child.summary ?? child).join(" ");
   },
   replaceChildren(...children) {
     this.append(...children);
@@ -33,7 +33,7 @@ const targets = [1, 2, 3].map(tower);
 /** A page with a plan: Heron flies towers 1 and 2, Kite tower 3. */
 function pageWith(context, uavs, fleet = []) {
   context.mock.timers.enable({ apis: ["setTimeout"] });
-  toasts.said = "";
+  toasts.summary = "";
   const plan = {
     targets,
     result: {
@@ -52,7 +52,7 @@ function pageWith(context, uavs, fleet = []) {
 test("a target that is dropped on a UAV is told to be locked there", (context) => {
   const page = pageWith(context, [uav(1, "Heron"), uav(2, "Kite")]);
   assert.equal(page.placeTargets([targets[2].key], { uav: "Heron", index: 1 }), true);
-  assert.match(toasts.said, /Tower 3 is locked as target 2 of Heron\./);
+  assert.match(toasts.summary, /Tower 3 is locked as target 2 of Heron\./);
 });
 
 test("where two UAVs have the name nothing is locked, and that is said", (context) => {
@@ -62,9 +62,9 @@ test("where two UAVs have the name nothing is locked, and that is said", (contex
     () => page.lockTarget(targets[0].key),
     () => page.shiftTarget(targets[0].key, 1),
   ]) {
-    toasts.said = "";
+    toasts.summary = "";
     assert.equal(act(), false);
-    assert.match(toasts.said, /Nothing is locked: 2 UAVs of this mission are called Heron\./);
+    assert.match(toasts.summary, /Nothing is locked: 2 UAVs of this mission are called Heron\./);
   }
   assert.deepEqual(page.store.state.selection.locks, []);
 });
@@ -72,11 +72,11 @@ test("where two UAVs have the name nothing is locked, and that is said", (contex
 test("a UAV that is called otherwise in the mission is told so", (context) => {
   const page = pageWith(context, [uav(null, "Heron")], [uav(1, "Heron"), uav(2, "Kite")]);
   page.addUavOfFleet(2);
-  assert.equal(toasts.said, "");
+  assert.equal(toasts.summary, "");
   page.addUavsOfFleet([1, 2]);
   assert.deepEqual(
     page.store.state.selection.uavs.map(({ name }) => name),
     ["Heron", "Kite", "Heron 2"],
   );
-  assert.match(toasts.said, /Heron is called Heron 2 in this mission: another UAV has its name\./);
+  assert.match(toasts.summary, /Heron is called Heron 2 in this mission: another UAV has its name\./);
 });

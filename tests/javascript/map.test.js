@@ -191,13 +191,13 @@ test("a source is named once, with its licence where that is known", () => {
 
 test("UAVs that would cover each other's names are one mark with their number", () => {
   const dart = (name, x, y) => ({ name, x, y });
-  const said = (darts) => mergeDarts(darts).map(({ label, members }) => [label, members.length]);
-  assert.deepEqual(said([dart("Heron", 0, 0)]), [["Heron", 1]]);
-  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 20, 4), dart("Osprey", 300, 0)]), [
+  const summary = (darts) => mergeDarts(darts).map(({ label, members }) => [label, members.length]);
+  assert.deepEqual(summary([dart("Heron", 0, 0)]), [["Heron", 1]]);
+  assert.deepEqual(summary([dart("Heron", 0, 0), dart("Kite", 20, 4), dart("Osprey", 300, 0)]), [
     ["2 UAVs", 2],
     ["Osprey", 1],
   ]);
-  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [
+  assert.deepEqual(summary([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [
     ["Heron", 1],
     ["Kite", 1],
   ]);

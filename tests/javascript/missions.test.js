@@ -128,7 +128,8 @@ test("undo takes back one's own steps alone once somebody else's have come in", 
 });
 
 test("a change by hand and its taking back are lines of the history", () => {
-  const said = (action) => Object.values(wordsOfEntry({ action, before: null, after: { revision: 3, uav: "Kite" } }));
-  assert.deepEqual(said("by-hand"), ["Changed by hand", "the route of Kite"]);
-  assert.deepEqual(said("by-hand-undone"), ["Change by hand taken back", "the route of Kite"]);
+  const summary = (action) =>
+    Object.values(wordsOfEntry({ action, before: null, after: { revision: 3, uav: "Kite" } }));
+  assert.deepEqual(summary("by-hand"), ["Changed by hand", "the route of Kite"]);
+  assert.deepEqual(summary("by-hand-undone"), ["Change by hand taken back", "the route of Kite"]);
 });

@@ -20,7 +20,7 @@ import {
 } from "../../static/js/monitor/offer_words.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
 import { ageWords, estimateWords, stateOf } from "../../static/js/monitor/uav_words.js";
-import { unheardLines } from "../../static/js/monitor/unheard.js";
+import { unreachableLines } from "../../static/js/monitor/unreachable.js";
 import { ago, EACH_TEN_SECONDS, estimate, NOW_MS, plain, uav } from "./live_uav.js";
 
 test("a UAV with a fresh report is measured, a silent one is estimated, and lost once nobody vouches for it", () => {
@@ -141,7 +141,7 @@ test("alerts stand by level, the newest first; what somebody knows of comes afte
 });
 
 test("a cause is told once, and again where it has become worse", () => {
-  const told = new Map([
+  const reported = new Map([
     [1, "warning"],
     [2, "warning"],
   ]);
@@ -153,7 +153,7 @@ test("a cause is told once, and again where it has become worse", () => {
         alert(3, "warning"),
         alert(4, "critical", { acknowledged_at: ago(1) }),
       ],
-      told,
+      reported,
     ).map(({ id }) => id),
     [2, 3],
   );
@@ -278,26 +278,29 @@ test("the time that is left to take an offer counts down to zero", () => {
 });
 
 test("of UAVs that are not heard it is said who is told all the same", () => {
-  const named = (name, kind, heard_s) => ({ name, link: { kind, heard_at: heard_s === null ? null : ago(heard_s) } });
+  const named = (name, kind, received_s) => ({
+    name,
+    link: { kind, heard_at: received_s === null ? null : ago(received_s) },
+  });
   const uavs = [
     named("Tern", "mavlink", 60),
     named("Kite", "http", 60),
     named("Gull", "mavlink", 7_200),
     named("Wren", "mavlink", null),
   ];
-  const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
+  const [sent, waiting] = unreachableLines(uavs, "return", NOW_MS);
   assert.match(sent, /^No telemetry from Tern: the command is sent repeatedly/);
   assert.match(waiting, /^No link to Kite, Gull, Wren: the command is sent on contact/);
-  assert.match(unheardLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^No link to Tern/);
-  assert.deepEqual(unheardLines([], "return", NOW_MS), []);
+  assert.match(unreachableLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^No link to Tern/);
+  assert.deepEqual(unreachableLines([], "return", NOW_MS), []);
 });
 
 test("who is in the air can be told something, also after its mission", () => {
-  const uav = (id, mission, isInAir, heard_s = 5) => ({
+  const uav = (id, mission, isInAir, received_s = 5) => ({
     id,
     mission,
     measured: null,
-    link: { is_in_air: isInAir, heard_at: ago(heard_s) },
+    link: { is_in_air: isInAir, heard_at: ago(received_s) },
   });
   const missions = [
     { id: "m", state: "active" },

@@ -6,7 +6,7 @@ function element(tag) {
   const made = { tag, children: [], dataset: {}, attributes: {} };
   made.append = (...children) => made.children.push(...children);
   made.setAttribute = (name, value) => Object.assign(made.attributes, { [name]: value });
-  made.addEventListener = (name, heard) => Object.assign(made, { [name]: heard });
+  made.addEventListener = (name, received) => Object.assign(made, { [name]: received });
   return made;
 }
 globalThis.document = {

@@ -10,7 +10,7 @@ import {
   returnLines,
   returnLinesOfAll,
   returnOf,
-  returnSaid,
+  returnStatus,
   saferReturn,
   separateReturns,
   togetherLine,
@@ -92,24 +92,24 @@ test("a hold says how long it can last", () => {
 });
 
 test("what is in the way is a warning, what is not known is said", () => {
-  const said = returnSaid(
+  const summary = returnStatus(
     check("in_the_way", ["From waypoint 3 on it crosses Heliport.", "Use Hold and Land instead."]),
   );
   assert.deepEqual(
-    [said.level, said.words],
+    [summary.level, summary.words],
     ["warning", "From waypoint 3 on it crosses Heliport. Use Hold and Land instead."],
   );
   assert.deepEqual(
-    [returnSaid(check("unknown", ["Not read."])).level, returnSaid(check("clear")).level, returnSaid(undefined)],
+    [returnStatus(check("unknown", ["Not read."])).level, returnStatus(check("clear")).level, returnStatus(undefined)],
     [null, null, null],
   );
 });
 
 test("a fence that the autopilot ignores is a warning under its name and before a start", () => {
   const fence_warning = "Tern ignores the fence that goes with the mission: its autopilot has FENCE_ENABLE 0.";
-  const said = returnSaid({ ...check("clear"), fence_warning });
-  assert.deepEqual([said.level, said.image], ["warning", "triangle-alert"]);
-  assert.match(said.words, /Return path clear.*FENCE_ENABLE 0\.$/);
+  const summary = returnStatus({ ...check("clear"), fence_warning });
+  assert.deepEqual([summary.level, summary.image], ["warning", "triangle-alert"]);
+  assert.match(summary.words, /Return path clear.*FENCE_ENABLE 0\.$/);
   const flyer = { name: "Tern", route: { length_m: 900, duration_s: 120 }, speed_mps: 8 };
   assert.ok(
     questionOf("start", { ...flyer, planned: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
@@ -170,8 +170,11 @@ test("an abort offers what meets less than its straight returns", () => {
 
 test("a return along the route says to where, how long, and with what it lands", () => {
   const along = { waypoint: 8, length_m: 1240, duration_s: 150, targets: 1, landing_percent: 34.4 };
-  const said = returnLines(check("in_the_way", ["…"], { safest: way({ along_route: true }), along })).join(" ");
-  assert.match(said, /straight to waypoint 9, then as approved, .*1 target is still visited\..*Lands with about 34\W%/);
+  const summary = returnLines(check("in_the_way", ["…"], { safest: way({ along_route: true }), along })).join(" ");
+  assert.match(
+    summary,
+    /straight to waypoint 9, then as approved, .*1 target is still visited\..*Lands with about 34\W%/,
+  );
 });
 
 test("several return on separate ways where they meet otherwise, and it is said of whom no way is clear", () => {
@@ -211,6 +214,6 @@ test("that no return altitude is reported is said once of several UAVs, and its 
   const ofAll = returnLinesOfAll([tern, kite].map((one) => ({ name: one.name, check: one })));
   assert.match(ofAll[0], /^Return altitude not reported by 2 UAVs/);
   assert.equal(ofAll.filter((line) => line.includes("not reported")).length, 1);
-  assert.equal(returnSaid(tern).title, "Autopilot parameter: RTL_ALT");
-  assert.doesNotMatch(returnSaid(tern).words, /RTL/);
+  assert.equal(returnStatus(tern).title, "Autopilot parameter: RTL_ALT");
+  assert.doesNotMatch(returnStatus(tern).words, /RTL/);
 });

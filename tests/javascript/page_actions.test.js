@@ -260,18 +260,18 @@ test("a refusal is said without the places of fields, with what would help inste
 });
 
 test("a fault of a field names the UAV or the target that it is of", () => {
-  const said = (details) => refusalOf({ details }, picked)?.words;
+  const summary = (details) => refusalOf({ details }, picked)?.words;
   assert.equal(
-    said({ uavs: { 0: { max_range_m: ["Ensure this value is above 0."] } } }),
+    summary({ uavs: { 0: { max_range_m: ["Ensure this value is above 0."] } } }),
     "Heron: Ensure this value is above 0.",
   );
-  assert.equal(said({ "targets.1.asset": ["There is no such asset."] }), "2: There is no such asset.");
+  assert.equal(summary({ "targets.1.asset": ["There is no such asset."] }), "2: There is no such asset.");
   assert.equal(
-    said({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }),
+    summary({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }),
     "Heron is to land at a base, but there is none.",
   );
-  assert.equal(said({ name: ["Too long."] }), "Too long.");
-  assert.equal(said(null), undefined);
+  assert.equal(summary({ name: ["Too long."] }), "Too long.");
+  assert.equal(summary(null), undefined);
 });
 
 test("a plan made anew that is worse than the one on the page does not take its place", async (context) => {

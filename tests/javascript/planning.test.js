@@ -280,15 +280,20 @@ test("who is in maintenance cannot be chosen, and who left the fleet is said to 
 });
 
 test("the parts of a route are those that can be seen, and a zone has its name", () => {
-  const said = { straight_m: 20_000, on_lines_m: 5, round_zones_m: 1300, zones: [{ name: "Alum Creek reserve" }] };
+  const explanation = {
+    straight_m: 20_000,
+    on_lines_m: 5,
+    round_zones_m: 1300,
+    zones: [{ name: "Alum Creek reserve" }],
+  };
   assert.deepEqual(
-    partsOf(said).map(({ name, words }) => [name, words]),
+    partsOf(explanation).map(({ name, words }) => [name, words]),
     [
       ["straight", "Straight from target to target"],
       ["zones", "Round Alum Creek reserve"],
     ],
   );
-  assert.equal(partsOf({ ...said, round_zones_m: null }).length, 1);
+  assert.equal(partsOf({ ...explanation, round_zones_m: null }).length, 1);
 });
 
 test("a UAV that has as many targets as it may is named where it could fly to one more", () => {
@@ -298,7 +303,7 @@ test("a UAV that has as many targets as it may is named where it could fly to on
     is_enough: number < 2,
     most_targets: number ? null : 1,
   }));
-  const said = { reason: "not_with_the_others", zones: [], stretches: [], uavs };
+  const explanation = { reason: "not_with_the_others", zones: [], stretches: [], uavs };
   const plan = {
     result: {
       routes: [
@@ -308,25 +313,25 @@ test("a UAV that has as many targets as it may is named where it could fly to on
       ],
     },
   };
-  const full = fullUavs(said, plan);
+  const full = fullUavs(explanation, plan);
   assert.deepEqual(
     full.map(({ name }) => name),
     ["Alpha"],
   );
   assert.equal(
-    reasonWords(said, full),
+    reasonWords(explanation, full),
     "Alpha could fly there, but has as many targets as it may have. No other UAV has the range left after its other targets.",
   );
-  const alone = { ...said, uavs: [uavs[0], uavs[2]] };
+  const alone = { ...explanation, uavs: [uavs[0], uavs[2]] };
   assert.equal(
     reasonWords(alone, fullUavs(alone, plan)),
     "Alpha could fly there, but has as many targets as it may have.",
   );
-  assert.match(reasonWords(said, []), /none has range or battery left/);
+  assert.match(reasonWords(explanation, []), /none has range or battery left/);
 });
 
 test("each reason is said with its figures", () => {
-  const said = {
+  const explanation = {
     zones: [{ name: "Airport" }],
     stretches: [],
     access_limit_m: 10_000,
@@ -335,10 +340,13 @@ test("each reason is said with its figures", () => {
     needed_height_m: 125,
     height_limit_m: 120,
   };
-  assert.equal(reasonWords({ ...said, reason: "inside_zone" }), "It stands inside Airport.");
-  assert.match(reasonWords({ ...said, reason: "too_far_from_network" }), /32\.0\u00a0km away; up to 10\.0\u00a0km/);
+  assert.equal(reasonWords({ ...explanation, reason: "inside_zone" }), "It stands inside Airport.");
   assert.match(
-    reasonWords({ ...said, reason: "above_height_limit" }),
+    reasonWords({ ...explanation, reason: "too_far_from_network" }),
+    /32\.0\u00a0km away; up to 10\.0\u00a0km/,
+  );
+  assert.match(
+    reasonWords({ ...explanation, reason: "above_height_limit" }),
     /110\u00a0m high.*125\u00a0m; the limit is 120\u00a0m/,
   );
 });

@@ -78,19 +78,19 @@ test("simulated UAVs are not waited for: the button flies them in simulation, th
   const [tern, kite] = ["Tern", "Kite"].map((name, uav) => row(name, { uav, checks: [check("link", "failed")] }));
   const off = nextStep(preflight("connect", [tern, kite]), false, "off");
   assert.deepEqual([off.act, off.words, off.why], ["simulate", "Fly in simulation", ""]);
-  const heard = row("Kite", { uav: 1, checks: [check("link", "ok")] });
-  const starting = nextStep(preflight("upload", [tern, heard]), false, "starting");
+  const received = row("Kite", { uav: 1, checks: [check("link", "ok")] });
+  const starting = nextStep(preflight("upload", [tern, received]), false, "starting");
   assert.equal(starting.act, "connect");
   assert.match(starting.why, /Waiting for: Tern\./);
   assert.equal(nextStep(preflight("connect", [tern, kite]), false, "running").act, "connect");
-  assert.equal(nextStep(preflight("upload", [tern, heard]), false, "running").act, "upload");
+  assert.equal(nextStep(preflight("upload", [tern, received]), false, "running").act, "upload");
 });
 
 test("the mission goes to simulated UAVs once all are connected", () => {
-  const [lost, heard] = ["failed", "ok"].map((state) => row("Tern", { checks: [check("link", state)] }));
-  assert.equal(canUploadToAll(preflight("upload", [lost, heard])), false);
-  assert.equal(canUploadToAll(preflight("upload", [heard, heard])), true);
-  assert.equal(canUploadToAll(preflight("connect", [heard])), false);
+  const [lost, received] = ["failed", "ok"].map((state) => row("Tern", { checks: [check("link", state)] }));
+  assert.equal(canUploadToAll(preflight("upload", [lost, received])), false);
+  assert.equal(canUploadToAll(preflight("upload", [received, received])), true);
+  assert.equal(canUploadToAll(preflight("connect", [received])), false);
 });
 
 test("before the checks have arrived the button says what is being checked", () => {

@@ -68,9 +68,9 @@ test("targets that one thing kept from being inspected are told together, in flo
     target(3, "not-inspected", crash),
     target(4, "not-confirmed", { code: "nearest-report", message: "nearest report 94 m away", at: null }),
   ];
-  const told = reasonsOf({ targets, incidents: [] });
+  const reported = reasonsOf({ targets, incidents: [] });
   assert.deepEqual(
-    told.map(({ targets: of, words }) => [of.map(({ place }) => place), words]),
+    reported.map(({ targets: of, words }) => [of.map(({ place }) => place), words]),
     [
       [[4], "{targets} not confirmed: nearest report 94 m away."],
       [[3, 2], `{targets} not inspected: Sim 2 crashed, motor (${time}).`],

@@ -277,7 +277,7 @@ test("instruments say what they know, and that it is a guess", () => {
     tower: null,
     zone: { away_m: 0, isInside: true, zone: { name: "Reserve" } },
   };
-  const said = Object.fromEntries(
+  const summary = Object.fromEntries(
     readingsOf(drawn, {
       nearest,
       task: { kind: "at", target: 0 },
@@ -285,13 +285,13 @@ test("instruments say what they know, and that it is a guess", () => {
       labels: new Map([[0, { label: "A1", name: "Tower 1" }]]),
     }).map(({ name, value, note }) => [name, plain(note ? `${value}; ${note}` : value)]),
   );
-  assert.equal(said.task, "at A1; Tower 1");
-  assert.equal(said.agl, "~61 m");
-  assert.equal(said.speed, "~10 m/s; 1.5 m/s up");
-  assert.equal(said.heading, "~225°, south-west");
-  assert.equal(said.battery, "–");
-  assert.equal(said.wire, "~12.3 m");
-  assert.equal(said.tower, "–");
-  assert.equal(said.zone, "~0 m; inside Reserve");
+  assert.equal(summary.task, "at A1; Tower 1");
+  assert.equal(summary.agl, "~61 m");
+  assert.equal(summary.speed, "~10 m/s; 1.5 m/s up");
+  assert.equal(summary.heading, "~225°, south-west");
+  assert.equal(summary.battery, "–");
+  assert.equal(summary.wire, "~12.3 m");
+  assert.equal(summary.tower, "–");
+  assert.equal(summary.zone, "~0 m; inside Reserve");
   assert.equal(headingText(359.7), "000°, north");
 });

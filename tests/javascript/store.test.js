@@ -10,20 +10,20 @@ function selectionStore() {
 
 test("a listener hears only the names it asked for", () => {
   const { store } = selectionStore();
-  const heard = [];
-  store.listen(["other"], ({ other }) => heard.push(other));
+  const received = [];
+  store.listen(["other"], ({ other }) => received.push(other));
   store.update({ selection: { targets: [1] } });
   store.update({ other: 2 });
-  assert.deepEqual(heard, [0, 2]);
+  assert.deepEqual(received, [0, 2]);
 });
 
 test("a listener that has been ended hears nothing more", () => {
   const { store } = selectionStore();
-  const heard = [];
-  const end = store.listen(["other"], ({ other }) => heard.push(other));
+  const received = [];
+  const end = store.listen(["other"], ({ other }) => received.push(other));
   end();
   store.update({ other: 3 });
-  assert.deepEqual(heard, [0]);
+  assert.deepEqual(received, [0]);
 });
 
 test("undo and redo walk through the selections", () => {

@@ -28,9 +28,9 @@ test("a page that plans says so at once, goes on being seen meanwhile, and reads
     readFleet: async () => [],
     take: async () => {},
     connectedAgain() {},
-    tellDeleted() {},
+    showDeleted() {},
   });
-  const said = () => asked.filter(({ method }) => method === "POST").map(({ planning }) => planning);
+  const summary = () => asked.filter(({ method }) => method === "POST").map(({ planning }) => planning);
   const pass = async (ms) => {
     context.mock.timers.tick(ms);
     await settle();
@@ -38,18 +38,18 @@ test("a page that plans says so at once, goes on being seen meanwhile, and reads
 
   store.update({ mission: { id: "m", revision: 4, plan: { ground_revision: 3 }, uav_changes: [] } });
   await pass(3000);
-  assert.deepEqual(said(), [false]);
+  assert.deepEqual(summary(), [false]);
   asked.length = 0;
   store.update({ planning: { what: "Planning" } });
   await settle();
-  assert.deepEqual(said(), [true]);
+  assert.deepEqual(summary(), [true]);
   for (let look = 0; look < 10; look += 1) await pass(3000);
-  assert.ok(said().length >= 4, `${said()}: others forget a page that says nothing for 25 s`);
+  assert.ok(summary().length >= 4, `${summary()}: others forget a page that says nothing for 25 s`);
   assert.ok(asked.every(({ method }) => method === "POST"));
   store.update({ planning: { what: "Planning", share: 0.5 } });
   asked.length = 0;
   store.update({ planning: null });
   await settle();
-  assert.deepEqual(said(), [false]);
+  assert.deepEqual(summary(), [false]);
   assert.deepEqual(store.state.others, [{ name: "opal", is_me: true, is_planning: true }]);
 });

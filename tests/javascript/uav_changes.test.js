@@ -5,8 +5,8 @@ import { factsOfUav } from "../../static/js/mission/fleet.js";
 import { basisOf, EMPTY, requestOf, storedBasisOf } from "../../static/js/mission/selection.js";
 import {
   changeWords,
+  figuresInMission,
   openChanges,
-  saidInMission,
   withFleetFigures,
   withPresentFigures,
 } from "../../static/js/mission/uav_changes.js";
@@ -78,11 +78,11 @@ test("what is typed for a mission is its own, unless it is left to the fleet or 
     reserve_percent: 30,
     max_airspeed_mps: null,
   };
-  const said = saidInMission({ ...kite, own_figures: ["battery_wh"] }, values, known);
+  const said = figuresInMission({ ...kite, own_figures: ["battery_wh"] }, values, known);
   assert.deepEqual(said.own_figures, ["cruise_speed_mps", "reserve_percent"]);
   assert.equal(said.battery_wh, undefined);
   assert.deepEqual(
-    saidInMission(
+    figuresInMission(
       { ...kite, own_figures: ["cruise_speed_mps"] },
       { ...values, cruise_speed_mps: 12, reserve_percent: 20 },
       known,
@@ -105,7 +105,7 @@ test("a row says the battery that counts in the mission, else the fleet's", () =
 
 test("what the mission says itself is told when the fleet's changes, until the fleet's is taken or another is said", () => {
   const own = { ...picked, uavs: [{ ...kite, cruise_speed_mps: 7, own_figures: ["cruise_speed_mps"] }] };
-  const told = {
+  const reported = {
     uav: 0,
     id: 7,
     name: "Kite",
@@ -114,11 +114,11 @@ test("what the mission says itself is told when the fleet's changes, until the f
     said: [{ name: "cruise_speed_mps", said: 7, then: 10, now: 9 }],
   };
   assert.equal(
-    changeWords(openChanges(own, [told])[0]),
+    changeWords(openChanges(own, [reported])[0]),
     "Kite: speed 10 → 9\u00a0m/s in the fleet, but not in this mission.",
   );
-  const taken = withFleetFigures(own, openChanges(own, [told]));
+  const taken = withFleetFigures(own, openChanges(own, [reported]));
   assert.deepEqual([taken.uavs[0].cruise_speed_mps, taken.uavs[0].own_figures], [9, []]);
-  assert.deepEqual(openChanges(taken, [told]), []);
-  assert.deepEqual(openChanges({ ...own, uavs: [{ ...own.uavs[0], cruise_speed_mps: 6 }] }, [told]), []);
+  assert.deepEqual(openChanges(taken, [reported]), []);
+  assert.deepEqual(openChanges({ ...own, uavs: [{ ...own.uavs[0], cruise_speed_mps: 6 }] }, [reported]), []);
 });

@@ -98,6 +98,6 @@ def test_whether_it_flies_straight_must_have_been_told(autopilot, parameters, un
 
 
 def test_rally_points_and_whether_home_counts_are_told_by_ardupilot_alone():
-    told = own_return("ardupilot", COPTER | {"RALLY_INCL_HOME": 0.0, "RALLY_TOTAL": 3.0})
-    assert (told.shuns_home, told.rally_points) == (True, 3)
+    reported = own_return("ardupilot", COPTER | {"RALLY_INCL_HOME": 0.0, "RALLY_TOTAL": 3.0})
+    assert (reported.shuns_home, reported.rally_points) == (True, 3)
     assert (own_return("ardupilot", COPTER).shuns_home, own_return("px4", {"RTL_RETURN_ALT": 60.0}).rally_points) == (False, None)

@@ -10,7 +10,7 @@ from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_class import VehicleClass, class_of
-from tests.mavlink.commands.orders_given import told
+from tests.mavlink.commands.orders_given import reported
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load
@@ -61,7 +61,7 @@ def test_its_own_auto_is_the_mission(vehicle_type):
 @pytest.mark.parametrize(("vehicle_type", "kind"), OTHERS.items())
 def test_ardupilot_of_another_kind_is_commanded_nothing_and_told_why(vehicle_type, kind, order):
     vehicle = ArduPilot(vehicle_type=vehicle_type, heartbeats=True, is_armed=True, is_in_air=True, custom_mode=10)
-    outcome, channel = told(vehicle, order)
+    outcome, channel = reported(vehicle, order)
     assert (outcome.state, outcome.code, channel.to_vehicle) == (CommandEnd.FAILED, "vehicle-class", [])
     assert outcome.words == f"The vehicle is a {kind}: Spanwise plans for and commands multicopters only."
     assert not known(vehicle).can_be_stopped, "not into the dark either"
@@ -70,7 +70,7 @@ def test_ardupilot_of_another_kind_is_commanded_nothing_and_told_why(vehicle_typ
 @pytest.mark.parametrize("order", Order)
 def test_px4_of_another_kind_is_held_brought_back_and_landed_and_nothing_else(order):
     vehicle = Px4(vehicle_type=PLANE, heartbeats=True, is_armed=True, is_in_air=True, custom_mode=4 << 16 | 4 << 24)
-    outcome, _ = told(vehicle, order)
+    outcome, _ = reported(vehicle, order)
     assert outcome.state is (CommandEnd.APPLIED if order in STOPS else CommandEnd.FAILED), outcome
     assert outcome.code == ("" if order in STOPS else "vehicle-class")
 

@@ -7,11 +7,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour, Mode
 from mavlink.vehicle_state import VehicleState
-from tests.mavlink.mission_sync.test_upload import heard
+from tests.mavlink.mission_sync.test_upload import received
 
 
 def heartbeat(autopilot: int, custom_mode: int = 0, base_mode: int = 1, status: int = 3, kind: int = 2, **source: int) -> Any:
-    return heard(mavlink.MAVLink_heartbeat_message(kind, autopilot, base_mode, custom_mode, status, 3), **source)
+    return received(mavlink.MAVLink_heartbeat_message(kind, autopilot, base_mode, custom_mode, status, 3), **source)
 
 
 def state_of(*messages: Any) -> VehicleState:
@@ -59,7 +59,7 @@ def test_heartbeats_of_others_are_not_the_vehicles(message: Any):
 
 def test_flying_is_told_by_the_landed_state_and_else_by_ardupilots_heartbeat():
     flying = heartbeat(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, 3, base_mode=129, status=4)
-    landed = heard(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND))
+    landed = received(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND))
     assert state_of(flying).is_in_air is True
     assert state_of(flying, landed).is_in_air is False
     assert state_of(heartbeat(mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA)).is_in_air is False
@@ -69,14 +69,14 @@ def test_flying_is_told_by_the_landed_state_and_else_by_ardupilots_heartbeat():
 def test_position_home_mission_version_health_and_texts_are_kept():
     state = state_of(
         heartbeat(mavlink.MAV_AUTOPILOT_PX4),
-        heard(mavlink.MAVLink_global_position_int_message(1, 554000000, 98000000, 81500, 61500, 0, 0, 0, 0)),
-        heard(mavlink.MAVLink_home_position_message(554000001, 98000001, 20000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)),
-        heard(mavlink.MAVLink_mission_current_message(3, 6, 3)),
-        heard(mavlink.MAVLink_mission_item_reached_message(2)),
-        heard(mavlink.MAVLink_autopilot_version_message(4, 0x010D0300, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)),
-        heard(mavlink.MAVLink_sys_status_message(1 << 28, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)),
-        heard(mavlink.MAVLink_param_value_message(b"MIS_DIST_WPS", 900.0, 9, 1, 0)),
-        heard(mavlink.MAVLink_statustext_message(2, b"Need Position Estimate")),
+        received(mavlink.MAVLink_global_position_int_message(1, 554000000, 98000000, 81500, 61500, 0, 0, 0, 0)),
+        received(mavlink.MAVLink_home_position_message(554000001, 98000001, 20000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)),
+        received(mavlink.MAVLink_mission_current_message(3, 6, 3)),
+        received(mavlink.MAVLink_mission_item_reached_message(2)),
+        received(mavlink.MAVLink_autopilot_version_message(4, 0x010D0300, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)),
+        received(mavlink.MAVLink_sys_status_message(1 << 28, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)),
+        received(mavlink.MAVLink_param_value_message(b"MIS_DIST_WPS", 900.0, 9, 1, 0)),
+        received(mavlink.MAVLink_statustext_message(2, b"Need Position Estimate")),
     )
     assert (state.position, state.altitude_amsl_m, state.altitude_relative_m) == ((9.8, 55.4), 81.5, 61.5)
     assert (state.home, state.home_amsl_m) == ((9.8000001, 55.4000001), 20.0)
@@ -85,11 +85,11 @@ def test_position_home_mission_version_health_and_texts_are_kept():
     assert state.parameters == {"MIS_DIST_WPS": 900.0}
     assert state.words_since(8.0) == "Need Position Estimate"
     assert state.words_since(8.5) == ""
-    assert (state.heard_at_s, state.heartbeat_at_s, state.flavour) == (8.0, 0.0, Flavour.PX4)
+    assert (state.received_at_s, state.heartbeat_at_s, state.flavour) == (8.0, 0.0, Flavour.PX4)
 
 
 def test_only_the_newest_texts_are_kept():
-    state = state_of(*(heard(mavlink.MAVLink_statustext_message(6, f"text {number}".encode())) for number in range(25)))
+    state = state_of(*(received(mavlink.MAVLink_statustext_message(6, f"text {number}".encode())) for number in range(25)))
     assert [text for _, _, text in state.texts] == [f"text {number}" for number in range(15, 25)]
 
 

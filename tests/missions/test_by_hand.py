@@ -209,8 +209,8 @@ def test_a_speed_that_cannot_be_flown_is_refused_at_its_waypoint(here: World, cl
     leg = {"start": wished[place - 1] | {"arrival_s": 0}, "end": wished[place] | {"arrival_s": 60}, "speed_mps": speed_mps}
     for end in ("start", "end"):
         leg[end] = {name: leg[end][name] for name in ("position", "altitude_agl_m", "arrival_s")}
-    (told,) = post(client, "leg-checks", {"legs": [leg], "mission": mission["id"], "uav": 0}).json()["legs"]
-    assert told == {"is_clear": False, "zone": None, "message": faults[f"waypoints.{place}.speed_mps"][0]}
+    (reported,) = post(client, "leg-checks", {"legs": [leg], "mission": mission["id"], "uav": 0}).json()["legs"]
+    assert reported == {"is_clear": False, "zone": None, "message": faults[f"waypoints.{place}.speed_mps"][0]}
 
 
 def test_against_the_wind_less_may_be_wished(here: World, client: Client) -> None:

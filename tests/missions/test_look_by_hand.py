@@ -41,16 +41,16 @@ def test_what_is_told_while_it_is_dragged_is_what_is_kept(here: World, client: C
     mission = planned_with(here, client)
     wished = as_wished(mission)
     wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
-    told = look(client, mission, wished)
+    reported = look(client, mission, wished)
     kept = put(client, mission, wished).json()["plan"]["routes"][0]
-    assert told["faults"] == {}
-    assert {name: told[name] for name in ("length_m", "duration_s", "energy_wh", "battery_percent")} == {
+    assert reported["faults"] == {}
+    assert {name: reported[name] for name in ("length_m", "duration_s", "energy_wh", "battery_percent")} == {
         name: kept[name] for name in ("length_m", "duration_s", "energy_wh", "battery_percent")
     }
-    assert [point["arrival_s"] for point in told["waypoints"]] == kept["arrival_s"]
-    assert [point["battery_left_percent"] for point in told["waypoints"]] == kept["battery_left_percent"]
+    assert [point["arrival_s"] for point in reported["waypoints"]] == kept["arrival_s"]
+    assert [point["battery_left_percent"] for point in reported["waypoints"]] == kept["battery_left_percent"]
     before = mission["plan"]["routes"][0]
-    assert (told["length_m"] > before["length_m"] + 100, told["battery_percent"] < before["battery_percent"]) == (True, True)
+    assert (reported["length_m"] > before["length_m"] + 100, reported["battery_percent"] < before["battery_percent"]) == (True, True)
 
 
 def test_the_route_as_it_would_be_flown_is_told_as_it_is_kept(here: World, client: Client) -> None:
@@ -68,18 +68,18 @@ def test_against_the_wind_the_true_speed_is_told(here: World, client: Client) ->
     wind = {"wind": [{"altitude_agl_m": 50, "speed_mps": 6, "from_deg": 90}], "temperature_c": 15}
     mission = planned_with(here, client, conditions=wind)
     wished = as_wished(mission)
-    told = look(client, mission, wished)["waypoints"]
-    assert told[0]["speed_mps"] is None
+    reported = look(client, mission, wished)["waypoints"]
+    assert reported[0]["speed_mps"] is None
     for place in range(1, len(wished)):
         (west, south), (east, north) = (wished[at]["position"] for at in (place - 1, place))
         if wished[place - 1]["position"] == wished[place]["position"]:
-            assert told[place]["speed_mps"] is None
+            assert reported[place]["speed_mps"] is None
             continue
         x_m, y_m = (east - west) * math.cos(math.radians(56.0)), north - south  # a ratio: degrees do
         along_mps = -6.0 * x_m / math.hypot(x_m, y_m)  # it blows from the east
         left_mps = along_mps + math.sqrt(14.0**2 - (6.0**2 - along_mps**2))
-        assert told[place]["speed_mps"] == pytest.approx(min(12.0, left_mps), abs=0.1)
-    assert min(point["speed_mps"] or 12.0 for point in told) < 10.0  # of 12 m/s as planned
+        assert reported[place]["speed_mps"] == pytest.approx(min(12.0, left_mps), abs=0.1)
+    assert min(point["speed_mps"] or 12.0 for point in reported) < 10.0  # of 12 m/s as planned
 
 
 def test_a_slower_leg_lets_a_later_one_meet_a_zone_that_has_come_into_force(here: World, client: Client) -> None:
@@ -99,9 +99,9 @@ def test_a_slower_leg_lets_a_later_one_meet_a_zone_that_has_come_into_force(here
     zone_around((0.0, 0.0), 0.0001, name="elsewhere, so that the ground has changed")
     assert look(client, mission, wished)["faults"] == {}
     wished[slow]["speed_mps"] = 0.6
-    told = look(client, mission, wished)
-    assert told["faults"][f"legs.{last}"] == "This leg meets Air show."
-    assert told["waypoints"][last]["arrival_s"] > route["arrival_s"][last] + 300
+    reported = look(client, mission, wished)
+    assert reported["faults"][f"legs.{last}"] == "This leg meets Air show."
+    assert reported["waypoints"][last]["arrival_s"] > route["arrival_s"][last] + 300
 
 
 def test_all_that_is_wrong_is_told_beside_the_figures_and_nothing_is_kept(here: World, client: Client) -> None:
@@ -111,19 +111,19 @@ def test_all_that_is_wrong_is_told_beside_the_figures_and_nothing_is_kept(here: 
     wished.insert(1, {"position": [10.003, 55.9935], "altitude_agl_m": 70.0, "was": None})
     wished[2]["altitude_agl_m"] = 500.0
     wished.insert(2, {"position": [10.2, 55.9], "altitude_agl_m": 100.0, "was": None})
-    told = look(client, mission, wished)
-    assert {"legs.0", "waypoints.3.altitude_agl_m", "waypoints"} <= set(told["faults"])
-    assert "lacks" in told["faults"]["waypoints"]
-    assert told["length_m"] > 20_000
-    assert told["battery_percent"] < 20
+    reported = look(client, mission, wished)
+    assert {"legs.0", "waypoints.3.altitude_agl_m", "waypoints"} <= set(reported["faults"])
+    assert "lacks" in reported["faults"]["waypoints"]
+    assert reported["length_m"] > 20_000
+    assert reported["battery_percent"] < 20
     assert client.get(f"/api/v1/missions/{mission['id']}").json()["revision"] == mission["revision"]
 
 
 def test_what_is_no_route_has_faults_and_no_figures(here: World, client: Client) -> None:
     mission = planned_with(here, client)
-    told = look(client, mission, as_wished(mission)[1:])
-    assert told["faults"] == {"waypoints": "Start, end and targets stay on the route. Take a target out of the mission instead."}
-    assert (told["length_m"], told["waypoints"]) == (None, [])
+    reported = look(client, mission, as_wished(mission)[1:])
+    assert reported["faults"] == {"waypoints": "Start, end and targets stay on the route. Take a target out of the mission instead."}
+    assert (reported["length_m"], reported["waypoints"]) == (None, [])
 
 
 def test_where_nobody_flies_there_is_nothing_to_look_at(here: World, client: Client) -> None:

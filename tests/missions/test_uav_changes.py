@@ -119,11 +119,11 @@ def test_a_planned_uav_that_no_longer_flies_is_said_until_it_is_planned_without_
 
 
 def test_figures_of_this_mission_alone_are_its_own_whatever_becomes_of_the_uav(here: World, client: Client, kite: int) -> None:
-    said = made(client, here, {"id": kite, "cruise_speed_mps": 7.0}, name="Slow")
+    stated = made(client, here, {"id": kite, "cruise_speed_mps": 7.0}, name="Slow")
     as_it_is = made(client, here, {"id": kite, "cruise_speed_mps": 10.0}, name="As it is")
-    assert [mission["uavs"][0]["own_figures"] for mission in (said, as_it_is)] == [["cruise_speed_mps"], []]
+    assert [mission["uavs"][0]["own_figures"] for mission in (stated, as_it_is)] == [["cruise_speed_mps"], []]
     change(client, kite, {"cruise_speed_mps": 9.0})
-    assert figures(now(client, said)) == {}
+    assert figures(now(client, stated)) == {}
     assert figures(now(client, as_it_is)) == {"cruise_speed_mps": (10.0, 9.0)}
 
 
@@ -133,14 +133,14 @@ def test_a_figure_of_this_mission_alone_is_told_when_the_fleets_changes(here: Wo
     assert now(client, mission)["uav_changes"] == []
     change(client, kite, {"cruise_speed_mps": 9.0})
     found = now(client, mission)
-    told = [{"name": "cruise_speed_mps", "said": 7.0, "then": 10.0, "now": 9.0}]
-    assert [(change["said"], change["figures"]) for change in found["uav_changes"]] == [(told, [])]
+    reported = [{"name": "cruise_speed_mps", "said": 7.0, "then": 10.0, "now": 9.0}]
+    assert [(change["said"], change["figures"]) for change in found["uav_changes"]] == [(reported, [])]
     assert found["uav_changes"][0]["message"] == "Kite: speed 10 → 9 m/s in the fleet, but not in this mission."
     assert (found["is_stale"], found["stale_causes"]) == (False, [])
     patch(client, f"missions/{mission['id']}", {"uavs": found["uavs"]})
-    assert [change["said"] for change in now(client, mission)["uav_changes"]] == [told]
+    assert [change["said"] for change in now(client, mission)["uav_changes"]] == [reported]
     copy = post(client, f"missions/{mission['id']}/duplicate").json()
-    assert [change["said"] for change in copy["uav_changes"]] == [told]
+    assert [change["said"] for change in copy["uav_changes"]] == [reported]
 
 
 def test_a_figure_that_is_said_anew_or_as_in_the_fleet_by_now_is_not_told(here: World, client: Client, kite: int) -> None:
@@ -187,8 +187,8 @@ def test_a_mission_of_before_batteries_says_that_there_is_one_now(here: World, c
 def test_a_page_that_has_it_open_hears_of_it(here: World, client: Client, kite: int) -> None:
     mission = made(client, here, {"id": kite})
     Uav.objects.filter(pk=kite).update(max_range_m=9_000.0)
-    heard = post(client, f"missions/{mission['id']}/presence", {"editor": "page"}).json()
-    assert [change["figures"] for change in heard["uav_changes"]] == [[{"name": "max_range_m", "kept": None, "now": 9000.0}]]
+    received = post(client, f"missions/{mission['id']}/presence", {"editor": "page"}).json()
+    assert [change["figures"] for change in received["uav_changes"]] == [[{"name": "max_range_m", "kept": None, "now": 9000.0}]]
 
 
 def test_a_copy_keeps_what_is_its_own(here: World, client: Client, kite: int) -> None:

@@ -43,20 +43,24 @@ def test_a_report_is_within_the_bound_as_the_ellipse_lies(east_m: float, north_m
     assert found.error_m == pytest.approx(np.hypot(east_m, north_m), abs=1e-6)
 
 
-def a_session(*, is_held: bool, heard_ago_s: float) -> Any:
-    return SimpleNamespace(is_held=is_held, heard_s=time.time() - heard_ago_s)
+def a_session(*, is_held: bool, last_message_ago_s: float) -> Any:
+    return SimpleNamespace(is_held=is_held, last_message_s=time.time() - last_message_ago_s)
 
 
 def test_a_gateway_tells_of_its_links_and_losses() -> None:
-    sessions = [a_session(is_held=True, heard_ago_s=0), a_session(is_held=True, heard_ago_s=600), a_session(is_held=False, heard_ago_s=0)]
+    sessions = [
+        a_session(is_held=True, last_message_ago_s=0),
+        a_session(is_held=True, last_message_ago_s=600),
+        a_session(is_held=False, last_message_ago_s=0),
+    ]
     gateway: Any = SimpleNamespace(
         store=SimpleNamespace(stored=7, duplicates=2, lost=1, records=[1, 2, 3], is_away=True),
         lost_here=Counter({"unsigned": 4}),
         sessions=dict(enumerate(sessions)),
         dropped=lambda: {"unknown-system": 5},
     )
-    with gateway_figures.figures_of(gateway) as told:
-        values = {(sample.name, *sample.labels.values()): sample.value for family in told.collect() for sample in family.samples}
+    with gateway_figures.figures_of(gateway) as reported:
+        values = {(sample.name, *sample.labels.values()): sample.value for family in reported.collect() for sample in family.samples}
     assert values == {
         ("spanwise_gateway_links", "heard"): 1, ("spanwise_gateway_links", "silent"): 1, ("spanwise_gateway_links", "elsewhere"): 1,
         ("spanwise_gateway_losses_total", "unsigned"): 4, ("spanwise_gateway_losses_total", "unknown-system"): 5,
@@ -74,15 +78,15 @@ def test_beat_tells_of_jobs_by_queue_and_of_a_graph_that_is_behind() -> None:
     counts = dict.fromkeys(["nodes", "edges", "components", "excluded_nodes", "excluded_edges"], 0)
     GraphSnapshot.objects.create(ground_revision=1, rules={}, arrays=b"", arrays_sha256="", build_s=0.1, **counts)
     Ground.objects.update_or_create(pk=1, defaults={"revision": 2, "changed_at": timezone.now() - timedelta(seconds=700)})
-    told = InstallationState(app).read()
-    assert told[system_metrics.DATABASE] == told[system_metrics.REDIS] == {(): 1.0}
-    assert told[system_metrics.JOBS]["planning", "queued"] == 2
-    assert told[system_metrics.JOBS]["simulation", "queued"] == 1
-    assert told[system_metrics.JOBS]["data", "queued"] == 0
-    assert 89 <= told[system_metrics.JOB_AGE]["planning", "queued"] < 500
-    assert told[system_metrics.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
-    assert told[system_metrics.GRAPH_BEHIND][()] >= 699
-    assert told.keys() == {one.name for one in system_metrics.DESCRIBED}
+    reported = InstallationState(app).read()
+    assert reported[system_metrics.DATABASE] == reported[system_metrics.REDIS] == {(): 1.0}
+    assert reported[system_metrics.JOBS]["planning", "queued"] == 2
+    assert reported[system_metrics.JOBS]["simulation", "queued"] == 1
+    assert reported[system_metrics.JOBS]["data", "queued"] == 0
+    assert 89 <= reported[system_metrics.JOB_AGE]["planning", "queued"] < 500
+    assert reported[system_metrics.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
+    assert reported[system_metrics.GRAPH_BEHIND][()] >= 699
+    assert reported.keys() == {one.name for one in system_metrics.DESCRIBED}
 
 
 def test_without_redis_the_rest_is_told(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,9 +31,9 @@ print(gc.get_freeze_count() >= 800_000, sum(answer() is not None for answer in m
 
 
 def test_what_grew_old_while_it_was_used_is_found_once_it_is_garbage():
-    told = subprocess.run([sys.executable, "-c", ANSWERS], capture_output=True, text=True, check=True, timeout=60)
+    reported = subprocess.run([sys.executable, "-c", ANSWERS], capture_output=True, text=True, check=True, timeout=60)
 
-    assert told.stdout.split() == ["True", "0"]
+    assert reported.stdout.split() == ["True", "0"]
 
 
 BEFORE_A_FORK = """
@@ -47,9 +47,9 @@ print(gc.get_freeze_count() > 0.9 * before)
 
 
 def test_a_worker_keeps_its_start_before_it_makes_processes_which_then_share_it():
-    told = subprocess.run([sys.executable, "-c", BEFORE_A_FORK], capture_output=True, text=True, check=True, timeout=60)
+    reported = subprocess.run([sys.executable, "-c", BEFORE_A_FORK], capture_output=True, text=True, check=True, timeout=60)
 
-    assert told.stdout.split() == ["True"]
+    assert reported.stdout.split() == ["True"]
 
 
 OWN_MEMORY = """
@@ -80,9 +80,9 @@ print(left() is None, most_mib - before_mib < 10, most_mib - own_mib() > 40)
 
 @only_gnu
 def test_after_a_task_circles_go_and_memory_before_something_that_stays_is_given_back():
-    told = subprocess.run([sys.executable, "-c", OWN_MEMORY + AFTER_A_TASK], capture_output=True, text=True, check=True, timeout=60)
+    reported = subprocess.run([sys.executable, "-c", OWN_MEMORY + AFTER_A_TASK], capture_output=True, text=True, check=True, timeout=60)
 
-    assert told.stdout.split() == ["True", "True", "True"]
+    assert reported.stdout.split() == ["True", "True", "True"]
 
 
 WORKER_PROCESS = """
@@ -107,9 +107,9 @@ print(is_there_elsewhere, second() is None)
 
 
 def test_a_worker_process_gives_back_after_each_task_and_nothing_else_does():
-    told = subprocess.run([sys.executable, "-c", WORKER_PROCESS], capture_output=True, text=True, check=True, timeout=60)
+    reported = subprocess.run([sys.executable, "-c", WORKER_PROCESS], capture_output=True, text=True, check=True, timeout=60)
 
-    assert told.stdout.split() == ["True", "True"]
+    assert reported.stdout.split() == ["True", "True"]
 
 
 NOW_AND_THEN = """
@@ -137,6 +137,6 @@ print(left() is None, most_mib - own_mib() > 40)
 
 @only_gnu
 def test_in_a_program_that_never_ends_circles_go_and_what_is_free_is_given_back():
-    told = subprocess.run([sys.executable, "-c", OWN_MEMORY + NOW_AND_THEN], capture_output=True, text=True, check=True, timeout=60)
+    reported = subprocess.run([sys.executable, "-c", OWN_MEMORY + NOW_AND_THEN], capture_output=True, text=True, check=True, timeout=60)
 
-    assert told.stdout.split() == ["True", "True"]
+    assert reported.stdout.split() == ["True", "True"]

@@ -47,13 +47,13 @@ def test_every_line_is_json_and_none_has_a_secret(tmp_path: Path) -> None:
     script.write_text(TALKATIVE)
     lines, code = written(sys.executable, "-m", "operation.json_lines", str(script))
     assert code == 1
-    said = [line["message"] for line in lines]
-    assert said[:6] == ["plain", "of a fork", "no end yet, now", "an object already", "{no object}", "beside it"]
-    assert said[6].startswith("UserWarning: mind\nthis")
-    assert said[7] == "ZeroDivisionError was not caught"
+    stated = [line["message"] for line in lines]
+    assert stated[:6] == ["plain", "of a fork", "no end yet, now", "an object already", "{no object}", "beside it"]
+    assert stated[6].startswith("UserWarning: mind\nthis")
+    assert stated[7] == "ZeroDivisionError was not caught"
     assert "division by zero" in lines[7]["exception"]
-    assert said[8] == "before set-up, Bearer ..."
-    assert said[9] == "ValueError was not caught"
+    assert stated[8] == "before set-up, Bearer ..."
+    assert stated[9] == "ValueError was not caught"
     assert lines[9]["exception"].endswith("token=...")
     assert {line.get("program") for line in lines if line["message"] != "an object already"} == {"tried"}
 

@@ -32,7 +32,7 @@ def _no_other_loops(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(params=["tcp", "unix"])
-def told_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -> Iterator[str]:
+def served_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -> Iterator[str]:
     place = "127.0.0.1:0" if request.param == "tcp" else f"unix:{tmp_path / 'told.sock'}"
     address = address_of(place)
     assert address is not None
@@ -43,38 +43,38 @@ def told_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -
     exposition.close()
 
 
-def probe(*arguments: str, told_at: str = "") -> tuple[int, str, str]:
-    environment = {**os.environ, "SPANWISE_METRICS": told_at}
+def probe(*arguments: str, served_at: str = "") -> tuple[int, str, str]:
+    environment = {**os.environ, "SPANWISE_METRICS": served_at}
     command = [sys.executable, "-m", "operation.probe", *arguments]
     answer = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
     return answer.returncode, answer.stdout.strip(), answer.stderr.strip()
 
 
-def test_a_program_that_lives_and_can_work_says_so(told_at: str) -> None:
-    assert probe("live", told_at=told_at) == (0, '{"alive": true}', "")
-    assert probe("ready", told_at)[:2] == (0, '{"ready": true}')
+def test_a_program_that_lives_and_can_work_says_so(served_at: str) -> None:
+    assert probe("live", served_at=served_at) == (0, '{"alive": true}', "")
+    assert probe("ready", served_at)[:2] == (0, '{"ready": true}')
 
 
-def test_one_that_cannot_work_lives_all_the_same(told_at: str, faults: list[str]) -> None:
+def test_one_that_cannot_work_lives_all_the_same(served_at: str, faults: list[str]) -> None:
     faults.append("the database cannot be reached")
-    assert probe("ready", told_at=told_at)[:2] == (1, '{"ready": false, "reasons": ["the database cannot be reached"]}')
-    assert probe("live", told_at=told_at)[0] == 0
+    assert probe("ready", served_at=served_at)[:2] == (1, '{"ready": false, "reasons": ["the database cannot be reached"]}')
+    assert probe("live", served_at=served_at)[0] == 0
 
 
-def test_a_loop_that_hangs_is_no_life(told_at: str) -> None:
+def test_a_loop_that_hangs_is_no_life(served_at: str) -> None:
     pulse.beat("the loop", within_s=-1.0)
     try:
-        assert probe("live", told_at=told_at)[:2] == (1, '{"alive": false, "reasons": ["the loop hangs"]}')
+        assert probe("live", served_at=served_at)[:2] == (1, '{"alive": false, "reasons": ["the loop hangs"]}')
         pulse.beat("the loop", within_s=-1.0, excuse=lambda: True)
-        assert probe("live", told_at=told_at)[0] == 0
+        assert probe("live", served_at=served_at)[0] == 0
         pulse.beat("the loop", within_s=3_600.0)
-        assert probe("live", told_at=told_at)[0] == 0
+        assert probe("live", served_at=served_at)[0] == 0
     finally:
         pulse.rest("the loop")
 
 
 def test_where_nobody_tells_there_is_no_life_and_without_an_address_no_question(tmp_path: Path) -> None:
-    assert probe("live", told_at=f"unix:{tmp_path / 'nobody'}")[0] == 1
+    assert probe("live", served_at=f"unix:{tmp_path / 'nobody'}")[0] == 1
     assert probe("live")[0] == 2
     assert probe("something")[0] == 2
 
@@ -85,9 +85,9 @@ def test_what_is_no_address_is_refused(text: str) -> None:
         address_of(text)
 
 
-def test_metrics_are_told_at_the_same_address_and_nothing_else_is(told_at: str) -> None:
-    assert b"spanwise_http_requests_total" in _get(told_at, "/metrics")[1]
-    assert _get(told_at, "/admin/")[0] == 404
+def test_metrics_are_told_at_the_same_address_and_nothing_else_is(served_at: str) -> None:
+    assert b"spanwise_http_requests_total" in _get(served_at, "/metrics")[1]
+    assert _get(served_at, "/admin/")[0] == 404
 
 
 def test_an_address_that_somebody_else_holds_is_waited_for() -> None:
@@ -101,13 +101,13 @@ def test_an_address_that_somebody_else_holds_is_waited_for() -> None:
     exposition.close()
 
 
-def _get(told_at: str, path: str) -> tuple[int, bytes]:
+def _get(served_at: str, path: str) -> tuple[int, bytes]:
     connection = http.client.HTTPConnection("localhost", timeout=TIMEOUT_S)
-    if told_at.startswith("unix:"):
+    if served_at.startswith("unix:"):
         connection.sock = socket.socket(socket.AF_UNIX)
-        connection.sock.connect(told_at.removeprefix("unix:"))
+        connection.sock.connect(served_at.removeprefix("unix:"))
     else:
-        host, _, port = told_at.rpartition(":")
+        host, _, port = served_at.rpartition(":")
         connection.sock = socket.create_connection((host, int(port)))
     connection.request("GET", path)
     answer = connection.getresponse()

@@ -77,9 +77,9 @@ def test_on_spans_go_where_the_environment_says_and_hold_no_secret(collector: tu
     }  # fmt: skip
     subprocess.run([sys.executable, "-c", ONE_REQUEST], cwd=PROJECT_DIR, env=environment, check=True, timeout=TIMEOUT_S)
     assert {path for path, _ in came} == {"/v1/traces"}
-    told = b"".join(body for _, body in came)
-    assert b"spanwise-web" in told
-    assert b"sign-in" in told
-    assert b"holder-of-the-link" not in told
-    assert b"spw_secret" not in told
-    assert b"healthz" not in told
+    reported = b"".join(body for _, body in came)
+    assert b"spanwise-web" in reported
+    assert b"sign-in" in reported
+    assert b"holder-of-the-link" not in reported
+    assert b"spw_secret" not in reported
+    assert b"healthz" not in reported

@@ -58,11 +58,11 @@ def test_it_is_said_beforehand_how_long_it_takes(capsys):
 def test_what_goes_on_is_said_now_and_then(capsys, monkeypatch):
     monkeypatch.setattr(install, "LOG_INTERVAL_S", 0.0)
     monkeypatch.setattr(install, "TERMINAL_INTERVAL_S", 0.01)
-    told = threading.Event()
+    reported = threading.Event()
 
     def compile_core(step: Step) -> None:
         step.detail = "graph, 1 of 4 parts"
-        told.wait(0.5)
+        reported.wait(0.5)
 
     carry_out([Step("core", 1.0, compile_core)])
     assert "core (graph, 1 of 4 parts)" in capsys.readouterr().out

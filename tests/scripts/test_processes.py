@@ -88,10 +88,10 @@ def test_a_program_ends_its_predecessors_leftovers_and_lock_before_it_starts(sta
     leftover = start(SLEEPER, folder)
     successor = start(_through_start_program(folder, "--stale", str(lock)), tmp_path)
     assert successor.stdout is not None
-    said = [successor.stdout.readline() for _ in range(2)]
+    stated = [successor.stdout.readline() for _ in range(2)]
     assert leftover.wait() == -signal.SIGTERM
     assert not lock.exists()
-    assert said[0].startswith("removed server.pid")
+    assert stated[0].startswith("removed server.pid")
     assert processes_in([folder]) == [successor.pid]
 
 

@@ -23,8 +23,8 @@ def test_a_line_that_cannot_be_kept_is_lost_and_no_more(monkeypatch: pytest.Monk
         monkeypatch.setattr(sys, "stderr", Forgiving(words))
         for number in range(3):
             handler.emit(line())
-            told = number
-    assert told == 2
+            reported = number
+    assert reported == 2
 
 
 def test_what_can_be_written_is_written(tmp_path: Path) -> None:

@@ -34,10 +34,10 @@ def taken(holder: str = "one/a", *flown: Simulation, most_load: float = 60.0) ->
     return take_simulation(holder=holder, lease_s=5.0, most_load=most_load, flown=[simulation.pk for simulation in flown])
 
 
-def lose(simulation: Simulation, **told: bool) -> None:
+def lose(simulation: Simulation, **reported: bool) -> None:
     """Its simulator is dead: the lease runs out."""
     Simulation.objects.filter(pk=simulation.pk).update(lease_expires_at=LONG_AGO)
-    simulation.vehicles.update(told=told)
+    simulation.vehicles.update(reported=reported)
 
 
 def fresh(simulation: Simulation) -> Simulation:

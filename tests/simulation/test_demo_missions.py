@@ -38,9 +38,11 @@ def planned_only(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def make(person: User) -> list[Mission]:
     since = timezone.now()
-    told: list[str] = []
-    while make_demo_missions(organisation=person.organisation, actor=person, since=since, progress=lambda words, share: told.append(words)):
-        assert len(told) <= len(DEMO_MISSIONS), "each step plans one"
+    reported: list[str] = []
+    while make_demo_missions(
+        organisation=person.organisation, actor=person, since=since, progress=lambda words, share: reported.append(words)
+    ):
+        assert len(reported) <= len(DEMO_MISSIONS), "each step plans one"
     keys = missions_made(organisation=person.organisation, since=since)
     made = {mission.name: mission for mission in Mission.objects.filter(pk__in=keys)}
     return [made[demo.name] for demo in DEMO_MISSIONS if demo.name in made]

@@ -71,8 +71,8 @@ def of_kind(client: Client, mission: Mission, kind: str) -> list[dict]:
 
 def report(uav: Uav, second: int, *, is_in_air: bool | None, boot: str = "boot", mission: Mission | None = None) -> None:
     at = timezone.now() + timedelta(seconds=second)
-    told = Measurement(longitude_deg=10.0, latitude_deg=55.0, mode="Mission", is_in_air=is_in_air)
-    store_records([NewRecord(uav.pk, LinkKind.MAVLINK, boot, second, at, at, told, mission_id=mission and mission.pk)])
+    reported = Measurement(longitude_deg=10.0, latitude_deg=55.0, mode="Mission", is_in_air=is_in_air)
+    store_records([NewRecord(uav.pk, LinkKind.MAVLINK, boot, second, at, at, reported, mission_id=mission and mission.pk)])
 
 
 def test_an_injected_fault_names_the_person_and_the_uav(client, mission, person):
@@ -93,8 +93,8 @@ def test_take_off_and_landing_are_told_once_each(client, mission, tern):
     for second, is_in_air in enumerate([False, True, True, None, True, False, False]):
         report(tern, second, is_in_air=is_in_air)
     report(tern, 2, is_in_air=True)  # a record that comes again
-    told = [event for event in events(client, mission) if event["kind"] in ("take-off", "landing")]
-    assert [(event["kind"], event["message"]) for event in told] == [("landing", "Tern landed"), ("take-off", "Tern took off")]
+    reported = [event for event in events(client, mission) if event["kind"] in ("take-off", "landing")]
+    assert [(event["kind"], event["message"]) for event in reported] == [("landing", "Tern landed"), ("take-off", "Tern took off")]
     report(tern, 10, is_in_air=True)
     assert len(of_kind(client, mission, "take-off")) == 2
 
@@ -117,14 +117,14 @@ def test_a_cursor_that_nobody_gave_is_refused(client, mission, key):
 
 def test_reports_in_one_batch_and_late_ones_tell_the_same(client, mission, tern):
     begin = timezone.now()
-    told = [
+    reported = [
         NewRecord(
             tern.pk, LinkKind.MAVLINK, "boot", second, begin + timedelta(seconds=second), begin + timedelta(seconds=9),
             Measurement(is_in_air=second in (2, 3, 4)),
         )
         for second in range(8)
     ]  # fmt: skip
-    store_records(told[5:] + told[:5])
+    store_records(reported[5:] + reported[:5])
     assert [kind for (kind,) in FlightEvent.objects.order_by("at").values_list("kind")] == ["take-off", "landing"]
 
 
@@ -150,10 +150,10 @@ def test_a_uav_that_flies_for_no_mission_is_in_no_log(tern, mission):
 def test_commands_are_told_step_by_step_and_who_gave_them(client, mission, tern, person):
     command_uav(uav=tern, kind=CommandKind.START, actor=person, why="Weather is fine")
     carry(tern)
-    told = [event for event in events(client, mission) if event["values"].get("command_kind") == "start"]
-    assert [event["kind"] for event in told] == ["command-done", "command-sent", "command-given"]
-    assert (told[-1]["who"], told[0]["who"]) == ("Ada Marsh", None)
-    assert told[-1]["message"] == "Tern: Start the mission, given by Ada Marsh: Weather is fine"
+    reported = [event for event in events(client, mission) if event["values"].get("command_kind") == "start"]
+    assert [event["kind"] for event in reported] == ["command-done", "command-sent", "command-given"]
+    assert (reported[-1]["who"], reported[0]["who"]) == ("Ada Marsh", None)
+    assert reported[-1]["message"] == "Tern: Start the mission, given by Ada Marsh: Weather is fine"
     uploads = [event["kind"] for event in events(client, mission) if event["values"].get("command_kind") == "upload-mission"]
     assert uploads == ["command-done", "command-sent", "command-given"]
 
@@ -164,17 +164,17 @@ def test_an_alert_is_opened_raised_acknowledged_and_resolved(client, mission, te
     alert = open_alert(level=AlertLevel.CRITICAL, values={"uav": "Tern", "seconds": 30}, **about)
     acknowledge_alert(alert=alert, actor=person)
     close_alert(uav=tern, code="link-lost")
-    told = [event for event in events(client, mission) if event["kind"].startswith("alert-")]
-    assert [(event["kind"], event["level"], event["who"]) for event in told] == [
+    reported = [event for event in events(client, mission) if event["kind"].startswith("alert-")]
+    assert [(event["kind"], event["level"], event["who"]) for event in reported] == [
         ("alert-resolved", None, None),
         ("alert-acknowledged", None, "Ada Marsh"),
         ("alert-raised", "critical", None),
         ("alert-opened", "warning", None),
     ]
-    assert told[0]["message"] == "Resolved: Tern: no telemetry for 30 s."
+    assert reported[0]["message"] == "Resolved: Tern: no telemetry for 30 s."
     german = [event for event in events(client, mission, language="de") if event["kind"] == "alert-resolved"]
-    assert german[0]["message"] == told[0]["message"]
-    assert german[0]["values"]["message"] != told[0]["values"]["message"]
+    assert german[0]["message"] == reported[0]["message"]
+    assert german[0]["values"]["message"] != reported[0]["values"]["message"]
 
 
 def test_targets_the_mission_and_a_crash_are_told(client, mission, tern):

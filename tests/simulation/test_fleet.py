@@ -29,7 +29,7 @@ KEY = bytes(range(32))
 
 
 class Ear:
-    """A station's socket; `heard` are the messages of all that came since it was asked last."""
+    """A station's socket; `received` are the messages of all that came since it was asked last."""
 
     def __init__(self, port: int = 0) -> None:
         self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -38,7 +38,7 @@ class Ear:
         self.port = self.socket.getsockname()[1]
         self.writer = FrameWriter(255, 190)
 
-    def heard(self):
+    def received(self):
         found = []
         while True:
             try:
@@ -47,10 +47,10 @@ class Ear:
                 return found
             found += [(frame, message_of(frame)) for frame in frames_of_datagram(datagram, Counter())]
 
-    def hears(self, kind, system=None):
-        return [message for frame, message in self.heard() if message.get_type() == kind and system in (None, frame.system)]
+    def receives(self, kind, system=None):
+        return [message for frame, message in self.received() if message.get_type() == kind and system in (None, frame.system)]
 
-    def tell(self, port, message):
+    def notify(self, port, message):
         self.socket.sendto(self.writer.frame_of(message, time.time()), ("127.0.0.1", port))
 
     def __enter__(self):
@@ -65,27 +65,27 @@ def test_all_uavs_of_a_batch_talk_to_all_given_and_to_who_asks():
         launches = [Launch(system, place, talks_to=[("127.0.0.1", given.port)]) for system, place in enumerate(in_a_row(AT, 3, 20.0), 1)]
         with flying(launches, speed=10.0) as fleet:
             systems: set[int] = set()
-            wait_for(lambda: systems.update(frame.system for frame, _ in given.heard()) or systems == {1, 2, 3})
-            asking.tell(fleet.uavs[1].radio.port, mavlink.MAVLink_param_request_read_message(2, 1, b"RTL_TYPE", -1))
-            wait_for(lambda: asking.hears("PARAM_VALUE", 2), "the answer")
-            wait_for(lambda: asking.hears("GLOBAL_POSITION_INT", 2), "what all are told")
-            given.heard()
-            asking.tell(fleet.uavs[1].radio.port, mavlink.MAVLink_param_request_read_message(2, 1, b"RTL_TYPE", -1))
-            wait_for(lambda: asking.hears("PARAM_VALUE", 2))
-            assert given.hears("PARAM_VALUE") == [], "an answer is for who asked"
+            wait_for(lambda: systems.update(frame.system for frame, _ in given.received()) or systems == {1, 2, 3})
+            asking.notify(fleet.uavs[1].radio.port, mavlink.MAVLink_param_request_read_message(2, 1, b"RTL_TYPE", -1))
+            wait_for(lambda: asking.receives("PARAM_VALUE", 2), "the answer")
+            wait_for(lambda: asking.receives("GLOBAL_POSITION_INT", 2), "what all are told")
+            given.received()
+            asking.notify(fleet.uavs[1].radio.port, mavlink.MAVLink_param_request_read_message(2, 1, b"RTL_TYPE", -1))
+            wait_for(lambda: asking.receives("PARAM_VALUE", 2))
+            assert given.receives("PARAM_VALUE") == [], "an answer is for who asked"
 
 
 def test_one_that_is_ended_is_silent_and_lets_its_port_go_while_the_others_fly_on():
     with Ear() as ear:
         launches = [Launch(system, place, talks_to=[("127.0.0.1", ear.port)]) for system, place in enumerate(in_a_row(AT, 2, 20.0), 1)]
         with flying(launches, speed=10.0) as fleet:
-            wait_for(lambda: ear.hears("HEARTBEAT", 1), "the first one")
+            wait_for(lambda: ear.receives("HEARTBEAT", 1), "the first one")
             port = fleet.uavs[0].radio.port
             fleet.post(Change(system=1, ends=True))
             wait_for(lambda: fleet.uavs[0].radio.socket.fileno() < 0, "its end")
-            ear.heard()
-            wait_for(lambda: ear.hears("HEARTBEAT", 2), "the other one")
-            wait_for(lambda: 1 not in {frame.system for frame, _ in ear.heard()}, "silence")
+            ear.received()
+            wait_for(lambda: ear.receives("HEARTBEAT", 2), "the other one")
+            wait_for(lambda: 1 not in {frame.system for frame, _ in ear.received()}, "silence")
             with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as another:
                 another.bind(("127.0.0.1", port))
             assert fleet.report().failed == 0
@@ -96,14 +96,14 @@ def test_a_lost_link_is_lost_both_ways_for_as_long_as_simulated_time_says():
         launch = Launch(1, AT, faults=Faults(link_lost_until_s=4.0), talks_to=[("127.0.0.1", ear.port)])
         with flying([launch], speed=10.0) as fleet:
             uav = fleet.uavs[0]
-            ear.tell(uav.radio.port, mavlink.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0))
+            ear.notify(uav.radio.port, mavlink.MAVLink_command_long_message(1, 1, 400, 0, 1, 0, 0, 0, 0, 0, 0))
             wait_for(lambda: uav.uav.now_s >= 3.0)
-            assert ear.heard() == [] and uav.heard == 0 and not uav.uav.state.is_armed
-            wait_for(lambda: ear.hears("HEARTBEAT"))
+            assert ear.received() == [] and uav.received_count == 0 and not uav.uav.state.is_armed
+            wait_for(lambda: ear.receives("HEARTBEAT"))
             fleet.post(change_of('{"faults": {"link_lost_for_s": 5}}'))
             wait_for(lambda: uav.uav.faults.link_lost_until_s > 5.0)
-            ear.heard()
-            wait_for(lambda: ear.hears("GLOBAL_POSITION_INT"))
+            ear.received()
+            wait_for(lambda: ear.receives("GLOBAL_POSITION_INT"))
             assert uav.uav.now_s >= 8.0
 
 
@@ -130,14 +130,14 @@ def test_a_signed_uav_is_told_by_its_key_and_hears_nobody_else():
     with Ear() as ear, flying([Launch(9, AT, key=KEY, talks_to=[("127.0.0.1", ear.port)])], speed=10.0) as fleet:
         uav = fleet.uavs[0]
         ask = mavlink.MAVLink_param_request_read_message(9, 1, b"RTL_TYPE", -1)
-        ear.tell(uav.radio.port, ask)
+        ear.notify(uav.radio.port, ask)
         wait_for(lambda: uav.refused == 1)
         check = SignatureCheck(KEY)
-        frames = [frame for frame, _ in wait_for(ear.heard)]
+        frames = [frame for frame, _ in wait_for(ear.received)]
         assert [check.refusal(frame, time.time()) for frame in frames] == [None] * len(frames)
         ear.writer = FrameWriter(255, 190, key=KEY)
-        ear.tell(uav.radio.port, ask)
-        wait_for(lambda: ear.hears("PARAM_VALUE"))
+        ear.notify(uav.radio.port, ask)
+        wait_for(lambda: ear.receives("PARAM_VALUE"))
 
 
 def test_a_wrong_clock_shows_in_the_time_of_day_until_a_key_sets_it():
@@ -146,12 +146,12 @@ def test_a_wrong_clock_shows_in_the_time_of_day_until_a_key_sets_it():
         with flying([launch], speed=10.0) as fleet:
 
             def off_s():
-                (*_, told) = wait_for(lambda: ear.hears("SYSTEM_TIME"))
-                return told.time_unix_usec / 1e6 - time.time()
+                (*_, reported) = wait_for(lambda: ear.receives("SYSTEM_TIME"))
+                return reported.time_unix_usec / 1e6 - time.time()
 
             assert off_s() == pytest.approx(-3_600.0, abs=5.0)
             ear.writer = FrameWriter(255, 190, key=KEY)
-            ear.tell(fleet.uavs[0].radio.port, mavlink.MAVLink_ping_message(1, 1, 0, 0))
+            ear.notify(fleet.uavs[0].radio.port, mavlink.MAVLink_ping_message(1, 1, 0, 0))
             wait_for(lambda: abs(off_s()) < 5.0)
 
 
@@ -239,12 +239,12 @@ def test_the_command_flies_without_a_database_until_it_is_told_to_stop(tmp_path)
             command, cwd=PROJECT_DIR, env=os.environ | nowhere, stdin=pipe, stdout=pipe, stderr=pipe, text=True
         ) as process:
             try:
-                told: dict[int, bool] = {}
-                wait_for(lambda: told.update({frame.system: frame.is_signed for frame, _ in ear.heard()}) or len(told) == 2)
-                assert told == {11: False, 12: True}
+                reported: dict[int, bool] = {}
+                wait_for(lambda: reported.update({frame.system: frame.is_signed for frame, _ in ear.received()}) or len(reported) == 2)
+                assert reported == {11: False, 12: True}
                 process.stdin.write('{"pace": 0}\n{"weather": {"wind": [5, 90]}}\n{"system": 11, "faults": {"link_lost_for_s": 10000}}\n')
                 process.stdin.flush()
-                wait_for(lambda: {frame.system for frame, _ in ear.heard()} == {12}, "the lost link")
+                wait_for(lambda: {frame.system for frame, _ in ear.received()} == {12}, "the lost link")
                 process.send_signal(signal.SIGTERM)
                 out, err = process.communicate(timeout=20)
             finally:

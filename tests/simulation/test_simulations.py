@@ -140,9 +140,9 @@ def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
         simulation = pool(person, 1)
         simulator = Simulator(Options(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1"))
         simulator.round()
-    told = simulation_json(fresh(simulation))
-    assert (told["state"], told["reason"]) == ("failed", "port-taken"), told
-    assert "SPANWISE_SIMULATOR_PORTS" in told["message"]
+    reported = simulation_json(fresh(simulation))
+    assert (reported["state"], reported["reason"]) == ("failed", "port-taken"), reported
+    assert "SPANWISE_SIMULATOR_PORTS" in reported["message"]
     assert simulator.flights == {}
 
 
@@ -151,9 +151,9 @@ def test_without_a_gateway_a_missions_uavs_are_told_to_have_none(settings, missi
     of_mission = stand_ins(mission, person)
     simulator = Simulator(options_of_settings(name="one"))
     simulator.round()
-    told = simulation_json(fresh(of_mission))
-    assert (told["state"], told["reason"]) == ("failed", "no-gateway"), told
-    assert "SPANWISE_SIMULATOR_GATEWAY" in told["message"]
+    reported = simulation_json(fresh(of_mission))
+    assert (reported["state"], reported["reason"]) == ("failed", "no-gateway"), reported
+    assert "SPANWISE_SIMULATOR_GATEWAY" in reported["message"]
     assert simulator.flights == {}
 
 
@@ -190,7 +190,7 @@ def test_a_lost_simulators_pool_begins_anew_on_the_ground(person):
     held = taken("two/b")
     assert len(held.vehicles) == 2
     assert (fresh(simulation).restarts, fresh(simulation).state) == (1, SimulationState.FLYING)
-    assert list(simulation.vehicles.values_list("restarts", "told")) == [(1, {}), (1, {})]
+    assert list(simulation.vehicles.values_list("restarts", "reported")) == [(1, {}), (1, {})]
 
 
 def test_a_missions_uav_that_was_in_the_air_is_gone_with_its_simulator(person, mission):
@@ -260,7 +260,7 @@ def test_what_is_over_and_was_left_by_a_dead_simulator_bars_no_start(person, mis
 def test_a_simulator_that_is_stopped_leaves_what_a_lost_one_leaves(person, mission):
     simulation = stand_ins(mission, person)
     assert taken("one/a")
-    simulation.vehicles.update(told={"is_in_air": True})
+    simulation.vehicles.update(reported={"is_in_air": True})
     release_simulations(holder="one/a")
     assert taken("two/b") is None
     assert fresh(simulation).state == SimulationState.FAILED

@@ -97,15 +97,15 @@ def test_what_cannot_be_flown_is_told_where_it_stands(client, body, place):
 
 def test_a_uav_of_the_fleet_is_not_of_the_pool_and_the_way_is_told(client):
     (uav,) = fleet("Tern")
-    told = error(post(client, "simulations", {"uavs": [{"position": HERE, "uav": uav.pk}]}), 400)
-    assert "start its simulated flight" in json.dumps(told)
+    reported = error(post(client, "simulations", {"uavs": [{"position": HERE, "uav": uav.pk}]}), 400)
+    assert "start its simulated flight" in json.dumps(reported)
 
 
 def test_the_quota_is_told(settings, client):
     settings.MAX_SIMULATED_UAVS = 1
-    told = error(post(client, "simulations", {"uavs": [{"position": HERE}] * 2}), 429)
-    assert told["code"] == "too_many_simulated_uavs"
-    assert "1" in told["message"]
+    reported = error(post(client, "simulations", {"uavs": [{"position": HERE}] * 2}), 429)
+    assert reported["code"] == "too_many_simulated_uavs"
+    assert "1" in reported["message"]
 
 
 def test_a_mission_is_flown_in_simulation_changed_and_ended(client, person):
@@ -138,9 +138,9 @@ def test_a_mission_is_flown_in_simulation_changed_and_ended(client, person):
 def test_a_real_uav_is_refused_by_name(client, person):
     mission, _ = approved(person, fleet("Tern"), world().towers[:1])
     Uav.objects.update(is_simulated=False)
-    told = error(post(client, f"missions/{mission.pk}/simulated-flights", {}), 409)
-    assert told["code"] == "real_uav"
-    assert told["details"]["reasons"][0]["message"].startswith("Tern is a real UAV.")
+    reported = error(post(client, f"missions/{mission.pk}/simulated-flights", {}), 409)
+    assert reported["code"] == "real_uav"
+    assert reported["details"]["reasons"][0]["message"].startswith("Tern is a real UAV.")
 
 
 def test_a_key_that_is_made_is_shown_nowhere(client, person):

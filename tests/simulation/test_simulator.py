@@ -84,8 +84,8 @@ def is_seen_in_flight(uav: Uav) -> bool:
     return UavWatch.objects.filter(uav=uav, estimated__isnull=False).exists()
 
 
-def told(simulation: Simulation, name: str) -> object:
-    return simulation.vehicles.get().told.get(name)
+def reported(simulation: Simulation, name: str) -> object:
+    return simulation.vehicles.get().reported.get(name)
 
 
 @pytest.mark.long
@@ -97,8 +97,8 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
         wait_for(lambda: UavLink.objects.filter(uav=uav).exists(), "the UAV at the gateway", patience_s=LONG_S)
         sent_and_started(mission, uav)
         change_simulation(simulation=simulation, actor=mission.author, faults={"link_lost_for_s": 30.0})
-        wait_for(lambda: told(simulation, "is_link_lost"), "the fault")
-        wait_for(lambda: told(simulation, "is_link_lost") is False, "its end")
+        wait_for(lambda: reported(simulation, "is_link_lost"), "the fault")
+        wait_for(lambda: reported(simulation, "is_link_lost") is False, "its end")
         wait_for(lambda: state_of(mission) == MissionState.COMPLETED, "the end of the mission", patience_s=LONG_S)
         assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
         assert TelemetryRecord.objects.filter(uav=uav, is_in_air=True).exists()
@@ -119,7 +119,7 @@ def test_a_missions_uav_is_lost_with_a_simulator_that_is_killed_in_mid_air(missi
         with simulator_program(port, tmp_path) as first:
             wait_for(lambda: UavLink.objects.filter(uav=uav).exists(), "the UAV at the gateway", patience_s=LONG_S)
             sent_and_started(mission, uav)
-            wait_for(lambda: told(simulation, "is_in_air"), "take-off", patience_s=LONG_S)
+            wait_for(lambda: reported(simulation, "is_in_air"), "take-off", patience_s=LONG_S)
             wait_for(lambda: is_seen_in_flight(uav), "the watch that sees it fly", patience_s=LONG_S)
             first.kill()
         with simulator_program(port, tmp_path):
@@ -140,15 +140,15 @@ def test_a_uav_of_the_pool_is_reached_as_it_says_and_stands_there_anew_after_a_k
     settings.SIMULATOR_PORTS = f"{port}-{port}"
     simulation = pool(somebody(), 1)
     with simulator_program(free_port(), tmp_path) as first:
-        assert heard(port, "a heartbeat")
+        assert received(port, "a heartbeat")
         first.kill()
     with simulator_program(free_port(), tmp_path):
         wait_for(lambda: fresh(simulation).restarts == 1, "that it is taken", patience_s=LONG_S)
-        assert heard(port, "a heartbeat of the new one")
+        assert received(port, "a heartbeat of the new one")
     assert fresh(simulation).vehicles.get().restarts == 1
 
 
-def heard(port: int, what: str) -> bool:
+def received(port: int, what: str) -> bool:
     """A station that talks first is answered."""
     station = mavutil.mavlink_connection(f"udpout:127.0.0.1:{port}", source_system=255)
 

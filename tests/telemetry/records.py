@@ -27,7 +27,7 @@ def record(uav: Uav, sequence: int, *, measured_s: float | None = None, received
     return NewRecord(uav.pk, LinkKind.MAVLINK, stream, sequence, at(measured_s), at(received_s), measurement)
 
 
-def heard(*uavs: Uav, **measured: Any) -> None:
+def received(*uavs: Uav, **measured: Any) -> None:
     """Each of these stands at its take-off place and is connected: a link, and a report of now."""
     for uav in uavs:
         UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "is_in_air": False})

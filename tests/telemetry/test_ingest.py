@@ -28,18 +28,18 @@ def uav() -> Uav:
 
 
 def test_every_value_is_stored(uav):
-    told = {
+    reported = {
         "longitude_deg": 10.5, "latitude_deg": -55.5, "altitude_amsl_m": 100.5, "altitude_relative_m": 30.5, "altitude_agl_m": 29.5,
         "velocity_north_mps": 1.5, "velocity_east_mps": -2.5, "velocity_down_mps": 0.5, "airspeed_mps": 4.5, "roll_deg": -5.5,
         "pitch_deg": 6.5, "heading_deg": 7.5, "battery_percent": 80.5, "battery_v": 12.5, "battery_a": 9.5, "mode": "Mission",
         "is_armed": True, "is_in_air": False, "link_quality_percent": 99.5, "gps_fix": 3, "satellites": 14, "hdop": 0.75,
         "wind_north_mps": 1.25, "wind_east_mps": -3.25, "mission_item": 4, "waypoint_sequence": 3,
     }  # fmt: skip
-    assert store_records([record(uav, 1, **told)]) == StoredCount(stored=1)
+    assert store_records([record(uav, 1, **reported)]) == StoredCount(stored=1)
     row = TelemetryRecord.objects.get()
     assert (row.position.x, row.position.y, row.position.srid) == (10.5, -55.5, 4326)
-    assert {name: getattr(row, name) for name in told if name not in {"longitude_deg", "latitude_deg"}} == {
-        name: value for name, value in told.items() if name not in {"longitude_deg", "latitude_deg"}
+    assert {name: getattr(row, name) for name in reported if name not in {"longitude_deg", "latitude_deg"}} == {
+        name: value for name, value in reported.items() if name not in {"longitude_deg", "latitude_deg"}
     }
     assert (row.uav, row.stream.uav, row.stream.key, row.stream.link) == (uav, uav, "boot", LinkKind.MAVLINK)
     assert (row.measured_at, row.received_at, row.sequence, row.mission) == (at(1), at(1), 1, None)
@@ -162,9 +162,9 @@ def test_what_cannot_be_is_not_believed(uav):
     assert uav.located_at == at(-100)
 
 
-@pytest.mark.parametrize(("told", "kept"), [(-1e-20, 0.0), (-90.0, 270.0), (720.0, 0.0), (359.5, 359.5)])
-def test_a_heading_comes_into_the_circle(told, kept):
-    assert believable(Measurement(longitude_deg=0.0, latitude_deg=0.0, heading_deg=told)).heading_deg == kept
+@pytest.mark.parametrize(("reported", "kept"), [(-1e-20, 0.0), (-90.0, 270.0), (720.0, 0.0), (359.5, 359.5)])
+def test_a_heading_comes_into_the_circle(reported, kept):
+    assert believable(Measurement(longitude_deg=0.0, latitude_deg=0.0, heading_deg=reported)).heading_deg == kept
 
 
 def test_measured_order_needs_no_order_of_arrival(uav):

@@ -39,14 +39,25 @@ def test_the_newest_report_is_shown_whole() -> None:
                 wind_east_mps=0.0, mode="AUTO", is_armed=True, gps_fix=3, hdop=0.8, altitude_relative_m=40.0, waypoint_sequence=4,
                 roll_deg=-7.5, pitch_deg=3.25)]
     )  # fmt: skip
-    told = shown(uav)
-    assert (told["position"], told["speed_mps"], told["climb_mps"], told["battery_percent"]) == ([10.0, 55.0], 5.0, 1.0, 70.0)
-    assert (told["wind_speed_mps"], told["wind_from_deg"]) == (2.0, 0.0)  # the air moves south: it comes from the north
-    assert (told["mode"], told["is_armed"], told["gps_fix"], told["hdop"], told["waypoint_sequence"]) == ("AUTO", True, 3, 0.8, 4)
-    assert (told["altitude_relative_m"], told["altitude_agl_m"], told["satellites"]) == (40.0, None, None)
-    assert (told["roll_deg"], told["pitch_deg"]) == (-7.5, 3.25)
-    assert seconds(told["measured_at"]) == seconds(told["received_at"]) == 1
-    assert told["measured_at_of"]["link"] is None
+    reported = shown(uav)
+    assert (reported["position"], reported["speed_mps"], reported["climb_mps"], reported["battery_percent"]) == (
+        [10.0, 55.0],
+        5.0,
+        1.0,
+        70.0,
+    )
+    assert (reported["wind_speed_mps"], reported["wind_from_deg"]) == (2.0, 0.0)  # the air moves south: it comes from the north
+    assert (reported["mode"], reported["is_armed"], reported["gps_fix"], reported["hdop"], reported["waypoint_sequence"]) == (
+        "AUTO",
+        True,
+        3,
+        0.8,
+        4,
+    )
+    assert (reported["altitude_relative_m"], reported["altitude_agl_m"], reported["satellites"]) == (40.0, None, None)
+    assert (reported["roll_deg"], reported["pitch_deg"]) == (-7.5, 3.25)
+    assert seconds(reported["measured_at"]) == seconds(reported["received_at"]) == 1
+    assert reported["measured_at_of"]["link"] is None
 
 
 @pytest.mark.django_db
@@ -54,10 +65,10 @@ def test_a_report_without_a_position_leaves_the_last_one_there_with_its_age() ->
     uav = a_uav()
     store_records([record(uav, 1, battery_percent=70.0)])
     store_records([record(uav, 9, battery_percent=60.0, **NOWHERE)])
-    told = shown(uav)
-    assert (told["position"], told["battery_percent"]) == ([10.0, 55.0], 60.0)
-    assert [seconds(told["measured_at_of"][group]) for group in ("position", "battery")] == [1, 9]
-    assert seconds(told["measured_at"]) == 9
+    reported = shown(uav)
+    assert (reported["position"], reported["battery_percent"]) == ([10.0, 55.0], 60.0)
+    assert [seconds(reported["measured_at_of"][group]) for group in ("position", "battery")] == [1, 9]
+    assert seconds(reported["measured_at"]) == 9
 
 
 @pytest.mark.django_db
@@ -73,10 +84,10 @@ def test_in_whatever_order_reports_come_the_newest_of_each_group_is_shown(order:
     came = [reports[number] for number in order]
     for batch in [came] if is_one_batch else [[report] for report in came]:
         store_records(batch)
-    told = shown(uav)
-    assert (told["position"][0], told["battery_percent"], told["mode"], told["hdop"]) == (20.0, 80.0, "AUTO", 1.0)
-    assert [seconds(told["measured_at_of"][group]) for group in ("position", "battery", "state", "gps")] == [2, 2, 1, 3]
-    assert seconds(told["measured_at"]) == 3
+    reported = shown(uav)
+    assert (reported["position"][0], reported["battery_percent"], reported["mode"], reported["hdop"]) == (20.0, 80.0, "AUTO", 1.0)
+    assert [seconds(reported["measured_at_of"][group]) for group in ("position", "battery", "state", "gps")] == [2, 2, 1, 3]
+    assert seconds(reported["measured_at"]) == 3
 
 
 @pytest.mark.django_db
@@ -116,14 +127,14 @@ def test_what_the_watch_has_put_there_stays() -> None:
 def test_pages_are_told_after_the_commit_of_each_organisation_once(
     monkeypatch: pytest.MonkeyPatch, django_capture_on_commit_callbacks: Any
 ) -> None:
-    told: list[int] = []
-    monkeypatch.setattr("telemetry.services.ingest.publish_live", told.append)
+    reported: list[int] = []
+    monkeypatch.setattr("telemetry.services.ingest.publish_live", reported.append)
     elsewhere = Organisation.objects.create(name="Elsewhere")
     uavs = [a_uav("A"), a_uav("B"), a_uav("C", organisation=elsewhere)]
     with django_capture_on_commit_callbacks(execute=True):
         store_records([record(uav, 1) for uav in uavs])
-        assert told == []
-    assert sorted(told) == sorted({uavs[0].organisation_id, elsewhere.pk})
+        assert reported == []
+    assert sorted(reported) == sorted({uavs[0].organisation_id, elsewhere.pk})
 
 
 @pytest.mark.django_db(transaction=True)

@@ -19,7 +19,7 @@ MAKERS = [
 ]
 # Of these a part that is put in makes another sentence; each is looked at below as it comes out.
 VARIANTS = {"The {} {} m from", "The {} {} m {} the", "The UAV is {} m {} the", "The {} has {} items; {} {} {}."}
-NOT_TOLD = {"The UAV is so already.", "The vehicle holds {}."}  # notes of commands that were applied
+NOT_REPORTED = {"The UAV is so already.", "The vehicle holds {}."}  # notes of commands that were applied
 
 
 def text_of(node: ast.AST) -> str | None:
@@ -43,9 +43,9 @@ def sentences_of(path: Path) -> Iterator[str]:
 
 @pytest.mark.parametrize("path", MAKERS, ids=lambda path: path.stem)
 def test_every_sentence_that_a_gateway_makes_is_foreseen(path):
-    told = [text for text in sentences_of(path) if text not in NOT_TOLD and not any(text.startswith(start) for start in VARIANTS)]
-    assert told
-    assert [text for text in told if not is_foreseen(text.removesuffix(" {}").replace("{}", "7"))] == []
+    reported = [text for text in sentences_of(path) if text not in NOT_REPORTED and not any(text.startswith(start) for start in VARIANTS)]
+    assert reported
+    assert [text for text in reported if not is_foreseen(text.removesuffix(" {}").replace("{}", "7"))] == []
 
 
 @pytest.mark.parametrize(
@@ -85,9 +85,13 @@ def test_it_is_told_in_german_with_its_figures():
         assert outcome_in_words("The UAV stands 120 m from the planned take-off; 100 m are allowed.") == (
             "Das UAV steht 120 m vom geplanten Startplatz entfernt; 100 m sind erlaubt."
         )
-        told = outcome_in_words("Could not take-off, at leave the ground. The vehicle agreed, and nothing happened. Compass not healthy")
-    assert told.startswith("„Abheben“ ging nicht, beim Schritt „vom Boden abheben“. Das Fahrzeug hat zugestimmt, und nichts ist geschehen.")
-    assert told.endswith(" Compass not healthy")
+        reported = outcome_in_words(
+            "Could not take-off, at leave the ground. The vehicle agreed, and nothing happened. Compass not healthy"
+        )
+    assert reported.startswith(
+        "„Abheben“ ging nicht, beim Schritt „vom Boden abheben“. Das Fahrzeug hat zugestimmt, und nichts ist geschehen."
+    )
+    assert reported.endswith(" Compass not healthy")
 
 
 def test_what_a_vehicle_says_itself_stays_as_it_is():

@@ -130,7 +130,7 @@ def _tomorrow() -> str:
 
 
 @pytest.mark.parametrize(
-    ("told", "written"),
+    ("reported", "written"),
     [
         ("Authorization: Bearer spw_abcdefghijk", "Authorization: Bearer ..."),
         ("postgis://spanwise:hunter22@db/spanwise is away", "postgis://spanwise:...@db/spanwise is away"),
@@ -141,8 +141,8 @@ def _tomorrow() -> str:
         ("the key of zone 7", "the key of zone 7"),
     ],
 )
-def test_secrets_are_left_out_wherever_they_stand(told: str, written: str) -> None:
-    assert without_secrets(told) == written
+def test_secrets_are_left_out_wherever_they_stand(reported: str, written: str) -> None:
+    assert without_secrets(reported) == written
 
 
 def test_a_traceback_is_told_without_them(logs: dict[str, io.StringIO]) -> None:
@@ -179,8 +179,8 @@ def test_a_request_has_an_id_that_its_lines_and_its_answer_name(logs: dict[str, 
     mission = "00000000-0000-4000-8000-000000000000"
     answer = client_of(somebody()).get(f"/api/v1/missions/{mission}", headers={"X-Request-ID": "from-the-proxy-1"})
     assert answer["X-Request-ID"] == "from-the-proxy-1"
-    told = [line for line in lines(logs) if line["logger"] == "spanwise.request"]
-    assert [(line["request"], line["mission"]) for line in told] == [("from-the-proxy-1", mission)]
+    reported = [line for line in lines(logs) if line["logger"] == "spanwise.request"]
+    assert [(line["request"], line["mission"]) for line in reported] == [("from-the-proxy-1", mission)]
     afterwards = [line for line in lines(logs) if line["logger"] == "django.request"]
     assert [(line["request"], line["mission"]) for line in afterwards] == [("from-the-proxy-1", mission)]
 
@@ -199,14 +199,14 @@ def test_who_is_refused_is_told_by_number_whatever_they_came_with(logs: dict[str
 
 
 @pytest.mark.django_db
-@pytest.mark.parametrize("told", ["", "short", "a" * 65, "with blanks in it", "new\tline-and-more", "<script>alert(1)</script>"])
-def test_an_id_that_is_not_fit_to_be_written_down_is_replaced(told: str) -> None:
-    given = Client().get("/sign-in", headers={"X-Request-ID": told})["X-Request-ID"]
+@pytest.mark.parametrize("reported", ["", "short", "a" * 65, "with blanks in it", "new\tline-and-more", "<script>alert(1)</script>"])
+def test_an_id_that_is_not_fit_to_be_written_down_is_replaced(reported: str) -> None:
+    given = Client().get("/sign-in", headers={"X-Request-ID": reported})["X-Request-ID"]
     assert re.fullmatch(r"[0-9a-f]{32}", given)
 
 
-@pytest.mark.parametrize(("said", "made"), [("json", JsonFormatter), ("line", LineFormatter), ("", LineFormatter)])
-def test_the_environment_chooses_the_way_of_writing(said: str, made: type[logging.Formatter]) -> None:
-    chosen = log_settings({"SPANWISE_LOG_FORMAT": said, "SPANWISE_PROGRAM": "gateway"})
+@pytest.mark.parametrize(("stated", "made"), [("json", JsonFormatter), ("line", LineFormatter), ("", LineFormatter)])
+def test_the_environment_chooses_the_way_of_writing(stated: str, made: type[logging.Formatter]) -> None:
+    chosen = log_settings({"SPANWISE_LOG_FORMAT": stated, "SPANWISE_PROGRAM": "gateway"})
     formatter = chosen["formatters"][chosen["handlers"]["console"]["formatter"]]
     assert type(logging.config.DictConfigurator(chosen).configure_formatter(dict(formatter))) is made

@@ -22,7 +22,7 @@ def test_what_was_put_in_is_put_in_again() -> None:
 
 
 @pytest.mark.parametrize(
-    ("said", "german"),
+    ("stated", "german"),
     [
         ("Battery low: 14 %: return", "Akku schwach: 14 %: Rückkehr"),
         ("Battery 24 %", "Akku 24 %"),
@@ -30,9 +30,9 @@ def test_what_was_put_in_is_put_in_again() -> None:
         ("GPS lost: land", "GPS verloren: Landung"),
     ],
 )
-def test_what_a_simulated_uav_says_of_trouble_is_read_in_german(said: str, german: str) -> None:
+def test_what_a_simulated_uav_says_of_trouble_is_read_in_german(stated: str, german: str) -> None:
     with override("de"):
-        assert in_words(said) == german
+        assert in_words(stated) == german
 
 
 def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:

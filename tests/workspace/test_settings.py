@@ -63,7 +63,7 @@ def test_over_https_cookies_are_bound_to_the_host() -> None:
     """Browsers take a __Host- cookie from the host itself alone, over TLS, for the whole site."""
     names = ("SESSION_COOKIE_NAME", "CSRF_COOKIE_NAME", "SESSION_COOKIE_SECURE", "SESSION_COOKIE_DOMAIN")
     lines = f"from django.conf import settings; print(*(getattr(settings, name) for name in {names}))"
-    told = {
+    reported = {
         https: subprocess.run(  # noqa: S603
             [sys.executable, "-c", lines],
             cwd=settings.BASE_DIR,
@@ -74,4 +74,4 @@ def test_over_https_cookies_are_bound_to_the_host() -> None:
         ).stdout.strip()
         for https in ("1", "0")
     }
-    assert told == {"1": "__Host-sessionid __Host-csrftoken True None", "0": "sessionid csrftoken False None"}
+    assert reported == {"1": "__Host-sessionid __Host-csrftoken True None", "0": "sessionid csrftoken False None"}

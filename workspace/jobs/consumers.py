@@ -15,13 +15,13 @@ from redis.exceptions import RedisError
 from workspace import selectors
 from workspace.jobs.serializers import JobSerializer
 from workspace.live.changes import job_group
-from workspace.live.sockets import CHECK_PERSON_INTERVAL_S, ENDED, KEEPALIVE_INTERVAL_S, NOTHING_TO_SAY, SIGNED_OUT, SignedInSocket
+from workspace.live.sockets import CHECK_PERSON_INTERVAL_S, ENDED, KEEPALIVE_INTERVAL_S, NO_MESSAGE, SIGNED_OUT, SignedInSocket
 from workspace.live.timed_waits import wait_for_event
 from workspace.locale_negotiation import language_of_socket
 from workspace.models import Job, User
 
 POLL_INTERVAL_S = 1.0  # at the row, whether a word has come or not
-WORD_PAUSE_S = 0.1  # words that come close together are one look
+MESSAGE_INTERVAL_S = 0.1  # words that come close together are one look
 REDIS_PAUSE_S = 1.0
 
 _encode = DjangoJSONEncoder(separators=(",", ":")).encode
@@ -39,7 +39,7 @@ class JobConsumer(SignedInSocket):
 
     async def connect(self) -> None:
         self._job_id: UUID = self.scope["url_route"]["kwargs"]["job_id"]
-        self._word = asyncio.Event()
+        self._has_message = asyncio.Event()
         user = await self._user()
         if user is None or await self._version(user) is None:
             await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
@@ -51,7 +51,7 @@ class JobConsumer(SignedInSocket):
         self._start(self._follow(user))
 
     async def receive(self, text_data: str | None = None, bytes_data: bytes | None = None) -> None:
-        self.hang_up(NOTHING_TO_SAY)
+        self.hang_up(NO_MESSAGE)
 
     async def _follow(self, user: User) -> None:
         loop = asyncio.get_running_loop()
@@ -80,9 +80,9 @@ class JobConsumer(SignedInSocket):
             if loop.time() - spoken_s >= KEEPALIVE_INTERVAL_S:
                 await self.send('{"type":"still-there"}')
                 spoken_s = loop.time()
-            if await wait_for_event(self._word, POLL_INTERVAL_S):
-                await asyncio.sleep(WORD_PAUSE_S)
-            self._word.clear()
+            if await wait_for_event(self._has_message, POLL_INTERVAL_S):
+                await asyncio.sleep(MESSAGE_INTERVAL_S)
+            self._has_message.clear()
 
     async def _listen(self) -> None:
         """Word from the worker that the row has changed; without Redis there is none, and the row is looked at all the same."""
@@ -93,7 +93,7 @@ class JobConsumer(SignedInSocket):
                 await layer.group_add(job_group(self._job_id), channel)
                 while True:
                     await layer.receive(channel)
-                    self._word.set()
+                    self._has_message.set()
             except (RedisError, OSError):
                 await asyncio.sleep(REDIS_PAUSE_S)
 

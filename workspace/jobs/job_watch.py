@@ -100,10 +100,10 @@ class JobWatch:
 
     def _report(self) -> None:
         best = self._drawn()
-        if not self._told(best) and best is not None:
-            self._told(None)  # the lease is renewed, whatever the best was
+        if not self._reported(best) and best is not None:
+            self._reported(None)  # the lease is renewed, whatever the best was
 
-    def _told(self, best: Any) -> bool:
+    def _reported(self, best: Any) -> bool:
         try:
             report_progress(job=self.job, progress=self._share, message=self._message, best=best)
         except JobLost:

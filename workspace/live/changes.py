@@ -48,10 +48,10 @@ def publish_live(organisation_id: int) -> None:
         _live_quiet_until_s = time.monotonic() + LIVE_PAUSE_S
 
 
-def _unless_redis_is_away(say: Callable[[], object]) -> bool:
+def _unless_redis_is_away(report: Callable[[], object]) -> bool:
     global _quiet_until_s
     try:
-        say()
+        report()
     except (RedisError, OSError) as error:  # TimeoutError is an OSError
         if time.monotonic() >= _quiet_until_s:
             _quiet_until_s = time.monotonic() + LOG_INTERVAL_S

@@ -29,7 +29,7 @@ class Farewell:
         self._sockets: set[Socket] = set()
         self.has_begun = False
 
-    def hear_signal(self) -> None:
+    def receive_signal(self) -> None:
         """Instead of whoever serves the sockets. In the main thread only, where signals are heard."""
         self._loop.add_signal_handler(signal.SIGTERM, self.begin)
 
@@ -38,21 +38,21 @@ class Farewell:
             return
         self.has_begun = True
         for socket in self._sockets:
-            self._say_later(socket)
+            self._send_later(socket)
         self._loop.call_later(MAX_DURATION_S if self._sockets else 0.0, self._leave)
 
     def expect(self, socket: Socket) -> None:
         """It is told once it is time, until it is forgotten."""
         self._sockets.add(socket)
         if self.has_begun:
-            self._say_later(socket)
+            self._send_later(socket)
 
     def forget(self, socket: Socket) -> None:
         self._sockets.discard(socket)
         if self.has_begun and not self._sockets:
             self._leave()
 
-    def _say_later(self, socket: Socket) -> None:
+    def _send_later(self, socket: Socket) -> None:
         self._loop.call_later(random.uniform(0.0, self._spread_s), socket.hang_up, RESTARTS)
 
     def _leave(self) -> None:

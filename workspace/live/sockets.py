@@ -139,7 +139,7 @@ CHECK_PERSON_INTERVAL_S = 4.0
 KEEPALIVE_INTERVAL_S = 20.0  # a proxy between here and the page closes what is silent
 
 RETRY_AFTER = b"2"  # seconds
-ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY, TOO_MANY = 1000, 1011, 4401, 4400, 4429
+ENDED, FAILED, SIGNED_OUT, NO_MESSAGE, TOO_MANY = 1000, 1011, 4401, 4400, 4429
 
 
 class SignedInSocket(AsyncWebsocketConsumer):
@@ -257,13 +257,13 @@ class SignedInSocket(AsyncWebsocketConsumer):
 
 def _address_of(scope: Any) -> str:
     """Return where it came from."""
-    told = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
+    reported = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
     client = scope.get("client")
-    return visitor_address(client[0] if client else "", told[-1] if told else "")
+    return visitor_address(client[0] if client else "", reported[-1] if reported else "")
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:
-    told = next((value for name, value in scope["headers"] if name == REQUEST_ID_HEADER.lower().encode()), None)
+    reported = next((value for name, value in scope["headers"] if name == REQUEST_ID_HEADER.lower().encode()), None)
     named = scope.get("url_route", {}).get("kwargs", {})
-    request = sane_request_id(None if told is None else told.decode("latin-1"))
+    request = sane_request_id(None if reported is None else reported.decode("latin-1"))
     return {"request": request, "mission": named.get("mission_id"), "job": named.get("job_id")}

@@ -56,7 +56,7 @@ class Companion(Bearer):
                 self.poll_at_s = now_s + POLL_INTERVAL_S
                 self.poll()
             if self.flying is not None and now_s >= self.lands_at_s:
-                self.tell_results()
+                self.report_results()
             if now_s >= self.report_at_s:
                 self.report_at_s = now_s + REPORT_INTERVAL_S
                 self.report()
@@ -109,21 +109,21 @@ class Companion(Bearer):
                 self.carry_out(command, given["route"])
 
     def carry_out(self, command: dict[str, Any], route: dict[str, Any] | None) -> None:
-        told: dict[str, Any] = {"command": command["id"], "state": "applied"}
+        reported: dict[str, Any] = {"command": command["id"], "state": "applied"}
         if command["kind"] == "upload-mission":
             if route is None or route["command"] != command["id"]:
                 return
             self.loaded = route
-            told["content_sha256"] = content_sha256(route["content"])
+            reported["content_sha256"] = content_sha256(route["content"])
         elif command["kind"] == "start":
             self.flying, self.lands_at_s = self.loaded, time.monotonic() + FLIGHT_S
         elif command["kind"] in {"abort", "return", "land", "clear-mission"}:
             self.flying = None
-        answer = self.ask("POST", "/api/v1/uav-link/acknowledgements", "companion: done", {"acknowledgements": [told]}).json()
+        answer = self.ask("POST", "/api/v1/uav-link/acknowledgements", "companion: done", {"acknowledgements": [reported]}).json()
         if answer["results"][0]["noted"]:
             self.book.note(kinds.COMMAND_END, id=command["id"], state=answer["results"][0]["state"])
 
-    def tell_results(self) -> None:
+    def report_results(self) -> None:
         """Of each target, and that the flight is over; asked again as it was until it is answered."""
         route = self.flying
         if route is None:
@@ -139,11 +139,11 @@ class Companion(Bearer):
             flight = {"approval": route["approval"], "flight": route["content"]["flight"], "outcome": "flown"}
             route["told"] = {"stream": self.stream, "results": results, "flights": [flight]}
         answer = self.ask("POST", "/api/v1/uav-link/results", "companion: results", route["told"]).json()
-        told, self.flying = route["told"], None
+        reported, self.flying = route["told"], None
         if answer["refused"] or answer["refused_flights"]:
             refused = f"refused: {answer['refused'][:1]} {answer['refused_flights'][:1]}"
             self.blame("companion: results", AssertionError(refused))
             return
-        sequences = [result["sequence"] for result in told["results"]]
+        sequences = [result["sequence"] for result in reported["results"]]
         self.book.note(kinds.RESULTS, uav=self.desk.uav, stream=self.stream, sequences=sequences)
-        self.book.note(kinds.FLIGHT, uav=self.desk.uav, approval=route["approval"], flight=told["flights"][0]["flight"])
+        self.book.note(kinds.FLIGHT, uav=self.desk.uav, approval=route["approval"], flight=reported["flights"][0]["flight"])

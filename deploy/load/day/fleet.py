@@ -98,8 +98,8 @@ def play(site: Site, udp: tuple[str, int], seconds: float, book: Book) -> None:
     sender.setblocking(False)
     fleet = [Flying(uav, number) for number, uav in enumerate(site.in_air)]
     by_system = {one.uav.system: one for one in fleet}
-    hears = mavlink.MAVLink(None)
-    hears.robust_parsing = True
+    receives = mavlink.MAVLink(None)
+    receives.robust_parsing = True
     every_s, first_s = 1.0 / max(len(fleet), 1), time.monotonic()
     for number in range(int(seconds * len(fleet))):
         time.sleep(max(first_s + number * every_s - time.monotonic(), 0.0))
@@ -109,7 +109,7 @@ def play(site: Site, udp: tuple[str, int], seconds: float, book: Book) -> None:
         one.along_m += one.speed_mps
         for frame in one.frames(int((time.monotonic() - first_s) * 1000)):
             _send(sender, frame)
-        _answer_all(sender, hears, by_system)
+        _answer_all(sender, receives, by_system)
     for one in fleet:
         book.note(kinds.SENT, uav=one.uav.uav, reports=one.sent)
 
@@ -121,13 +121,13 @@ def _send(sender: socket.socket, frame: bytes) -> None:
         return  # nobody listens just now, or the buffer is full: lost
 
 
-def _answer_all(sender: socket.socket, hears: mavlink.MAVLink, by_system: dict[int, Flying]) -> None:
+def _answer_all(sender: socket.socket, receives: mavlink.MAVLink, by_system: dict[int, Flying]) -> None:
     while True:
         try:
-            heard = sender.recv(MAX_DATAGRAM_BYTES)
+            received = sender.recv(MAX_DATAGRAM_BYTES)
         except OSError:
             return
-        for message in hears.parse_buffer(heard) or ():
+        for message in receives.parse_buffer(received) or ():
             one = by_system.get(getattr(message, "target_system", 0))
             frame = one.answer(message) if one else None
             if frame:

@@ -64,7 +64,7 @@ def edits_were_not_overwritten(promised: Promises) -> list[str]:
     return twice + lost
 
 
-def jobs_ended_as_told(promised: Promises) -> list[str]:
+def jobs_ended_as_reported(promised: Promises) -> list[str]:
     stored = {str(key): (state, has_result) for key, state, has_result in _found(
         "SELECT id, state, result IS NOT NULL FROM workspace_job WHERE id = ANY(%s::uuid[])", promised.jobs | promised.plans
     )}  # fmt: skip
@@ -77,7 +77,9 @@ def approvals_are_as_approved(promised: Promises) -> list[str]:
     stored = {str(key): (str(mission), sha256) for key, mission, sha256 in _found(
         "SELECT id, mission_id, content_sha256 FROM missions_approval WHERE id = ANY(%s::uuid[])", promised.approvals
     )}  # fmt: skip
-    return [f"approval {key} is {stored.get(key, 'not there')}" for key, told in promised.approvals.items() if stored.get(key) != told]
+    return [
+        f"approval {key} is {stored.get(key, 'not there')}" for key, reported in promised.approvals.items() if stored.get(key) != reported
+    ]
 
 
 def commands_are_there_once(promised: Promises) -> list[str]:
@@ -118,7 +120,7 @@ def _numbered(table: str, what: str, wanted: dict[tuple[int, str], set[int]]) ->
     return lost
 
 
-def flights_ended_as_told(promised: Promises) -> list[str]:
+def flights_ended_as_reported(promised: Promises) -> list[str]:
     """The route has flown it, or the approval no longer counts; and what it was the last flight of is not on its way."""
     stored = {(uav, str(approval)): (flown, state) for uav, approval, flown, state in rows(
         "SELECT place.uav_id, approval.id, route.flights_flown, mission.state FROM missions_approval approval "
@@ -154,7 +156,7 @@ def notes_are_there_once(promised: Promises) -> list[str]:
     return lost + [f"note {text} is there {number} times" for text, number in twice]
 
 
-def zones_are_as_told(promised: Promises) -> list[str]:
+def zones_are_as_reported(promised: Promises) -> list[str]:
     stored = dict(_found("SELECT id, name FROM inspection_noflyzone WHERE id = ANY(%s)", promised.zones))
     lost = [
         f"zone {key} is not there"
@@ -171,14 +173,14 @@ def pages_saw_no_gap(promised: Promises) -> list[str]:
 CHECKS: dict[str, Check] = {
     "acknowledged missions are there, each once": missions_are_there_once,
     "acknowledged edits are in the history, none over another": edits_were_not_overwritten,
-    "acknowledged jobs are there; a plan that was fetched is kept": jobs_ended_as_told,
+    "acknowledged jobs are there; a plan that was fetched is kept": jobs_ended_as_reported,
     "approvals are as they were approved": approvals_are_as_approved,
     "acknowledged commands are there, one a key, and ended as told": commands_are_there_once,
     "acknowledged records are there, each once": records_are_there,
     "acknowledged results are there, each once": results_are_there,
-    "flights ended as told": flights_ended_as_told,
+    "flights ended as told": flights_ended_as_reported,
     "acknowledgements of alerts are there": acknowledgements_are_there,
     "notes are there, each once": notes_are_there_once,
-    "zones came and went as told": zones_are_as_told,
+    "zones came and went as told": zones_are_as_reported,
     "live pages saw no gap": pages_saw_no_gap,
 }

@@ -32,7 +32,7 @@ class LivePage:
     messages: int = 0
     opened: int = 0
     gaps: int = 0
-    heard_at_s: float = 0.0
+    received_at_s: float = 0.0
     closed: int = 0  # the code with which the server hung up for good
     _sequence: int = 0
 
@@ -71,27 +71,27 @@ class LivePage:
         finally:
             socket.close()
 
-    def _take(self, word: dict[str, Any], socket: WebSocket) -> None:
-        self.heard_at_s = time.monotonic()
+    def _take(self, message: dict[str, Any], socket: WebSocket) -> None:
+        self.received_at_s = time.monotonic()
         self.messages += 1
-        if word["type"] == "still-there":
-            if self._sequence and word["sequence"] != self._sequence:
-                self._miss(word, socket)
+        if message["type"] == "still-there":
+            if self._sequence and message["sequence"] != self._sequence:
+                self._miss(message, socket)
             return
-        if word["type"] == "snapshot":
-            self.shown = {table: {entry["id"]: entry for entry in word["live"][table]} for table in TABLES}
-        elif word["sequence"] != self._sequence + 1:
-            self._miss(word, socket)
+        if message["type"] == "snapshot":
+            self.shown = {table: {entry["id"]: entry for entry in message["live"][table]} for table in TABLES}
+        elif message["sequence"] != self._sequence + 1:
+            self._miss(message, socket)
             return
         else:
             for table in TABLES:
-                self.shown[table] |= {entry["id"]: entry for entry in word[table]}
-                for gone in word["gone"][table]:
+                self.shown[table] |= {entry["id"]: entry for entry in message[table]}
+                for gone in message["gone"][table]:
                     self.shown[table].pop(gone, None)
-        self._sequence = word["sequence"]
+        self._sequence = message["sequence"]
         socket.send(orjson.dumps({"type": "have", "sequence": self._sequence}).decode())
 
-    def _miss(self, word: dict[str, Any], socket: WebSocket) -> None:
+    def _miss(self, message: dict[str, Any], socket: WebSocket) -> None:
         self.gaps += 1
-        self.book.note(kinds.GAP, by=self.by, expected=self._sequence + 1, got=word["sequence"])
+        self.book.note(kinds.GAP, by=self.by, expected=self._sequence + 1, got=message["sequence"])
         socket.send(orjson.dumps({"type": "again"}).decode())

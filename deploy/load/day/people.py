@@ -93,14 +93,14 @@ class PlansMissions(Person):
         while waited_s < JOB_WITHIN_S:
             gevent.sleep(JOB_INTERVAL_S)
             waited_s += JOB_INTERVAL_S
-            told = self.get(f"jobs/{job}", "plan: job")
-            if told["state"] in {"done", "failed", "cancelled"}:
+            reported = self.get(f"jobs/{job}", "plan: job")
+            if reported["state"] in {"done", "failed", "cancelled"}:
                 break
-        if told["state"] == "done":
+        if reported["state"] == "done":
             self.note_seen("plan: large, done", waited_s)
             self.book.note(kinds.PLAN, job=job)
         else:
-            self.blame("plan: large, done", TimeoutError(f"{told['state']} after {waited_s:.0f} s: {told.get('error')}"))
+            self.blame("plan: large, done", TimeoutError(f"{reported['state']} after {waited_s:.0f} s: {reported.get('error')}"))
 
     def save_and_edit(self) -> None:
         """Two windows on one mission: the second one that saves is told that it has changed, and saves on top."""
@@ -165,8 +165,8 @@ class LeadsShift(Watches):
         if not waiting:
             return
         alert = self.draw.choice(waiting)["id"]
-        told = self.ask("POST", f"/api/v1/alerts/{alert}/acknowledge", "alert: acknowledge", {}).json()
-        if told["acknowledged_at"]:
+        reported = self.ask("POST", f"/api/v1/alerts/{alert}/acknowledge", "alert: acknowledge", {}).json()
+        if reported["acknowledged_at"]:
             self.book.note(kinds.ACKNOWLEDGEMENT, alert=alert)
         text = f"Seen {uuid4().hex[:12]}"
         note = self.ask("POST", f"/api/v1/alerts/{alert}/notes", "alert: note", {"text": text}, ok=(201,)).json()

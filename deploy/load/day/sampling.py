@@ -57,8 +57,8 @@ def memory_of(pid: int) -> tuple[int, int]:
         text = Path(f"/proc/{pid}/smaps_rollup").read_text()
     except OSError:
         return 0, 0
-    told = {line.split(":")[0]: int(line.split()[1]) * KIB for line in text.splitlines()[1:]}
-    return told.get("Pss_Anon", 0) + told.get("SwapPss", 0), told.get("Pss_Shmem", 0)
+    reported = {line.split(":")[0]: int(line.split()[1]) * KIB for line in text.splitlines()[1:]}
+    return reported.get("Pss_Anon", 0) + reported.get("SwapPss", 0), reported.get("Pss_Shmem", 0)
 
 
 def files_of(pid: int) -> int:
@@ -96,10 +96,10 @@ def _database(url: str) -> tuple[int, int, dict[str, tuple[int, int]]]:
             asked = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
             connections = connection.execute(asked).fetchone()
             jobs = connection.execute("SELECT count(*) FROM workspace_job WHERE state IN ('queued', 'running')").fetchone()
-            told = connection.execute("SELECT relname, pg_total_relation_size(relid), n_dead_tup FROM pg_stat_user_tables").fetchall()
+            reported = connection.execute("SELECT relname, pg_total_relation_size(relid), n_dead_tup FROM pg_stat_user_tables").fetchall()
     except psycopg.OperationalError:
         return 0, 0, {}
-    return connections[0] if connections else 0, jobs[0] if jobs else 0, {name: (size, dead) for name, size, dead in told}
+    return connections[0] if connections else 0, jobs[0] if jobs else 0, {name: (size, dead) for name, size, dead in reported}
 
 
 def _redis(url: str) -> tuple[int, int, int, int]:

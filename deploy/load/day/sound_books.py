@@ -14,7 +14,7 @@ MAX_APPROVALS = 2_000
 Check = Callable[[], list[str]]
 
 
-def _told(sql: str, words: str, values: dict[str, Any] | None = None) -> list[str]:
+def _reported(sql: str, words: str, values: dict[str, Any] | None = None) -> list[str]:
     """Each row put into the words by its place."""
     found = rows(sql, values)
     more = len(found) - MAX_VIOLATIONS
@@ -43,38 +43,38 @@ def no_orphans() -> list[str]:
 def no_mission_of_two_plans() -> list[str]:
     """Routes on another graph than their mission's, or with somebody else's UAV, targets or approval."""
     return [
-        *_told(
+        *_reported(
             "SELECT route.id, mission.id FROM missions_route route JOIN missions_mission mission ON mission.id = route.mission_id "
             "WHERE route.graph_version IS DISTINCT FROM mission.graph_version", "route {} of mission {} is of another plan",
         ),
-        *_told(
+        *_reported(
             "SELECT route.id, route.mission_id FROM missions_route route JOIN missions_missionuav place ON place.id = route.mission_uav_id "
             "WHERE place.mission_id <> route.mission_id", "route {} of mission {} has another mission's UAV",
         ),
-        *_told(
+        *_reported(
             "SELECT route.mission_id, target.mission_id, count(*) FROM missions_waypoint waypoint "
             "JOIN missions_route route ON route.id = waypoint.route_id "
             "JOIN missions_inspectiontarget target ON target.id = waypoint.target_id "
             "WHERE target.mission_id <> route.mission_id GROUP BY 1, 2", "mission {} flies to targets of mission {}: {}",
         ),
-        *_told(
+        *_reported(
             "SELECT command.id, command.mission_id FROM missions_uavcommand command JOIN missions_approval approval "
             "ON approval.id = command.approval_id WHERE approval.mission_id <> command.mission_id",
             "command {} of mission {} has another mission's approval",
         ),
-        *_told(
+        *_reported(
             "SELECT mission.id, mission.state FROM missions_mission mission WHERE state IN ('approved', 'dispatched', 'active') "
             "AND NOT EXISTS (SELECT 1 FROM missions_approval a WHERE a.mission_id = mission.id AND a.revoked_at IS NULL)",
             "mission {} is {} without an approval in force",
         ),
-        *_told(
+        *_reported(
             "SELECT id, state FROM missions_mission mission WHERE state <> 'draft' "
             "AND NOT EXISTS (SELECT 1 FROM missions_route WHERE mission_id = mission.id)", "mission {} is {} without a route",
         ),
     ]  # fmt: skip
 
 
-def approvals_are_what_their_hashes_say() -> list[str]:
+def approvals_match_their_hashes() -> list[str]:
     """The newest ones: each document anew."""
     newest = Approval.objects.order_by("-approved_at")[:MAX_APPROVALS]
     return [f"approval {one.pk} has another hash than its document" for one in newest if content_sha256(one.document) != one.content_sha256]
@@ -82,23 +82,23 @@ def approvals_are_what_their_hashes_say() -> list[str]:
 
 def nothing_is_stored_twice() -> list[str]:
     return [
-        *_told(
+        *_reported(
             "SELECT stream_id, sequence, count(*) FROM telemetry_telemetryrecord GROUP BY 1, 2 HAVING count(*) > 1",
             "record {1} of stream {0} is there {2} times",
         ),
-        *_told(
+        *_reported(
             "SELECT stream_id, sequence, count(*) FROM telemetry_inspectionresult GROUP BY 1, 2 HAVING count(*) > 1",
             "result {1} of stream {0} is there {2} times",
         ),
-        *_told(
+        *_reported(
             "SELECT uav_id, sequence, count(*) FROM missions_uavcommand GROUP BY 1, 2 HAVING count(*) > 1",
             "command {1} of UAV {0} is there {2} times",
         ),
-        *_told(
+        *_reported(
             "SELECT mission_id, count(*) FROM missions_approval WHERE revoked_at IS NULL GROUP BY 1 HAVING count(*) > 1",
             "mission {} has {} approvals in force",
         ),
-        *_told(
+        *_reported(
             "SELECT uav_id, code, subject, count(*) FROM telemetry_alert WHERE closed_at IS NULL GROUP BY 1, 2, 3 HAVING count(*) > 1",
             "UAV {} has alert {} {} open {} times at once",
         ),
@@ -107,7 +107,7 @@ def nothing_is_stored_twice() -> list[str]:
 
 def no_job_is_stuck() -> list[str]:
     """Open, and nobody has held it for longer than the sweep needs; or open for ever after it was to be cancelled."""
-    return _told(
+    return _reported(
         "SELECT id, task, state FROM workspace_job WHERE state IN ('queued', 'running') "
         "AND COALESCE(lease_expires_at, created_at) < now() - make_interval(secs => %(stuck_s)s)",
         "job {} ({}) is {} and nobody holds it", {"stuck_s": STUCK_AFTER_S},
@@ -116,7 +116,7 @@ def no_job_is_stuck() -> list[str]:
 
 def no_command_is_stuck() -> list[str]:
     """Open past its time, or open and unheld although its UAV is heard."""
-    return _told(
+    return _reported(
         "SELECT command.id, command.kind, command.state, command.uav_id FROM missions_uavcommand command "
         "LEFT JOIN telemetry_uavlink link ON link.uav_id = command.uav_id "
         "WHERE command.state IN ('queued', 'sent', 'acknowledged') "
@@ -129,7 +129,7 @@ def no_command_is_stuck() -> list[str]:
 
 def commands_have_whole_histories() -> list[str]:
     """Queued first, each step by one attempt or a later one, the last step the state that it is in, nothing after its end."""
-    return _told(
+    return _reported(
         """
         WITH steps AS (
             SELECT command_id, array_agg(state::text ORDER BY id) AS states, array_agg(attempt ORDER BY id) AS attempts
@@ -149,7 +149,7 @@ def commands_have_whole_histories() -> list[str]:
 def missions_have_whole_histories() -> list[str]:
     """Each revision once, each change from the one before it, and the last one the mission's own."""
     return [
-        *_told(
+        *_reported(
             """
             SELECT subject_id, after->>'revision', count(*) FROM workspace_auditentry
             WHERE subject_type = 'mission' AND after ? 'revision' GROUP BY 1, 2
@@ -157,7 +157,7 @@ def missions_have_whole_histories() -> list[str]:
             """,
             "revision {1} of mission {0} is in its history {2} times",
         ),
-        *_told(
+        *_reported(
             """
             WITH last AS (
                 SELECT subject_id, max(GREATEST(
@@ -176,7 +176,7 @@ def missions_have_whole_histories() -> list[str]:
 def alerts_add_up() -> list[str]:
     """What its row says is what its course and the history say."""
     return [
-        *_told(
+        *_reported(
             """
             SELECT id, code, (closed_at IS NULL) FROM telemetry_alert
             WHERE course->0->>'what' IS DISTINCT FROM 'opened'
@@ -186,7 +186,7 @@ def alerts_add_up() -> list[str]:
             """,
             "alert {} ({}) is open: {}, and its course says otherwise",
         ),
-        *_told(
+        *_reported(
             """
             SELECT alert.id, alert.code, alert.acknowledged_at FROM telemetry_alert alert
             WHERE (acknowledged_at IS NOT NULL) IS DISTINCT FROM ((
@@ -195,13 +195,13 @@ def alerts_add_up() -> list[str]:
             """,
             "alert {} ({}) was acknowledged at {}, and its course says otherwise",
         ),
-        *_told(
+        *_reported(
             """
-            SELECT alert.id, written.number, told.number FROM telemetry_alert alert
+            SELECT alert.id, written.number, reported.number FROM telemetry_alert alert
             CROSS JOIN LATERAL (SELECT count(*) AS number FROM telemetry_alertnote WHERE alert_id = alert.id) written
             CROSS JOIN LATERAL (SELECT count(*) AS number FROM workspace_auditentry
-                WHERE subject_type = 'alert' AND subject_id = alert.id::text AND action = 'note') told
-            WHERE written.number <> told.number
+                WHERE subject_type = 'alert' AND subject_id = alert.id::text AND action = 'note') reported
+            WHERE written.number <> reported.number
             """,
             "alert {} has {} notes, and its history {}",
         ),
@@ -210,7 +210,7 @@ def alerts_add_up() -> list[str]:
 
 def latest_is_the_newest_record() -> list[str]:
     """What live pages show of a UAV is the newest that was stored, as far as it is not from the future."""
-    return _told(
+    return _reported(
         """
         SELECT watch.uav_id, watch.measured->>'measured_at', newest.measured_at FROM telemetry_uavwatch watch
         CROSS JOIN LATERAL (SELECT max(measured_at) AS measured_at FROM telemetry_telemetryrecord record
@@ -222,13 +222,13 @@ def latest_is_the_newest_record() -> list[str]:
 
 
 def no_answer_is_half_kept() -> list[str]:
-    return _told("SELECT key, user_id FROM workspace_idempotencykey WHERE status IS NULL", "key {} of user {} has no answer")
+    return _reported("SELECT key, user_id FROM workspace_idempotencykey WHERE status IS NULL", "key {} of user {} has no answer")
 
 
 CHECKS: dict[str, Check] = {
     "no orphans, by every foreign key": no_orphans,
     "no mission is mixed from two plans": no_mission_of_two_plans,
-    "each approval has its document's hash": approvals_are_what_their_hashes_say,
+    "each approval has its document's hash": approvals_match_their_hashes,
     "nothing is stored twice": nothing_is_stored_twice,
     "no job is open without a lease": no_job_is_stuck,
     "no command is open without a lease": no_command_is_stuck,

@@ -129,15 +129,15 @@ class _Reader:
                 self._folders[-1] = text.strip()
             self._row_characters = 0
         elif parent == "Placemark" and name in _FACTS:
-            self._say(name, text)
+            self._report(name, text)
         elif (name == "value" and parent == "Data") or name == "SimpleData":
-            self._say(self._data_name, text)
+            self._report(self._data_name, text)
         elif name == "coordinates":
             self._coordinates = self._positions(text)
         elif name in _SHAPES:
             self._finish_shape(name, parent)
 
-    def _say(self, name: str, text: str) -> None:
+    def _report(self, name: str, text: str) -> None:
         name = " ".join(name.split())
         if name and text.strip():
             self._columns.check([name], self._place)

@@ -17,7 +17,7 @@ class Command(BaseCommand):
         parser.add_argument("--json", action="store_true", dest="as_json", help="print the figures as one JSON object")
 
     def handle(self, *args: Any, force: bool, as_json: bool, **options: Any) -> None:
-        snapshot = services.build_graph(force=force, progress=self._tell)
+        snapshot = services.build_graph(force=force, progress=self._notify)
         figures = {
             name: getattr(snapshot, name)
             for name in ("version", "nodes", "edges", "components", "excluded_nodes", "excluded_edges", "build_s")
@@ -30,6 +30,6 @@ class Command(BaseCommand):
                 "{excluded_nodes} nodes and {excluded_edges} edges are out because of zones; built in {build_s:.1f} s.".format(**figures)
             )
 
-    def _tell(self, message: str, fraction: float) -> None:
+    def _notify(self, message: str, fraction: float) -> None:
         if sys.stderr.isatty():
             self.stderr.write(f"{fraction:4.0%} {message}")

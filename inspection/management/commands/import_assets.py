@@ -42,7 +42,7 @@ class Command(ImportCommand):
         stated = _mapping(options["mapping"]) | {"replace_edited": options["replace_edited"]}
         return stated | ({"set_name": options["set_name"]} if options["set_name"] else {})
 
-    def tell(self, name: str, counts: dict[str, Any]) -> None:
+    def notify(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(f"{name}: {counts['format']}, {counts['crs']}")
         numbers = ", ".join(f"{counts[action]} {action}" for action in ("new", "changed", "vanished", "kept", "unchanged"))
         self.stdout.write(numbers)

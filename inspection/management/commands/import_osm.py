@@ -24,7 +24,7 @@ class Command(ImportCommand):
         except OsmFileError as error:
             raise CommandError(f"{path.name}: {error}") from error
 
-    def tell(self, name: str, counts: dict[str, Any]) -> None:
+    def notify(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(
             f"{name}: {counts['tower'] + counts['pole'] + counts['portal']} supports, {counts['line'] + counts['minor_line']} lines "
             f"({counts['line_km'] + counts['minor_line_km']:.1f} km), {counts['railway']} railway ways ({counts['railway_km']:.1f} km), "

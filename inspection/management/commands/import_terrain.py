@@ -27,7 +27,7 @@ class Command(ImportCommand):
         except TerrainFileError as error:
             raise CommandError(f"{path.name}: {error}") from error
 
-    def tell(self, name: str, counts: dict[str, Any]) -> None:
+    def notify(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(
             f"{name}: {counts['blocks']} blocks, heights from {counts['lowest_m']:.0f} to {counts['highest_m']:.0f} m above "
             f"{counts['vertical_datum']}, {counts['voids']} of {counts['posts']} posts void"

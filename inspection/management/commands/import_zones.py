@@ -39,6 +39,6 @@ class Command(ImportCommand):
     def provenance(self, options: dict[str, Any]) -> dict[str, Any]:
         return {"licence": options["licence"][:200], "attribution": options["attribution"][:300]}
 
-    def tell(self, name: str, counts: dict[str, Any]) -> None:
+    def notify(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(f"{name}: {counts['zones']} zones in {counts['layers']} layers ({counts['format']})")
         self.stdout.write(f"{counts['new']} new, {counts['changed']} changed, {counts['unchanged']} unchanged, {counts['removed']} removed")

@@ -20,10 +20,10 @@ def build(
     heights: FlownHeights | None = None,
 ) -> ClearedGraph:
     """The network of the ground, cleared of the ground's zones at all heights."""
-    tell = progress or (lambda message, fraction: None)
-    tell("joining lines and railways", 0.1)
+    notify = progress or (lambda message, fraction: None)
+    notify("joining lines and railways", 0.1)
     whole = network(ground, rules)
-    tell("clearing the zones", 0.5)
+    notify("clearing the zones", 0.5)
     return cleared(whole, index_of(ground.zones), rules, heights or FlownHeights(), ground_revision=ground.revision)
 
 

@@ -24,10 +24,10 @@ from inspection.services.imports.assets import (
     import_assets,
     opened,
     organisation_of,
+    reported,
     row_faults,
     set_name_of,
     staged,
-    told,
     with_what_is_known,
 )
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
@@ -47,7 +47,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         progress("reading the rows", 0.1)
         with opened(file_path, stated) as file:
             faults = row_faults(stated)
-            survey = survey_of(told(file.rows(faults), progress, "reading the rows", 0.1), file.source.columns)
+            survey = survey_of(reported(file.rows(faults), progress, "reading the rows", 0.1), file.source.columns)
             faults.refuse_if_any()
             summary = _summary(file, survey, name, stated, file_path)
             if words := _nothing_to_read(file, survey):

@@ -28,7 +28,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
     path = _file(path)
     try:
         with opened_terrain(path) as file:
-            datum = datum_of(file, _said_datum(parameters))
+            datum = datum_of(file, _stated_datum(parameters))
             survey, comparison = Survey(), _Comparison(provenance.file_name, datum)
             for number, raster in enumerate(file.rasters):
                 for block in blocks_of(raster):
@@ -52,7 +52,7 @@ def apply(
     """Store the heights. Raises FileRefused."""
     try:
         return import_terrain(
-            path=_file(path), imported_by=applied_by, vertical_datum=_said_datum(parameters), progress=progress, provenance=provenance
+            path=_file(path), imported_by=applied_by, vertical_datum=_stated_datum(parameters), progress=progress, provenance=provenance
         )
     except TerrainFileError as error:
         raise _refusal(error) from error
@@ -165,7 +165,7 @@ def _file(path: Path | None) -> Path:
     return path
 
 
-def _said_datum(parameters: dict[str, Any]) -> str:
+def _stated_datum(parameters: dict[str, Any]) -> str:
     said = parameters.get("vertical_datum") or ""
     if not isinstance(said, str):
         raise FileRefused([Fault("vertical_datum", "The vertical datum is a name.")])

@@ -9,7 +9,7 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from missions.command_rules import SETS_IN_MOTION
-from missions.hooks.in_air import uavs_never_heard, uavs_on_the_ground
+from missions.hooks.in_air import uavs_never_connected, uavs_on_the_ground
 from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
 from missions.selectors.commands import places_in_flight
 from missions.services.commands.flight_progress import ON_ITS_WAY
@@ -81,7 +81,7 @@ def _hold(scopes: Sequence[Scope], kind: CommandKind) -> None:
 def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, ways: Mapping[int, dict[str, Any]]) -> list[UavAnswer]:
     mission = scope.mission
     places = places_in_flight(mission) if mission.state in REACHABLE else {}
-    on_the_ground, never_heard = uavs_on_the_ground(places), uavs_never_heard(places)
+    on_the_ground, never_connected = uavs_on_the_ground(places), uavs_never_connected(places)
     wanted = sorted(places, key=places.__getitem__) if scope.uavs is None else list(dict.fromkeys(scope.uavs))
     uavs = {uav.pk: uav for uav in Uav.objects.filter(organisation=mission.organisation_id, pk__in=wanted)}
     answers = []
@@ -93,7 +93,7 @@ def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, way
         elif place is None:
             reason = Reason("not_in_mission", _("%(uav)s has no route of this mission sent or in flight.") % {"uav": uav.name})
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, reasons=(reason,)))
-        elif uav_id in never_heard:
+        elif uav_id in never_connected:
             reason = Reason("never_connected", _("%(uav)s never connected.") % {"uav": uav.name}, place)
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, place, reasons=(reason,)))
         elif uav_id in on_the_ground:

@@ -66,8 +66,8 @@ def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]
     """Read from the vehicle just now; what has nothing to do with its return is left out. No edit: the row's revision stays."""
     own = {name: value for name, value in parameters.items() if name in NAMES.get(autopilot, ())}
     if own:
-        told = {"autopilot": autopilot, "parameters": own}
-        Uav.objects.filter(pk=uav_id).update(autopilot_return=told, autopilot_return_read_at=Now())
+        autopilot_return = {"autopilot": autopilot, "parameters": own}
+        Uav.objects.filter(pk=uav_id).update(autopilot_return=autopilot_return, autopilot_return_read_at=Now())
 
 
 def return_checks(mission: Mission) -> list[ReturnCheck]:
@@ -78,8 +78,8 @@ def return_checks(mission: Mission) -> list[ReturnCheck]:
 
 def _fence_warning(mission: Mission, route: Route) -> str:
     uav = route.mission_uav.uav
-    told = {} if uav is None or uav.link != LinkKind.MAVLINK else uav.autopilot_return
-    off_by = fence_off_by(told.get("autopilot", ""), told.get("parameters", {}))
+    autopilot_return = {} if uav is None or uav.link != LinkKind.MAVLINK else uav.autopilot_return
+    off_by = fence_off_by(autopilot_return.get("autopilot", ""), autopilot_return.get("parameters", {}))
     if not off_by:
         return ""
     try:
@@ -117,11 +117,11 @@ def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedR
     if uav.link == LinkKind.HTTP:
         words = _("Return path of %(uav)s unknown: its companion computer decides. Nothing on it is checked.")
         return ReportedReturn(None, ReturnState.NOT_CHECKED, words % values)
-    told = uav.autopilot_return
-    own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
+    autopilot_return = uav.autopilot_return
+    own = own_return(autopilot_return.get("autopilot", ""), autopilot_return.get("parameters", {}))
     if own is None:
         words = _("Return altitude of %(uav)s not reported by the autopilot. Its return path is not checked against terrain and zones.")
-        return ReportedReturn(None, ReturnState.UNKNOWN, words % values, detail=_height_names(told.get("autopilot", "")))
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % values, detail=_height_names(autopilot_return.get("autopilot", "")))
     reported = ReportedReturn(own, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
     unknown = _why_unknown(own, name, has_rally=has_rally)
     return replace(reported, own=None, state=ReturnState.UNKNOWN, why=unknown, detail=own.untold) if unknown else reported

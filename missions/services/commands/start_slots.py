@@ -119,8 +119,8 @@ def _in_the_air(
         if route is None or route.geometry is None:
             continue
         has_ended = route.continued_by_id is not None or route.has_failed or flight <= route.flights_flown
-        was_told_else = start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
-        if has_ended or was_told_else or start.mission is None or start.mission.state not in ON_ITS_WAY:
+        was_ordered_otherwise = start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
+        if has_ended or was_ordered_otherwise or start.mission is None or start.mission.state not in ON_ITS_WAY:
             flown = _since(route, flight, started_s=0.0) if start.uav_id in in_the_air else None
             untimely += [] if flown is None else [flown]
             with_flight |= set() if flown is None else {start.uav_id}

@@ -130,8 +130,8 @@ def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
     values = {"uav": uav.name}
     if uav.link == LinkKind.HTTP:
         raise refuse("not_by_companion", _("The return height of %(uav)s is set by its companion, not from here.") % values)
-    told = uav.autopilot_return
-    if own_return(told.get("autopilot", ""), told.get("parameters", {})) is None:
+    reported = uav.autopilot_return
+    if own_return(reported.get("autopilot", ""), reported.get("parameters", {})) is None:
         raise refuse("not_read", _("The return height of %(uav)s was never read: connect it first.") % values)
     heights = {name: value for name, value in given.items() if name != THEN_RETURN}
     checked = {"height_m": _within("height_m", heights, MIN_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}

@@ -55,21 +55,21 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
         continuation = held_mission(held.continuation.pk, None)
         _hand_over_targets(mission, continuation, held.difference)
         why = f"Continues {mission.name}."
-        told = []
+        reported = []
         for uav in sorted(uavs, key=lambda one: one["uav"] or 0):
             row = Uav.objects.filter(pk=uav["uav"]).first()
             if row is None:
                 continue
             if uav["change"] == "changed":
-                told.append(
+                reported.append(
                     queue_command(
                         uav=row, kind=CommandKind.HOLD, actor=actor, why=why, mission=continuation, approval=approval,
                         parameters={HAND_OVER: True},
                     )
                 )  # fmt: skip
             elif uav["change"] in GIVEN_UP and _is_on_its_own(row, mission):
-                told.append(queue_command(uav=row, kind=CommandKind.RETURN, actor=actor, why=why, mission=mission))
-        commands = [{"uav": command.uav_id, "kind": command.kind, "command": str(command.pk)} for command in told]
+                reported.append(queue_command(uav=row, kind=CommandKind.RETURN, actor=actor, why=why, mission=mission))
+        commands = [{"uav": command.uav_id, "kind": command.kind, "command": str(command.pk)} for command in reported]
         change_state(
             continuation,
             MissionState.DISPATCHED,

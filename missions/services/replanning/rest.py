@@ -24,7 +24,7 @@ from missions.models import (
     UavCommand,
     Waypoint,
 )
-from missions.selectors.ahead import HEARD_WITHIN_S, OFF_ROUTE_M, first_ahead, passed_point
+from missions.selectors.ahead import OFF_ROUTE_M, RECEIVED_WITHIN_S, first_ahead, passed_point
 from missions.selectors.missions import approval_in_force
 from missions.services.commands.flight_progress import FLIGHT_FAILED
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
@@ -161,7 +161,7 @@ def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: S
         return _("%(uav)s has not taken off.") % values
     if len(approved["flights"]) > 1:
         return _("%(uav)s flies its route in several flights, and lands in between.") % values
-    if uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
+    if uav.located_at is None or (now - uav.located_at).total_seconds() > RECEIVED_WITHIN_S:
         return _("%(uav)s: no recent telemetry, position unknown.") % values
     return ""
 

@@ -9,7 +9,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
-from missions.selectors.ahead import HEARD_WITHIN_S
+from missions.selectors.ahead import RECEIVED_WITHIN_S
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
 from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
@@ -96,7 +96,7 @@ def _routes(continuation: Mission) -> list[Route]:
 def _elsewhere(route: Route, now: datetime) -> str:
     """Whether the UAV is no longer on the way that the offer keeps, or too near to its end."""
     uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
-    if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
+    if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > RECEIVED_WITHIN_S:
         return _("%(uav)s: no recent telemetry, position unknown.") % values
     at, points = LonLat(*uav.location.coords[:2]), _kept_points(route)
     away_m = distance_apart_m(points[0].position, at) if len(points) == 1 else place_on_route(points, at).away_m

@@ -68,8 +68,8 @@ def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str]
             return ""
         words += [reason.message for reason in reasons]
     troubles = [field.why(rest.place) for rest in field.rests]
-    told = dict.fromkeys(filter(None, [*words, *troubles]))
-    return "\n".join(told) or _("Nothing would change: the UAVs fly on as they do.")
+    reported = dict.fromkeys(filter(None, [*words, *troubles]))
+    return "\n".join(reported) or _("Nothing would change: the UAVs fly on as they do.")
 
 
 def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:

@@ -39,7 +39,7 @@ const STATES = {
 export const isOpen = ({ state }) => state === "queued" || state === "running";
 
 /** @param {Reporter} reporter */
-export function mountJobs({ tell, settle }) {
+export function mountJobs({ notify, settle }) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
 
@@ -53,7 +53,7 @@ export function mountJobs({ tell, settle }) {
       draw([...open.data.results, ...last.data.results.filter((job) => !isOpen(job))]);
       if (open.data.results.length) timer = setTimeout(load, INTERVAL_MS);
     } catch (error) {
-      tell(t("Jobs could not be loaded."), error);
+      notify(t("Jobs could not be loaded."), error);
     }
   }
 
@@ -75,7 +75,7 @@ export function mountJobs({ tell, settle }) {
       toast(t("The job is asked to stop."));
       await load();
     } catch (error) {
-      tell(t("The job is not stopped."), error);
+      notify(t("The job is not stopped."), error);
     }
   }
 

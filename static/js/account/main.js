@@ -3,7 +3,7 @@
 import { get, patch } from "../api.js";
 import { byId, icon } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
-import { settle, tell } from "../page/problem.js";
+import { notify, settle } from "../page/problem.js";
 import { chooseTheme, chosenTheme, onTheme } from "../page/theme.js";
 import { language, localeOf, t } from "../text.js";
 import { heightText, lengthText, speedText } from "../units.js";
@@ -39,7 +39,7 @@ async function keep(control) {
     saved.replaceChildren(icon("check", "small"), t("Saved"));
   } catch (error) {
     saved.replaceChildren();
-    tell(t("Not saved."), error);
+    notify(t("Not saved."), error);
     return;
   }
   if (name === "single_keys") document.documentElement.dataset.singleKeys = isOn(control) ? "on" : "off";
@@ -80,10 +80,10 @@ function showZone() {
 }
 showZone();
 
-const tokens = mountTokens({ tell, settle });
-mountPassword({ tell, settle }, () => void tokens.load());
-const sessions = mountSessions({ tell, settle });
-const jobs = mountJobs({ tell, settle });
+const tokens = mountTokens({ notify, settle });
+mountPassword({ notify, settle }, () => void tokens.load());
+const sessions = mountSessions({ notify, settle });
+const jobs = mountJobs({ notify, settle });
 
 /** @type {string | null} */
 let nextSignIns = null;
@@ -94,7 +94,7 @@ async function loadSignIns(address = "/account/sign-ins?limit=5") {
     nextSignIns = data.next;
     byId("more-sign-ins").hidden = data.next === null;
   } catch (error) {
-    tell(t("Sign-ins could not be loaded."), error);
+    notify(t("Sign-ins could not be loaded."), error);
   }
 }
 

@@ -29,7 +29,7 @@ function forgetFaults() {
 }
 
 /** @param {Reporter} reporter @param {() => void} onChange tokens may have ended with it */
-export function mountPassword({ tell, settle }, onChange) {
+export function mountPassword({ notify, settle }, onChange) {
   const form = byId("password-form", HTMLFormElement);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
@@ -49,7 +49,7 @@ export function mountPassword({ tell, settle }, onChange) {
       const faults = error instanceof ApiError ? Object.entries(error.details ?? {}) : [];
       const [name, words] = faults.find(([place]) => FIELDS.includes(place)) ?? [];
       if (name) fault(name, words.join(" "));
-      else tell(t("The password is not changed."), error);
+      else notify(t("The password is not changed."), error);
       return;
     }
     settle();

@@ -13,7 +13,7 @@ import { browserName } from "./sign_in_row.js";
 /** @import { Reporter } from "../page/problem.js" */
 
 /** @param {Reporter} reporter */
-export function mountSessions({ tell, settle }) {
+export function mountSessions({ notify, settle }) {
   /** @param {BrowserSession} session */
   function row(session) {
     const name = browserName(session.user_agent);
@@ -54,7 +54,7 @@ export function mountSessions({ tell, settle }) {
       const { data } = /** @type {Answer<BrowserSessionList>} */ (await get("/account/sessions"));
       byId("sessions").replaceChildren(...data.results.map(row));
     } catch (error) {
-      tell(t("Sessions could not be loaded."), error);
+      notify(t("Sessions could not be loaded."), error);
     }
   }
 
@@ -65,7 +65,7 @@ export function mountSessions({ tell, settle }) {
       settle();
       toast(words);
     } catch (error) {
-      tell(t("Nobody was signed out."), error);
+      notify(t("Nobody was signed out."), error);
     }
     await load();
     byId("sessions").querySelector("button")?.focus({ preventScroll: true });

@@ -22,13 +22,13 @@ export const SCOPES = {
 };
 
 /** @param {Reporter} reporter */
-export function mountTokens({ tell, settle }) {
+export function mountTokens({ notify, settle }) {
   async function load() {
     try {
       const { data } = /** @type {Answer<TokenList>} */ (await get("/account/tokens"));
       draw(data.results);
     } catch (error) {
-      tell(t("Tokens could not be loaded."), error);
+      notify(t("Tokens could not be loaded."), error);
     }
   }
 
@@ -47,7 +47,7 @@ export function mountTokens({ tell, settle }) {
       await load();
       byId("token_name").focus();
     } catch (error) {
-      tell(t("The token is not revoked."), error);
+      notify(t("The token is not revoked."), error);
     }
   }
 
@@ -60,7 +60,7 @@ export function mountTokens({ tell, settle }) {
     nameField.removeAttribute("aria-invalid");
     if (!name) askForName();
     else if (new FormData(form).has("scope")) await make(name);
-    else tell(t("No token is made."), new ApiError(t("Choose what it may be used for."), { status: 400 }));
+    else notify(t("No token is made."), new ApiError(t("Choose what it may be used for."), { status: 400 }));
   });
 
   function askForName() {
@@ -93,7 +93,7 @@ export function mountTokens({ tell, settle }) {
       byId("new-token").querySelector("button")?.focus();
       await load();
     } catch (error) {
-      tell(t("No token is made."), error);
+      notify(t("No token is made."), error);
     }
   }
 

@@ -21,7 +21,7 @@ for (const field of fields) {
   let point = null;
 
   /** @param {string | null | undefined} fault */
-  const tell = (fault) => {
+  const notify = (fault) => {
     note.textContent = fault ?? hint;
     note.classList.toggle("fault", Boolean(fault));
   };
@@ -40,13 +40,13 @@ for (const field of fields) {
   /** @param {{ lng: number, lat: number }} place */
   function write({ lng, lat }) {
     text.value = pointText(lng, lat);
-    tell(null);
+    notify(null);
   }
 
   /** @param {{ move: boolean }} how */
   function show({ move }) {
     const { geometry, fault } = parseGeometry(text.value);
-    tell(fault);
+    notify(fault);
     if (geometry?.type === "Point") placePoint([geometry.coordinates[0], geometry.coordinates[1]]);
     else setFeatures(view.map, "drawn", geometry ? [outlineOf(geometry)] : []);
     if (move && geometry) view.fit(boxAround(positionsOf(geometry)), { animate: false });

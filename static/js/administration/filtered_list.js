@@ -18,12 +18,12 @@ const TYPING_ENDS_MS = 250;
  * @property {(entry: Row) => HTMLElement} row
  * @property {(count: number) => string} countWords
  * @property {{ icon: string, title: string, words: string }} none
- * @property {Reporter["tell"]} tell
+ * @property {Reporter["notify"]} notify
  * @property {string} titleOfFault
  */
 
 /** @template Row @param {ListOptions<Row>} options */
-export function filteredList({ list, path, filters, row, countWords, none, tell, titleOfFault }) {
+export function filteredList({ list, path, filters, row, countWords, none, notify, titleOfFault }) {
   /** @type {[string, HTMLInputElement | HTMLSelectElement][]} */
   const controls = filters.map((name) => [name, byId(`${list}-${name}`, HTMLInputElement)]);
   const rows = byId(`${list}-rows`);
@@ -49,7 +49,7 @@ export function filteredList({ list, path, filters, row, countWords, none, tell,
       const { data } = /** @type {Answer<{ results: Row[], next: string | null }>} */ (await get(address));
       return turn === asked ? data : null;
     } catch (error) {
-      tell(titleOfFault, error);
+      notify(titleOfFault, error);
       return null;
     }
   }

@@ -25,7 +25,7 @@ const STATES = {
 const DAYS = [1, 7, 14, 30];
 
 /** @param {Reporter & { show: () => Promise<unknown> }} options show: turns to the tab */
-export function mountInvitations({ tell, settle, show }) {
+export function mountInvitations({ notify, settle, show }) {
   const list = filteredList({
     list: "invitations",
     path: "/invitations",
@@ -33,7 +33,7 @@ export function mountInvitations({ tell, settle, show }) {
     row,
     countWords: (count) => tn(count, "{count} invitation", "{count} invitations"),
     none: { icon: "users", title: t("No invitations"), words: t("Invite a user: a link creates the account.") },
-    tell,
+    notify,
     titleOfFault: t("Invitations could not be loaded."),
   });
 
@@ -85,7 +85,7 @@ export function mountInvitations({ tell, settle, show }) {
       await list.load();
       byId("invite").focus();
     } catch (error) {
-      tell(t("The invitation was not revoked."), error);
+      notify(t("The invitation was not revoked."), error);
     }
   }
 

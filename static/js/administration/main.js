@@ -2,7 +2,7 @@
 
 import { byId, find } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
-import { settle, tell } from "../page/problem.js";
+import { notify, settle } from "../page/problem.js";
 import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
 import { mountPeople } from "./people.js";
@@ -16,11 +16,11 @@ import { mountSignIns } from "./sign_ins.js";
 const TABS = ["people", "invitations", "service-accounts", "sign-ins", "rules"];
 
 const lists = {
-  people: mountPeople({ tell, settle }),
-  invitations: mountInvitations({ tell, settle, show: () => showTab("invitations") }),
-  "service-accounts": mountServiceAccounts({ tell, settle }),
-  "sign-ins": mountSignIns({ tell }),
-  rules: mountRules({ tell, settle }),
+  people: mountPeople({ notify, settle }),
+  invitations: mountInvitations({ notify, settle, show: () => showTab("invitations") }),
+  "service-accounts": mountServiceAccounts({ notify, settle }),
+  "sign-ins": mountSignIns({ notify }),
+  rules: mountRules({ notify, settle }),
 };
 
 /**

@@ -41,19 +41,19 @@ export function mountPeople(reporter) {
     row: (/** @type {Person} */ person) => people.row(person),
     countWords: (count) => tn(count, "{count} person", "{count} people"),
     none: { icon: "users", title: t("Nobody is online"), words: t("Invite a user.") },
-    tell: reporter.tell,
+    notify: reporter.notify,
     titleOfFault: t("People could not be loaded."),
   });
 }
 
 /** Rows of people, and what can be done with each. */
 class People {
-  #tell;
+  #notify;
   #settle;
 
   /** @param {Reporter} reporter */
-  constructor({ tell, settle }) {
-    this.#tell = tell;
+  constructor({ notify, settle }) {
+    this.#notify = notify;
     this.#settle = settle;
   }
 
@@ -161,7 +161,7 @@ class People {
     } catch (error) {
       const now = error instanceof ApiError ? error.details?.current : null;
       this.#redraw(now ?? person, focus);
-      this.#tell(t("Nothing was changed."), error);
+      this.#notify(t("Nothing was changed."), error);
     }
   }
 
@@ -178,7 +178,7 @@ class People {
       this.#settle();
       toast(t("{name} is signed out everywhere.", { name: person.username }));
     } catch (error) {
-      this.#tell(t("Nobody was signed out."), error);
+      this.#notify(t("Nobody was signed out."), error);
     }
   }
 
@@ -207,7 +207,7 @@ class People {
       this.#redraw(without, ".icon-button");
       toast(done);
     } catch (error) {
-      this.#tell(title, error);
+      this.#notify(title, error);
     }
   }
 

@@ -15,7 +15,7 @@ const RULES = [
 /** @typedef {typeof RULES[number]} Rule */
 
 /** @param {Reporter} reporter */
-export function mountRules({ tell, settle }) {
+export function mountRules({ notify, settle }) {
   /** @param {Rule} rule */
   async function show({ id, path, name }) {
     const { data } = /** @type {Answer<Record<string, boolean>>} */ (await get(path));
@@ -29,7 +29,7 @@ export function mountRules({ tell, settle }) {
     try {
       await Promise.all(RULES.map(show));
     } catch (error) {
-      tell(t("The rules could not be read."), error);
+      notify(t("The rules could not be read."), error);
     }
   }
 
@@ -43,7 +43,7 @@ export function mountRules({ tell, settle }) {
         settle();
       } catch (error) {
         rule.checked = !wanted;
-        tell(t("The rule was not changed."), error);
+        notify(t("The rule was not changed."), error);
       } finally {
         rule.disabled = false;
         rule.focus();

@@ -32,7 +32,7 @@ export function mountServiceAccounts(reporter) {
       title: t("No service accounts"),
       words: t("Add one for a program that is to use the API. It stays when people leave."),
     },
-    tell: reporter.tell,
+    notify: reporter.notify,
     titleOfFault: t("Service accounts could not be loaded."),
   });
   byId("add-service-account").addEventListener("click", () =>
@@ -46,13 +46,13 @@ export function mountServiceAccounts(reporter) {
 
 /** Rows of service accounts, and what can be done with each. */
 class ServiceAccounts {
-  #tell;
+  #notify;
   #settle;
   #reload;
 
   /** @param {Reporter} reporter @param {() => unknown} reload */
-  constructor({ tell, settle }, reload) {
-    this.#tell = tell;
+  constructor({ notify, settle }, reload) {
+    this.#notify = notify;
     this.#settle = settle;
     this.#reload = reload;
   }
@@ -131,7 +131,7 @@ class ServiceAccounts {
       toast(words);
     } catch (error) {
       if (error instanceof ApiError && error.details?.current) now = error.details.current;
-      this.#tell(t("Nothing was changed."), error);
+      this.#notify(t("Nothing was changed."), error);
     }
     const fresh = this.row(now);
     document.querySelector(`#service-accounts-rows [data-account="${account.id}"]`)?.replaceWith(fresh);

@@ -23,8 +23,8 @@ function row(entry) {
   );
 }
 
-/** @param {Pick<Reporter, "tell">} reporter */
-export function mountSignIns({ tell }) {
+/** @param {Pick<Reporter, "notify">} reporter */
+export function mountSignIns({ notify }) {
   return filteredList({
     list: "sign-ins",
     path: "/sign-ins",
@@ -36,7 +36,7 @@ export function mountSignIns({ tell }) {
       title: t("Nobody has signed in yet"),
       words: t("Each sign-in and each try will stand here."),
     },
-    tell,
+    notify,
     titleOfFault: t("Sign-ins could not be loaded."),
   });
 }

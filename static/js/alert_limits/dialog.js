@@ -55,9 +55,9 @@ export async function openAlertLimits({ address, title, hint, onSaved }) {
           type: "button",
           class: "button quiet",
           onclick: () => {
-            for (const { input, tell } of fields.values()) {
+            for (const { input, notify } of fields.values()) {
               input.value = "";
-              tell("");
+              notify("");
             }
           },
         },
@@ -75,18 +75,18 @@ export async function openAlertLimits({ address, title, hint, onSaved }) {
   );
 
   /** @param {string} words */
-  function say(words) {
+  function announce(words) {
     wrong.hidden = !words;
     wrong.textContent = words;
   }
 
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    say("");
+    announce("");
     /** @type {Figures} */
     const stated = {};
     for (const [name, field] of fields) {
-      field.tell("");
+      field.notify("");
       const value = field.read();
       if (value !== null) stated[name] = value;
     }
@@ -100,8 +100,8 @@ export async function openAlertLimits({ address, title, hint, onSaved }) {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       const [place] = Object.keys(error.details ?? {});
-      fields.get(place)?.tell(t("The server does not take this figure."));
-      say(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message);
+      fields.get(place)?.notify(t("The server does not take this figure."));
+      announce(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message);
     } finally {
       save.removeAttribute("aria-busy");
     }
@@ -130,7 +130,7 @@ const fieldOf = ({ name, label, unit, factor }, { stated, usual, bounds }) =>
 function showWrongOrder(fields, stated, usual) {
   const faults = wrongWayRound(stated, usual);
   for (const [upper, lower] of faults)
-    fields.get(upper)?.tell(
+    fields.get(upper)?.notify(
       t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
         other: fields.get(lower)?.label ?? lower,
         figure: numberText((stated[lower] ?? usual[lower]) / (FACTORS.get(lower) ?? 1), 0),

@@ -7,7 +7,7 @@ import { routeLetter } from "./palette.js";
 /** @import { Command, CommandKind, CommandState, Mission, MissionState, UavConnection } from "../api_types.d.ts" */
 
 /** @typedef {ReturnType<typeof flyersOf>[number]} Flyer */
-/** @typedef {{ words: string, image: string, level?: string | null }} Said */
+/** @typedef {{ words: string, image: string, level?: string | null }} StatusText */
 
 /** @type {Record<CommandKind, string>} */
 export const KINDS = {
@@ -123,7 +123,7 @@ function readBack({ loaded_read_at, loaded_doubt, server_time }) {
  *
  * @param {Command | null | undefined} command undefined: not read yet
  * @param {UavConnection | null} [connection]
- * @returns {Said & { share?: number }}
+ * @returns {StatusText & { share?: number }}
  */
 export function boardWords(command, connection = null) {
   if (command === undefined) return { words: t("Reading the mission on the UAV…"), image: "loader-circle" };
@@ -172,12 +172,12 @@ export function boardWords(command, connection = null) {
  * "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }.
  *
  * @param {Command} command
- * @returns {Said}
+ * @returns {StatusText}
  */
 export function commandWords(command) {
   const { words, image } = STATES[command.state];
   const at = command.finished_at ?? command.acknowledged_at ?? command.sent_at ?? command.created_at;
-  const said = t("{kind}: {state} {time}", { kind: KINDS[command.kind], state: words, time: clockText(at) });
+  const summary = t("{kind}: {state} {time}", { kind: KINDS[command.kind], state: words, time: clockText(at) });
   const { progress } = command;
   if (command.state === "queued" && progress?.total && !isOfMission(command)) {
     return {
@@ -196,7 +196,7 @@ export function commandWords(command) {
   }
   const level = command.state === "failed" ? "critical" : command.state === "expired" ? "warning" : null;
   return {
-    words: command.outcome && command.state !== "applied" ? `${said} – ${command.outcome}` : said,
+    words: command.outcome && command.state !== "applied" ? `${summary} – ${command.outcome}` : summary,
     image,
     level,
   };

@@ -4,7 +4,7 @@ import { isOnItsWay } from "./flying.js";
 
 /** @import { LiveLink, LiveMission, LiveUav, Measured } from "../api_types.d.ts" */
 
-const HEARD_WITHIN_MS = 3_600_000;
+const RECEIVED_WITHIN_MS = 3_600_000;
 
 /**
  * A flight that was told to be over is, though no report has said so.
@@ -15,7 +15,8 @@ export const inAir = ({ measured, link }) =>
   link?.is_in_air === false ? false : (measured?.is_in_air ?? link?.is_in_air ?? null);
 
 /** @param {Pick<LiveUav, "link">} uav @param {number} now_ms */
-const wasHeard = ({ link }, now_ms) => (link?.heard_at ? now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS : false);
+const wasReceived = ({ link }, now_ms) =>
+  link?.heard_at ? now_ms - Date.parse(link.heard_at) < RECEIVED_WITHIN_MS : false;
 
 /**
  * UAVs that can be told something: on a mission that is on its way and not known to stand on the ground, or still in the air after it, as
@@ -28,6 +29,6 @@ export function flyingUavs({ uavs, missions, now_ms }) {
   return uavs.filter((uav) =>
     uav.mission !== null && onItsWay.has(uav.mission)
       ? inAir(uav) !== false
-      : inAir(uav) === true && wasHeard(uav, now_ms),
+      : inAir(uav) === true && wasReceived(uav, now_ms),
   );
 }

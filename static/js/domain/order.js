@@ -103,11 +103,11 @@ function sorted(items, keysOf) {
  * Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse.
  *
  * @param {Alert[]} alerts
- * @param {Map<number, AlertLevel>} told level by id
+ * @param {Map<number, AlertLevel>} reported level by id
  */
-export function newAlerts(alerts, told) {
+export function newAlerts(alerts, reported) {
   /** @param {Alert} alert */
   const isNew = ({ id, level, closed_at, acknowledged_at }) =>
-    closed_at === null && acknowledged_at === null && told.get(id) !== level;
+    closed_at === null && acknowledged_at === null && reported.get(id) !== level;
   return alerts.filter(isNew);
 }

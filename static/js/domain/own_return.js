@@ -122,13 +122,14 @@ function basisText(present) {
  */
 export function returnLinesOfAll(uavs) {
   /** @type {Map<string, string[]>} */
-  const said = new Map();
+  const sentences = new Map();
   const known = uavs.flatMap(({ check }) => check ?? []);
   const { lines, checks } = unreportedOnce(known);
   const shown = new Map(known.map((check, place) => [check, checks[place]]));
   for (const { name, check } of uavs)
-    for (const line of returnLines(check && shown.get(check))) said.set(line, [...(said.get(line) ?? []), name]);
-  return [...lines, ...[...said].map(([line, names]) => `${names.join(", ")}: ${line}`)];
+    for (const line of returnLines(check && shown.get(check)))
+      sentences.set(line, [...(sentences.get(line) ?? []), name]);
+  return [...lines, ...[...sentences].map(([line, names]) => `${names.join(", ")}: ${line}`)];
 }
 
 /**
@@ -225,8 +226,8 @@ function unreportedOnce(checks) {
 /** Warnings of a mission's UAVs, each sentence once. @param {ReturnCheck[]} all */
 export function warningsOfAll(all) {
   const { lines, checks } = unreportedOnce(all);
-  const said = checks.flatMap(({ warnings, fence_warning }) => [...warnings, fence_warning]);
-  return [...new Set([...lines, ...said].filter(Boolean))];
+  const sentences = checks.flatMap(({ warnings, fence_warning }) => [...warnings, fence_warning]);
+  return [...new Set([...lines, ...sentences].filter(Boolean))];
 }
 
 /**
@@ -234,7 +235,7 @@ export function warningsOfAll(all) {
  *
  * @param {ReturnCheck | null | undefined} check
  */
-export function returnSaid(check) {
+export function returnStatus(check) {
   if (!check) return null;
   const { state, warnings, fence_warning, detail } = check;
   const isGood = state === "clear" && !fence_warning;

@@ -45,11 +45,11 @@ const namesOfChecks = (checks) => [...new Set(checks.map(({ code }) => CHECK_NAM
 /** What is said of a UAV in one line: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
 export function summaryOf({ checks }) {
   const worst = worstOf(checks);
-  const said = checks.filter(({ state }) => state === worst);
+  const worstChecks = checks.filter(({ state }) => state === worst);
   if (worst === "ok") return t("Ready");
-  if (worst === "failed" || worst === "waiting") return said[0].message;
-  const names = namesOfChecks(said.filter(({ code }) => code !== "mission")); // that it was not uploaded is known
-  if (!names) return said[0].message;
+  if (worst === "failed" || worst === "waiting") return worstChecks[0].message;
+  const names = namesOfChecks(worstChecks.filter(({ code }) => code !== "mission")); // that it was not uploaded is known
+  if (!names) return worstChecks[0].message;
   return worst === "warning" ? t("Warning: {names}", { names }) : t("Not known: {names}", { names });
 }
 

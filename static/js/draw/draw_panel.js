@@ -62,7 +62,7 @@ class DrawPanel {
   /** @type {EditorState | null} */
   #now = null;
   /** What the server says. @type {Fault | null} */
-  #told = null;
+  #reported = null;
 
   /** @param {Editor} editor @param {ShowPlace} show */
   constructor(editor, show) {
@@ -86,7 +86,7 @@ class DrawPanel {
   /** @param {EditorState} state */
   update(state) {
     this.#now = state;
-    this.#told = null;
+    this.#reported = null;
     this.#draw();
   }
 
@@ -99,7 +99,7 @@ class DrawPanel {
 
   /** Shows what the server found. @param {{ fault: { message: string, position: number[] | null } | null } & Figures} found */
   verdict({ fault, length_m, area_m2 }) {
-    this.#told = fault && {
+    this.#reported = fault && {
       message: `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.`,
       position: fault.position,
       sides: [],
@@ -131,7 +131,7 @@ class DrawPanel {
   /** @param {EditorState} state @returns {Fault[]} */
   #wrong({ isDrawing, faults }) {
     if (isDrawing) return faults.filter((fault) => fault.sides.length);
-    return faults.length || !this.#told ? faults : [this.#told];
+    return faults.length || !this.#reported ? faults : [this.#reported];
   }
 
   /** @param {Fault} fault */

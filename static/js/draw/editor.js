@@ -47,7 +47,7 @@ export class Editor {
 
   recolour() {
     recolour(this.map);
-    if (this.isActive()) this.tell();
+    if (this.isActive()) this.notify();
   }
 
   isActive = () => this.#steps !== null;
@@ -94,7 +94,7 @@ export class Editor {
     this.isMoving = false;
     forgetShapes();
     this.map.doubleClickZoom.disable();
-    this.tell();
+    this.notify();
   }
 
   stop() {
@@ -105,11 +105,11 @@ export class Editor {
     showSnap(this.map, null);
     this.map.doubleClickZoom.enable();
     this.map.getCanvasContainer().classList.remove("over-thing");
-    this.tell();
+    this.notify();
   }
 
   /** Draws what there is now and tells it. */
-  tell() {
+  notify() {
     const { map } = this;
     if (this.chosen && (!this.#steps || !shapes.positionAt(this.drawing.shape, this.chosen))) this.chosen = null;
     if (this.growing) this.isMoving = false;
@@ -152,7 +152,7 @@ export class Editor {
   /** One step; false where it changes nothing. @param {Drawing} drawing */
   take(drawing) {
     const isNew = this.#steps?.take(drawing) ?? false;
-    if (isNew) this.tell();
+    if (isNew) this.notify();
     return isNew;
   }
 
@@ -173,7 +173,7 @@ export class Editor {
     const position = await exact(this.map, snapped);
     if (!this.#steps || shapes.positionAt(this.drawing.shape, at)?.join() !== was.join()) return;
     this.#steps.amend({ ...this.drawing, shape: shapes.move(this.drawing.shape, at, position) });
-    this.tell();
+    this.notify();
   }
 
   // --- what buttons and keys call: each does nothing and returns false while nothing is drawn
@@ -182,7 +182,7 @@ export class Editor {
   choose = (at) => {
     if (!this.#steps) return false;
     this.chosen = at;
-    this.tell();
+    this.notify();
     return true;
   };
 
@@ -210,7 +210,7 @@ export class Editor {
   /** @param {"undo" | "redo"} direction */
   #step(direction) {
     if (!this.#steps?.[direction]()) return false;
-    this.tell();
+    this.notify();
     return true;
   }
 

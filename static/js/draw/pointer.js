@@ -72,7 +72,7 @@ class Pointer {
       this.#press = null;
       if (!this.#drag) return;
       this.#endDrag(); // two fingers move the map
-      editor.tell();
+      editor.notify();
       return;
     }
     const point = this.#pointOf(event);
@@ -136,7 +136,7 @@ class Pointer {
     }
     if (ended.role === "vertex" || ended.role === "middle") editor.chosen = ended.at;
     const next = ended.moved ? ended.now : ended.role === "middle" ? ended.first : null;
-    if (!next || !editor.takeShape(next)) editor.tell();
+    if (!next || !editor.takeShape(next)) editor.notify();
     else if (ended.at) editor.settle(ended.at, ended.snapped);
   }
 
@@ -144,7 +144,7 @@ class Pointer {
   cancelled(event) {
     this.#fingers.delete(event.pointerId);
     this.#press = null;
-    if (this.#editor.isActive() && this.#endDrag()) this.#editor.tell();
+    if (this.#editor.isActive() && this.#endDrag()) this.#editor.notify();
   }
 
   /** The drag that a press on a handle begins; one on a middle adds a vertex. @param {Handle} handle @param {ScreenPoint} point */

@@ -21,7 +21,7 @@ const WORDS = {
   circle: t("Click the centre, then how far it reaches."),
 };
 /** @type {WeakMap<Shape, Fault[]>} */
-const told = new WeakMap(); // shapes are values: what was found once holds
+const reported = new WeakMap(); // shapes are values: what was found once holds
 
 /**
  * [{ message, position, sides: [[from, to], …] }]; an empty list where nothing is wrong. Of a ring that is `growing` the side that closes it is not there yet.
@@ -32,8 +32,8 @@ const told = new WeakMap(); // shapes are values: what was found once holds
  */
 export function faultsOf(shape, growing = null) {
   if (growing) return found(shape, growing);
-  const faults = told.get(shape) ?? found(shape, null);
-  told.set(shape, faults);
+  const faults = reported.get(shape) ?? found(shape, null);
+  reported.set(shape, faults);
   return faults;
 }
 

@@ -17,13 +17,13 @@ const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
  *
  * @param {Pick<UavConnection, "heard_at" | "heard_by" | "server_time">} connection
  */
-export function heardWords({ heard_at, heard_by, server_time }) {
-  if (!heard_at) return { words: t("Never connected."), isHeard: false };
+export function receivedWords({ heard_at, heard_by, server_time }) {
+  if (!heard_at) return { words: t("Never connected."), isReceived: false };
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
   const door = heard_by ? LINKS[heard_by].by : "";
   return {
     words: t("Last contact {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
-    isHeard: seconds <= LOST_AFTER_S,
+    isReceived: seconds <= LOST_AFTER_S,
   };
 }
 
@@ -46,17 +46,17 @@ export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server
   const what = t("flight {number} of an approved mission", { number: loaded_flight });
   if (!loaded_read_at) return what;
   const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1_000, loaded_read_at);
-  const said = t("{what}, verified {ago}", { what, ago });
-  return loaded_doubt ? `${said}; ${DOUBTS[loaded_doubt]}` : said;
+  const summary = t("{what}, verified {ago}", { what, ago });
+  return loaded_doubt ? `${summary}; ${DOUBTS[loaded_doubt]}` : summary;
 }
 
 /** @param {UavConnection} connection */
 function drawing(connection) {
-  const { words, isHeard } = heardWords(connection);
+  const { words, isReceived } = receivedWords(connection);
   const { mode, autopilot, firmware, vehicle_type, warnings, battery_percent, loaded_approval } = connection;
   const { received_bytes_s, received_messages_s } = connection;
   return [
-    h("p", { class: isHeard ? "" : "quiet-text" }, words),
+    h("p", { class: isReceived ? "" : "quiet-text" }, words),
     ...warnings.map((warning) => h("p", { class: "notice warning" }, warning)),
     h(
       "dl",

@@ -3,7 +3,7 @@
 import { proved } from "../account/proof.js";
 import { ApiError, get, post, remove } from "../api.js";
 import { find, h, icon } from "../dom.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
 import { CREDENTIALS } from "./words.js";
@@ -42,7 +42,7 @@ function factsOf(credential, earlier) {
 async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
-    say(t("Copied."));
+    announce(t("Copied."));
     toast(t("Copied."));
   } catch {
     toast(t("This browser does not allow copying: mark the text and copy it."));

@@ -205,7 +205,7 @@ export class Editing {
     else if (error.status === 412 && error.details?.current)
       this.#settle(edit, readRow(error.details.current), error.details.changed_by);
     else
-      edit.form.tell(
+      edit.form.notify(
         error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message,
         error.details,
       );

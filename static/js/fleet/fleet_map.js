@@ -158,14 +158,14 @@ function markerButton(title, label, kind, choose, content) {
  */
 function createPin(map, container) {
   const frame = /** @type {HTMLElement} */ (container.parentElement);
-  /** @type {{ marker: Marker, tell: (position: Position) => void } | null} */
+  /** @type {{ marker: Marker, notify: (position: Position) => void } | null} */
   let pin = null;
 
   map.on("click", ({ lngLat }) => {
     if (!pin) return;
     const position = rounded(lngLat);
     pin.marker.setLngLat(position);
-    pin.tell(position);
+    pin.notify(position);
   });
 
   function remove() {
@@ -179,8 +179,8 @@ function createPin(map, container) {
     remove,
     /** @param {Position} position */
     move: (position) => void pin?.marker.setLngLat(position),
-    /** @param {Position} position @param {(position: Position) => void} tell */
-    show(position, tell) {
+    /** @param {Position} position @param {(position: Position) => void} notify */
+    show(position, notify) {
       remove();
       frame.dataset.placing = "true";
       const element = h(
@@ -195,8 +195,8 @@ function createPin(map, container) {
         icon("map-pin"),
       );
       const marker = new maplibre.Marker({ element, anchor: "bottom", draggable: true }).setLngLat(position);
-      marker.addTo(map).on("dragend", () => tell(rounded(marker.getLngLat())));
-      pin = { marker, tell };
+      marker.addTo(map).on("dragend", () => notify(rounded(marker.getLngLat())));
+      pin = { marker, notify };
     },
   };
 }

@@ -156,11 +156,11 @@ export function createForm({ tab, body, types, bases, isNew, isAdministrator, on
     },
     clear() {
       notice.replaceChildren();
-      for (const field of all) field.tell("");
+      for (const field of all) field.notify("");
     },
-    tell(message, details) {
+    notify(message, details) {
       const known = Object.entries(details ?? {}).filter(([name]) => fieldOf(name));
-      for (const [name, [words]] of known) fieldOf(name)?.tell(words);
+      for (const [name, [words]] of known) fieldOf(name)?.notify(words);
       notice.replaceChildren(
         h(
           "div",

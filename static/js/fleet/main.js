@@ -3,7 +3,7 @@
 import { ApiError, get, patch, post, remove, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
 import { Editing, ifUnchanged } from "./editing.js";
@@ -70,7 +70,7 @@ const panel = mountPanel({
     put,
     remove: takeOff,
     refresh: load,
-    failed: tell,
+    failed: notify,
     showUavs,
   },
 });
@@ -92,7 +92,7 @@ const editing = new Editing({
 // what went wrong, and what then
 
 /** @param {unknown} error @param {() => unknown} [again] */
-function tell(error, again = load) {
+function notify(error, again = load) {
   if (!(error instanceof ApiError)) throw error;
   store.update({ problem: { error, again } });
 }
@@ -145,7 +145,7 @@ async function load() {
       problem: null,
     });
   } catch (error) {
-    tell(error);
+    notify(error);
   }
 }
 
@@ -156,7 +156,7 @@ async function loadMore() {
     const { data } = /** @type {Answer<UavCollection>} */ (await get(next));
     store.update({ uavs: [...(store.state.uavs ?? []), ...data.features.map(flat)], next: data.next });
   } catch (error) {
-    tell(error, loadMore);
+    notify(error, loadMore);
   }
 }
 
@@ -269,10 +269,10 @@ async function choose(tab, id, { keepFocus = false } = {}) {
     if (shown !== choosing) return;
     if ("position" in row) map?.look(row.position);
     if (!keepFocus) title.focus({ preventScroll: wide.matches });
-    say(row.name);
+    announce(row.name);
   } catch (error) {
     if (error instanceof ApiError && error.status === 404) toast(t("It is no longer there."));
-    else tell(error, () => choose(tab, id));
+    else notify(error, () => choose(tab, id));
   }
 }
 
@@ -311,7 +311,7 @@ async function attempt(change) {
     const status = error instanceof ApiError ? error.status : 0;
     if (error instanceof ApiError && status === 412) toast(error.message, { label: t("Look"), act: lookAgain });
     else if (error instanceof ApiError && status === 409) toast(error.message);
-    else tell(error, () => attempt(change));
+    else notify(error, () => attempt(change));
   }
 }
 

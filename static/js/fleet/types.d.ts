@@ -105,8 +105,8 @@ export interface FleetMap {
   show(places: Places, chosen: Chosen | null): void;
   lookAtAll(places: Places): void;
   look(position: Position): void;
-  /** puts a pin to drag; tell(position) is called on each change */
-  place(position: Position, tell: (position: Position) => void): void;
+  /** puts a pin to drag; notify(position) is called on each change */
+  place(position: Position, notify: (position: Position) => void): void;
   endPlacing(): void;
   movePin(position: Position): void;
 }
@@ -125,7 +125,7 @@ export interface Form {
   setPlace(position: Position): void;
   clear(): void;
   /** shows at the field what is wrong with it; what has no field stands above the form */
-  tell(message: string, details?: Record<string, string[]> | null): void;
+  notify(message: string, details?: Record<string, string[]> | null): void;
   ask(content: Node): void;
   label(name: string): string;
   words(name: string, value: unknown): string;

@@ -17,7 +17,7 @@ const MAX_NOTE_LENGTH = 500;
  * @property {(note: string) => void} dismiss
  * @property {() => void} reopen
  * @property {(collection: Collection | null) => void} preview
- * @property {(tell: (count: number) => void) => void} place begins to take places from the map and tells how many there are
+ * @property {(notify: (count: number) => void) => void} place begins to take places from the map and tells how many there are
  * @property {(offer: GapOffer) => void} placeDone
  * @property {() => void} placeBack
  * @property {() => void} placeCancel

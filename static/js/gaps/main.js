@@ -5,7 +5,7 @@ import { byId } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { coordinatesOf } from "../ground/record_list.js";
 import { boxAround } from "../map/map_view.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
 import * as layer from "./gap_layer.js";
@@ -30,7 +30,7 @@ let next = null;
 let chosen = null;
 /** @type {GapSummary | null} */
 let summary = null;
-/** Positions that are being clicked, with what to tell of them. @type {{ positions: number[][], tell: (count: number) => void } | null} */
+/** Positions that are being clicked, with what to tell of them. @type {{ positions: number[][], notify: (count: number) => void } | null} */
 let placed = null;
 let asked = 0; // for the list
 let choices = 0;
@@ -62,7 +62,7 @@ const panel = mountGapPanel(page.canCurate, {
   placeDone: ({ action }) => repair({ action, positions: placed?.positions }),
   placeBack() {
     placed?.positions.pop();
-    tellPlaces();
+    drawPlaces();
   },
   placeCancel,
   next: () => list.openNext(),
@@ -119,7 +119,7 @@ async function look() {
     const before = summary?.searched_at;
     summary = data;
     list.counts(summary.kinds);
-    tellFacts(summary);
+    showFacts(summary);
     if (before !== undefined && before !== summary.searched_at) {
       await load();
       if (chosen && placed === null) await refreshChosen();
@@ -138,7 +138,7 @@ async function keepLooking() {
 }
 
 /** @param {GapSummary} summary */
-function tellFacts({ kinds, is_current, searched_at }) {
+function showFacts({ kinds, is_current, searched_at }) {
   const open = Object.values(kinds).reduce((total, byState) => total + byState.open, 0);
   const facts = byId("page-facts");
   facts.dataset.searching = String(!is_current);
@@ -171,7 +171,7 @@ async function choose(id, { stay = false } = {}) {
     if (layout.isPhone()) byId("side-scroll").scrollTop = 0; // there the panel stands above the list
     remember();
     if (!stay) map.fit(boxOf(data));
-    say(data.properties.sentence);
+    announce(data.properties.sentence);
   } catch (error) {
     const { status, message } = /** @type {ApiError} */ (error);
     if (turn === choices) toast(status === 404 ? t("This gap is gone: its asset was taken away.") : message);
@@ -287,17 +287,17 @@ async function afterChange(id) {
   if (chosen?.id === id) await refreshChosen();
 }
 
-/** @param {(count: number) => void} tell */
-function startPlacing(tell) {
-  placed = { positions: [], tell };
+/** @param {(count: number) => void} notify */
+function startPlacing(notify) {
+  placed = { positions: [], notify };
   layer.showPlaces(map.map, []);
   map.map.getCanvas().style.cursor = "crosshair";
 }
 
-function tellPlaces() {
+function drawPlaces() {
   if (!placed) return;
   layer.showPlaces(map.map, placed.positions);
-  placed.tell(placed.positions.length);
+  placed.notify(placed.positions.length);
 }
 
 function stopPlacing() {
@@ -315,7 +315,7 @@ function placeCancel() {
 map.map.on("click", (event) => {
   if (!placed) return;
   placed.positions.push([event.lngLat.lng, event.lngLat.lat].map((degrees) => Number(degrees.toFixed(7))));
-  tellPlaces();
+  drawPlaces();
 });
 map.map.on("moveend", () => {
   if (list.filter.inView) load();

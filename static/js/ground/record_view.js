@@ -3,7 +3,7 @@
 import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
 import { boxAround } from "../map/map_view.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { historyList } from "./history_list.js";
 
@@ -71,7 +71,7 @@ export class RecordView {
       this.#on.ring();
       if (!stay) this.#on.fit(boxOf(feature.geometry));
       rememberAddress(id);
-      say(title(feature));
+      announce(title(feature));
     } catch (error) {
       if (error instanceof ApiError && error.status === 404) toast(t("It is no longer there."));
       else this.#on.failed(error, () => this.choose(id));

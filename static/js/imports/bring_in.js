@@ -2,7 +2,7 @@
 
 import { ApiError, post } from "../api.js";
 import { byId, h, keyedList } from "../dom.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { fileCard } from "./file_card.js";
 import { guessKind, HEAD_BYTES, setNameOf } from "./kinds.js";
@@ -146,7 +146,7 @@ class Uploads {
       item.uploadId = await sendFile(item.file, { ...hints, uploadId: item.uploadId, onBegun });
       const proposal = await this.#haveRead(item, hints);
       this.#takeOff(item);
-      say(t("{name} is being read.", { name: item.name }));
+      announce(t("{name} is being read.", { name: item.name }));
       this.#onStarted(proposal, { isLast: !this.#items.some(isUnderWay) });
     } catch (error) {
       if (error instanceof DOMException && error.name === "AbortError") return;
@@ -163,7 +163,7 @@ class Uploads {
       nudge: (wake) => {
         item.wake = wake;
       },
-      tell: ({ received, waits_s }) => {
+      notify: ({ received, waits_s }) => {
         if (received !== undefined) item.received = received;
         item.waits_s = waits_s;
         const phase = waits_s > 0 ? "waiting" : "sending";

@@ -4,7 +4,7 @@ import { ApiError, get, patch, post, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
@@ -57,7 +57,7 @@ function changeAt(point) {
 }
 
 /** @param {unknown} error @param {string} title */
-function tell(error, title) {
+function notify(error, title) {
   if (!(error instanceof ApiError)) throw error;
   const words = error.isSignedOut
     ? [`${t("Sign in to go on.")} `, h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))]
@@ -82,7 +82,7 @@ async function attempt(title, act) {
     await act();
     return true;
   } catch (error) {
-    tell(error, title);
+    notify(error, title);
     return false;
   }
 }
@@ -96,11 +96,11 @@ async function loadList({ more = false } = {}) {
   const { data } = /** @type {Answer<{ results: Proposal[], next: string | null }>} */ (await get(address));
   const proposals = more ? [...(known ?? []), ...data.results] : data.results;
   store.update({ proposals, next: data.next });
-  tellFacts(proposals);
+  showFacts(proposals);
 }
 
 /** @param {Proposal[]} proposals */
-function tellFacts(proposals) {
+function showFacts(proposals) {
   const waiting = proposals.filter(({ state }) => state === "ready").length;
   const working = proposals.filter(isOpen).length;
   byId("page-facts").textContent = [
@@ -121,7 +121,7 @@ function put(proposal) {
     ? proposals.map((known) => (known.id === proposal.id ? proposal : known))
     : [proposal, ...proposals];
   store.update({ proposals: next, ...(store.state.current?.id === proposal.id ? { current: proposal } : {}) });
-  tellFacts(next);
+  showFacts(next);
 }
 
 /** Puts what the server answered. @param {Promise<Answer>} answer */
@@ -142,7 +142,7 @@ async function openProposal(id, { isNew = true, focus = true } = {}) {
     if (focus) byId("proposal-title").focus({ preventScroll: true });
     await loadChanges({ fit: true });
   } catch (error) {
-    tell(error, statusOf(error) === 404 ? t("This import is not there.") : t("Not opened."));
+    notify(error, statusOf(error) === 404 ? t("This import is not there.") : t("Not opened."));
   }
 }
 
@@ -252,7 +252,7 @@ async function decide(busy, title, act) {
   try {
     await putAnswer(act(id));
   } catch (error) {
-    tell(error, title);
+    notify(error, title);
     if (statusOf(error) === 409) await putAnswer(get(`/imports/${id}`));
   } finally {
     store.update({ busy: null });
@@ -268,7 +268,7 @@ const acts = {
       if (proposal.state === "reading") await putAnswer(post(`/imports/${proposal.id}/discard`, {}));
       else if (proposal.job) await post(`/jobs/${proposal.job.id}/cancel`, {});
     } catch (error) {
-      tell(error, t("Not stopped."));
+      notify(error, t("Not stopped."));
       throw error;
     }
   },
@@ -343,13 +343,13 @@ async function look() {
     }
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    if (error.isSignedOut) tell(error, t("You are signed out."));
+    if (error.isSignedOut) notify(error, t("You are signed out."));
   }
 }
 
 /** @param {Proposal} proposal */
 async function ended(proposal) {
-  say(`${titleOf(proposal)}: ${STATES[proposal.state].words}.`);
+  announce(`${titleOf(proposal)}: ${STATES[proposal.state].words}.`);
   await loadChanges({ fit: true });
   if (proposal.state === "refused" && proposal.faults[0]?.position) acts.place(proposal.faults[0].position);
   if (proposal.state === "applied") {

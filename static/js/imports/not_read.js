@@ -30,15 +30,15 @@ export function notRead(records, { seen, changed, acts }) {
 
 /** @param {UnreadRecord} record @param {{ seen: Set<string> | null, changed: () => void }} how */
 function row({ place, name, message }, { seen, changed }) {
-  const said = [h("strong", {}, name || place), ` ${place}: ${message}`];
-  if (!seen) return h("span", {}, said);
+  const parts = [h("strong", {}, name || place), ` ${place}: ${message}`];
+  if (!seen) return h("span", {}, parts);
   const box = h("input", { class: "check", type: "checkbox", checked: seen.has(place) });
   box.addEventListener("change", () => {
     if (box.checked) seen.add(place);
     else seen.delete(place);
     changed();
   });
-  return h("label", { class: "overwrite" }, box, h("span", {}, said, " ", h("em", { class: "caption" }, t("Seen"))));
+  return h("label", { class: "overwrite" }, box, h("span", {}, parts, " ", h("em", { class: "caption" }, t("Seen"))));
 }
 
 /** @param {UnreadRecord} record @param {Pick<ProposalActs, "place">} acts */

@@ -285,7 +285,7 @@ function refusal({ faults }, acts) {
     ? faults
     : [{ place: "", message: t("The file could not be read."), position: null }];
   /** @param {Proposal["faults"][number]} fault @param {boolean} isFirst */
-  const said = ({ place, message, position }, isFirst) => [
+  const faultLine = ({ place, message, position }, isFirst) => [
     h(isFirst ? "strong" : "span", {}, place ? `${place}: ${message}` : message),
     isFirst && ` ${t("Nothing was imported.")} `,
     position &&
@@ -303,12 +303,12 @@ function refusal({ faults }, acts) {
   return h(
     "div",
     {},
-    h("div", { class: "notice critical", role: "alert" }, icon("octagon-alert"), h("p", {}, said(first, true))),
+    h("div", { class: "notice critical", role: "alert" }, icon("octagon-alert"), h("p", {}, faultLine(first, true))),
     rest.length > 0 &&
       h(
         "ul",
         { class: "faults", "aria-label": t("Further faults") },
-        rest.map((fault) => h("li", {}, said(fault, false))),
+        rest.map((fault) => h("li", {}, faultLine(fault, false))),
       ),
   );
 }

@@ -16,7 +16,7 @@ const WORTH_ANOTHER_TRY = new Set([0, 408, 429, 500, 502, 503, 504]);
  * @param {SendHints & { uploadId?: string | null, onBegun?: (id: string) => void }} options uploadId: of an upload that was begun before
  * @throws {ApiError} for what another try does not mend; AbortError where `signal` says so
  */
-export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, onBegun = () => {}, signal }) {
+export async function sendFile(file, { uploadId = null, notify, nudge = () => {}, onBegun = () => {}, signal }) {
   /** @type {Upload | null} */
   let upload = null;
   let wait_s = 1;
@@ -27,7 +27,7 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
       upload = begun;
       onBegun(begun.id);
       const { id, received_bytes, part_bytes } = begun;
-      tell({ received: received_bytes, waits_s: 0 });
+      notify({ received: received_bytes, waits_s: 0 });
       if (begun.is_complete) return id;
       const part = file.slice(received_bytes, Math.min(received_bytes + part_bytes, file.size));
       const address = `/uploads/${id}/bytes/${received_bytes}`;
@@ -39,7 +39,7 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
       upload = null;
       if (error.code === "gap") continue; // asked again how much is there
       if (!WORTH_ANOTHER_TRY.has(error.status)) throw error;
-      await pause(wait_s, { tell, nudge, signal });
+      await pause(wait_s, { notify, nudge, signal });
       wait_s = Math.min(wait_s * 2, MAX_WAIT_S);
     }
   }
@@ -78,7 +78,7 @@ async function begin(file, uploadId, signal) {
 }
 
 /** @param {number} wait_s @param {SendHints} hints @returns {Promise<void>} */
-function pause(wait_s, { tell, nudge = () => {}, signal }) {
+function pause(wait_s, { notify, nudge = () => {}, signal }) {
   return new Promise((resolve, reject) => {
     let left_s = wait_s;
     /** @param {() => void} act */
@@ -93,9 +93,9 @@ function pause(wait_s, { tell, nudge = () => {}, signal }) {
     const timer = setInterval(() => {
       left_s -= 1;
       if (left_s <= 0) go();
-      else tell({ waits_s: left_s });
+      else notify({ waits_s: left_s });
     }, 1000);
-    tell({ waits_s: left_s });
+    notify({ waits_s: left_s });
     nudge(go);
     addEventListener("online", go);
     signal?.addEventListener("abort", stop);

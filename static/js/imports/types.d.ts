@@ -137,7 +137,7 @@ export interface UploadActs {
 
 /** How a file that is sent reports, and is ended. */
 export interface SendHints {
-  tell(progress: { received?: number; waits_s: number }): void;
+  notify(progress: { received?: number; waits_s: number }): void;
   /** is given a function that ends a wait */
   nudge?(wake: () => void): void;
   signal?: AbortSignal;

@@ -153,8 +153,8 @@ export const isGeometry = (value) =>
 export function factLines({ before, after }) {
   const names = [...new Set([...Object.keys(before ?? {}), ...Object.keys(after ?? {})])];
   /** @param {string} name */
-  const isSaid = (name) => !isEmpty(before?.[name]) || !isEmpty(after?.[name]);
-  return names.filter(isSaid).map((name) => {
+  const isStated = (name) => !isEmpty(before?.[name]) || !isEmpty(after?.[name]);
+  return names.filter(isStated).map((name) => {
     const { words, unit } = factName(name);
     /** @param {Record<string, unknown> | null} facts */
     const side = (facts) => {

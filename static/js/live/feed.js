@@ -17,10 +17,10 @@ export const CONNECTING = "connecting"; // neither: what is shown is as old as i
 export const SIGNED_OUT = "signed-out"; // for good
 export const GONE = "gone"; // the mission is deleted: for good
 
-export const BLIND_MS = 5_000; // the server sends a heartbeat every 2 s: after that the page has no data
+export const FEED_LOST_MS = 5_000; // the server sends a heartbeat every 2 s: after that the page has no data
 const AHEAD_MS = 2_500; // what is shown is never older than it was at the last message by more than this
 const CONNECT_WITHIN_MS = 15_000; // until the first message of a websocket
-const FIRST_WORD_MS = 3_000; // after which the page asks, while it goes on waiting
+const FIRST_MESSAGE_MS = 3_000; // after which the page asks, while it goes on waiting
 const ASK_EVERY_MS = 2_000;
 const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
@@ -93,7 +93,7 @@ class Feed {
   /** @type {FeedState | null} */
   state = null;
   /** When the last message came, by the server's clock; null before the first. @type {number | null} */
-  heard_ms = null;
+  received_ms = null;
   since_ms = 0; // by the server's clock
 
   /** @param {FeedOptions} [options] */
@@ -121,18 +121,18 @@ class Feed {
 
   /** How long ago the last message came [ms]; 0 before the first: then nothing is shown yet. */
   silent_ms() {
-    return this.heard_ms === null ? 0 : Math.max(0, this.#clock.now_ms() - this.heard_ms);
+    return this.received_ms === null ? 0 : Math.max(0, this.#clock.now_ms() - this.received_ms);
   }
 
   /** The time that what is shown is of: once the page is blind, that of the last message. */
   shown_ms() {
     const now_ms = this.#clock.now_ms();
-    if (this.heard_ms === null) return now_ms;
-    return this.silent_ms() >= BLIND_MS ? this.heard_ms : Math.min(now_ms, this.heard_ms + AHEAD_MS);
+    if (this.received_ms === null) return now_ms;
+    return this.silent_ms() >= FEED_LOST_MS ? this.received_ms : Math.min(now_ms, this.received_ms + AHEAD_MS);
   }
 
-  #hear() {
-    this.heard_ms = this.#clock.now_ms();
+  #noteReceived() {
+    this.received_ms = this.#clock.now_ms();
   }
 
   close() {
@@ -179,10 +179,10 @@ class Feed {
       else this.#lose();
     });
     this.#expectMessage(CONNECT_WITHIN_MS);
-    this.#timers.first = setTimeout(() => this.#startAsking(), FIRST_WORD_MS);
+    this.#timers.first = setTimeout(() => this.#startAsking(), FIRST_MESSAGE_MS);
   }
 
-  #expectMessage(within_ms = BLIND_MS) {
+  #expectMessage(within_ms = FEED_LOST_MS) {
     clearTimeout(this.#timers.silence);
     this.#timers.silence = setTimeout(() => this.#lose(), within_ms);
   }
@@ -190,8 +190,8 @@ class Feed {
   /** @param {Message} message */
   #receive(message) {
     this.#expectMessage();
-    this.#clock.heard(message.server_time);
-    this.#hear();
+    this.#clock.received(message.server_time);
+    this.#noteReceived();
     try {
       if (message.type === "snapshot") this.#begin(message);
       else if (message.sequence !== this.#sequence + (message.type === "changes" ? 1 : 0)) this.#askAgain(message);
@@ -279,8 +279,8 @@ class Feed {
       const answer = /** @type {Answer<LiveAnswer>} */ (await this.#get(address, { signal: own.signal, headers }));
       if (own !== this.#asking) return;
       this.#etag = answer.etag;
-      if (answer.status !== 304) this.#clock.heard(answer.data.server_time);
-      this.#hear();
+      if (answer.status !== 304) this.#clock.received(answer.data.server_time);
+      this.#noteReceived();
       if (answer.status !== 304) this.#showEverything(answer.data.live);
       this.#become(this.#isCrowded ? CROWDED : ASKED);
     } catch (error) {

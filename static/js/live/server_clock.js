@@ -6,16 +6,16 @@ const WINDOW_MS = 60_000;
 export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {
   const guess_ms = first_ms - ticks_ms();
   /** @type {{ at_ms: number, ahead_ms: number }[]} */
-  let heard = []; // what the server's clock is ahead of ours, at least: a word takes its time to come, so the largest is the best
-  const newest = () => heard.filter(({ at_ms }) => ticks_ms() - at_ms <= WINDOW_MS);
+  let received = []; // what the server's clock is ahead of ours, at least: a word takes its time to come, so the largest is the best
+  const newest = () => received.filter(({ at_ms }) => ticks_ms() - at_ms <= WINDOW_MS);
   return {
     /** @param {string} serverTime */
-    heard(serverTime) {
+    received(serverTime) {
       const at_ms = ticks_ms();
-      heard = [...newest(), { at_ms, ahead_ms: Date.parse(serverTime) - at_ms }];
+      received = [...newest(), { at_ms, ahead_ms: Date.parse(serverTime) - at_ms }];
     },
     now_ms() {
-      const last = heard.at(-1);
+      const last = received.at(-1);
       if (!last) return ticks_ms() + guess_ms;
       return ticks_ms() + Math.max(last.ahead_ms, ...newest().map(({ ahead_ms }) => ahead_ms));
     },

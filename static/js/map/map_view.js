@@ -61,7 +61,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     const view = addressed();
     if (view) map.jumpTo({ center: view.centre, zoom: view.zoom });
   });
-  tellFaults(map);
+  showFaults(map);
 
   const fitTo = keepFitted(map, container);
 
@@ -154,7 +154,7 @@ function keepFitted(map, container) {
  *
  * @param {MapLibreMap} map
  */
-export function tellFaults(map) {
+export function showFaults(map) {
   map.on("error", (event) => {
     const { error, sourceId } = /** @type {MapFault} */ (event);
     if (sourceId === "base-map" || sourceId === "satellite") return;

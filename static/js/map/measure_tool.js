@@ -3,7 +3,7 @@
 import { h } from "../dom.js";
 import { distance_m, pathLength_m, ringArea_m2 } from "../domain/geodesy.js";
 import { isTyping } from "../page/keyboard.js";
-import { say } from "../page/toast.js";
+import { announce } from "../page/toast.js";
 import { t } from "../text.js";
 import { areaText, lengthText } from "../units.js";
 import { sourceOf } from "./look/style.js";
@@ -124,7 +124,7 @@ class Measure {
     this.#frame.dataset.measuring = "true";
     this.#button.setAttribute("aria-pressed", "true");
     this.#draw();
-    say(this.#words.textContent ?? "");
+    announce(this.#words.textContent ?? "");
     this.#onSwitch(true);
   }
 
@@ -147,7 +147,7 @@ class Measure {
     this.#points = [...points, position];
     this.#pointer = null;
     this.#draw();
-    say(this.#words.textContent ?? "");
+    announce(this.#words.textContent ?? "");
   }
 
   /** Where the pointer is; where it was clicked is a point already. @param {Position | null} position */

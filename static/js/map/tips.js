@@ -73,7 +73,8 @@ export function tipOf(thing, refresh) {
   if (thing.kind === "zone") return zoneTip(thing, refresh);
   const { properties } = thing;
   const length = properties.length_m ? lengthText(properties.length_m) : "";
-  const isSaid = !properties.voltages || `${properties.label} ${properties.detail ?? ""}`.includes(properties.voltages);
+  const isStated =
+    !properties.voltages || `${properties.label} ${properties.detail ?? ""}`.includes(properties.voltages);
   return [
     h("strong", {}, properties.label),
     h(
@@ -82,7 +83,7 @@ export function tipOf(thing, refresh) {
       [KIND_WORDS()[properties.subtype ?? ""] ?? KIND_WORDS()[thing.kind], length].filter(Boolean).join(", "),
     ),
     quiet(properties.detail),
-    quiet(isSaid ? "" : properties.voltages),
+    quiet(isStated ? "" : properties.voltages),
     properties.flyable === false && quiet(t("Not used for routing")),
   ].filter((part) => part instanceof Node);
 }

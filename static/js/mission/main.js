@@ -190,7 +190,7 @@ watchMission(store, {
   editor,
   take: actions.take,
   connectedAgain: actions.connectedAgain,
-  tellDeleted: actions.tellDeleted,
+  showDeleted: actions.showDeleted,
   readFleet: fleetOfOrganisation,
 });
 

@@ -375,7 +375,7 @@ export function storedTarget(target) {
  *
  * @param {PickedTarget[]} targets
  */
-function toldApart(targets) {
+function distinguished(targets) {
   const count = new Map();
   return targets.map((target) => {
     const number = (count.get(target.key) ?? 0) + 1;
@@ -392,7 +392,7 @@ function toldApart(targets) {
  * @returns {MissionSelection}
  */
 export function selectionOf(mission, fleet = []) {
-  const targets = toldApart(mission.targets.map(storedTarget));
+  const targets = distinguished(mission.targets.map(storedTarget));
   return {
     targets,
     uavs: mission.uavs.map((uav) => ({

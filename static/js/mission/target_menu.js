@@ -37,11 +37,11 @@ export function taskText(task) {
 /** @param {number} seconds */
 const secondsText = (seconds) => (seconds >= 600 ? durationText(seconds) : `${seconds}\u00a0s`);
 
-/** @type {{ value: Wishes["priority"], words: string, mark: string | null, said: string }[]} */
+/** @type {{ value: Wishes["priority"], words: string, mark: string | null, label: string }[]} */
 export const PRIORITIES = [
-  { value: "low", words: t("Low"), mark: "chevrons-down", said: t("Low priority") },
-  { value: "normal", words: t("Normal"), mark: null, said: "" },
-  { value: "high", words: t("High"), mark: "chevrons-up", said: t("High priority") },
+  { value: "low", words: t("Low"), mark: "chevrons-down", label: t("Low priority") },
+  { value: "normal", words: t("Normal"), mark: null, label: "" },
+  { value: "high", words: t("High"), mark: "chevrons-up", label: t("High priority") },
 ];
 
 /** @param {PickedTarget} target */

@@ -102,7 +102,7 @@ const isOwn = (name) => OWN_FIGURES.some((own) => own === name);
  * @param {FleetUav | undefined} known
  * @returns {Partial<PickedUav>}
  */
-export function saidInMission(uav, values, known) {
+export function figuresInMission(uav, values, known) {
   if (!known) return values;
   const said = { ...values };
   const own = new Set(uav.own_figures ?? []);
@@ -148,7 +148,7 @@ const scaled = (value, scale) => (typeof value === "number" ? value / scale : nu
 function figureWords({ name, kept, now }) {
   if (name === "sensors") return t("sensors {kept} → {now}", { kept: sensorNames(kept), now: sensorNames(now) });
   const { words, unit, scale = 1, none = "", digits = 1 } = FIGURE_WORDS[name];
-  const [before, after] = toldApart(scaled(kept, scale), scaled(now, scale), digits);
+  const [before, after] = distinguished(scaled(kept, scale), scaled(now, scale), digits);
   return `${words} ${before ?? none} → ${after === null ? none : `${after}${SPACE}${unit}`}`;
 }
 
@@ -160,10 +160,10 @@ function figureWords({ name, kept, now }) {
  * @param {number} digits
  * @returns {(string | null)[]}
  */
-function toldApart(kept, now, digits) {
+function distinguished(kept, now, digits) {
   const [before, after] = [kept, now].map((value) => (value === null ? null : shortText(value, digits)));
   return before === after && before !== null && digits < MAX_DIGITS
-    ? toldApart(kept, now, digits + 1)
+    ? distinguished(kept, now, digits + 1)
     : [before, after];
 }
 
@@ -188,6 +188,6 @@ export function changeWords({ name, figures, state, message, said = [] }) {
   const ofFleet = said.map(({ name: figure, then, now }) =>
     t("{change} in the fleet, but not in this mission", { change: figureWords({ name: figure, kept: then, now }) }),
   );
-  const told = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : []), ...ofFleet];
-  return told.length ? `${name}: ${told.join(", ")}.` : message;
+  const reported = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : []), ...ofFleet];
+  return reported.length ? `${name}: ${reported.join(", ")}.` : message;
 }

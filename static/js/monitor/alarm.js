@@ -133,7 +133,7 @@ function makeMenu(alarm, onChange) {
 export function mountAlarm(store) {
   const alarm = createAlarm();
   /** @type {Map<number, AlertLevel>} */
-  const told = new Map(); // alert → level that was said
+  const reported = new Map(); // alert → level that was said
   const button = byId("alert-sound");
 
   function drawButton() {
@@ -147,8 +147,8 @@ export function mountAlarm(store) {
   drawButton();
 
   store.listen(["alerts", "isWhole"], ({ alerts, isWhole }) => {
-    const fresh = newAlerts(alerts, told);
-    for (const { id, level } of alerts) told.set(id, level);
+    const fresh = newAlerts(alerts, reported);
+    for (const { id, level } of alerts) reported.set(id, level);
     if (!isWhole || !fresh.length) return;
     const critical = fresh.filter(({ level }) => level === "critical");
     if (critical.length) byId("critical-spoken").textContent = critical.map(({ message }) => message).join(" ");

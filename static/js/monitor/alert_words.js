@@ -14,8 +14,8 @@ import { contactWords, durationWords, isLanding, isReturning } from "./uav_words
  * @param {Alert} alert
  */
 function silentSince_s(alert) {
-  const { heard_s } = /** @type {{ heard_s?: unknown }} */ (alert.details ?? {});
-  return alert.code === "link-lost" && isOpenAlert(alert) && typeof heard_s === "number" ? heard_s : null;
+  const { received_s } = /** @type {{ received_s?: unknown }} */ (alert.details ?? {});
+  return alert.code === "link-lost" && isOpenAlert(alert) && typeof received_s === "number" ? received_s : null;
 }
 
 /** Whether what it says changes with the time alone. @param {Alert} alert */
@@ -29,12 +29,12 @@ export const isMoving = (alert) => silentSince_s(alert) !== null;
  * @param {number} now_ms
  */
 export function messageWords(alert, uav, now_ms) {
-  const heard_s = silentSince_s(alert);
-  if (heard_s === null || !uav) return alert.message;
+  const received_s = silentSince_s(alert);
+  if (received_s === null || !uav) return alert.message;
   const values = {
     uav: uav.name,
-    age: durationWords(Math.max(0, now_ms / 1000 - heard_s)),
-    time: exactClockText(new Date(heard_s * 1000).toISOString()),
+    age: durationWords(Math.max(0, now_ms / 1000 - received_s)),
+    time: exactClockText(new Date(received_s * 1000).toISOString()),
   };
   return alert.level === "critical"
     ? t("Link to {uav} lost: no telemetry for {age} (last message {time}).", values)

@@ -86,8 +86,8 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
  */
 export function batchRequest(kind, scopes, ways = null) {
   const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
-  const told = new Set(missions.flatMap(({ uavs }) => uavs));
-  const separate = ways && { ways: Object.fromEntries([...ways].filter(([uav]) => told.has(uav))) };
+  const reported = new Set(missions.flatMap(({ uavs }) => uavs));
+  const separate = ways && { ways: Object.fromEntries([...ways].filter(([uav]) => reported.has(uav))) };
   if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...separate } };
   const [{ mission, uavs }] = missions;
   return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...separate } };
@@ -95,10 +95,10 @@ export function batchRequest(kind, scopes, ways = null) {
 
 /** What became of it, in words. @param {BatchAnswer[]} results */
 export function answerWords(results) {
-  const told = results.filter((answer) => answer.is_accepted).length;
+  const reported = results.filter((answer) => answer.is_accepted).length;
   const refused = results.filter((answer) => !answer.is_accepted);
   return [
-    tn(told, "Sending to {count} UAV.", "Sending to {count} UAVs."),
+    tn(reported, "Sending to {count} UAV.", "Sending to {count} UAVs."),
     ...refused.map(({ name, reasons }) =>
       t("Not sent to {name}: {why}", { name, why: reasons.map(({ message }) => message).join(" ") }),
     ),

@@ -11,7 +11,7 @@ import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { markSending } from "./sending.js";
-import { unheardLines } from "./unheard.js";
+import { unreachableLines } from "./unreachable.js";
 
 /** @import { BatchAnswers, PresentReturn } from "../api_types.d.ts" */
 /** @import { Question } from "../domain/command_questions.js" */
@@ -41,7 +41,7 @@ const ALL = {
  * @param {BatchScope[]} scopes
  * @param {Map<number, Record<string, any>> | null} [ways] how each returns
  */
-export async function tellBatch(store, kind, scopes, ways = null) {
+export async function commandBatch(store, kind, scopes, ways = null) {
   const { path, body } = batchRequest(kind, scopes, ways);
   const ids = scopes.flatMap(({ uavs }) => uavs.map(({ id }) => id));
   markSending(store, ids, kind);
@@ -89,7 +89,7 @@ export function createBatch(store, page) {
         ...lines,
         ...seen,
         ...leftLines(scopes),
-        ...unheardLines(silent, kind, store.state.now_ms),
+        ...unreachableLines(silent, kind, store.state.now_ms),
       ],
       act: page.mission === null ? act : `${KINDS[kind]}: ${uavs.length}`,
       safer,
@@ -112,14 +112,14 @@ export function createBatch(store, page) {
     function found(returns) {
       const separate = separateReturns([...returns.values()]);
       const together = togetherLine(uavs.map(({ id }) => returns.get(id)));
-      const said = [together, ...returnLinesOf(scopes, returns), ...(separate?.lines ?? [])];
+      const summary = [together, ...returnLinesOf(scopes, returns), ...(separate?.lines ?? [])];
       return [
-        said,
+        summary,
         separate && { words: t("Return on separate ways"), kind: "return", parameters: { ways: separate.ways } },
       ];
     }
     if (asked)
-      await tellBatch(
+      await commandBatch(
         store,
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,

@@ -95,14 +95,14 @@ function batteryFigure(uav, { route }, mark) {
 function heightFigure({ measured, estimated }, certainty, mark) {
   const agl_m = certainty === MEASURED ? (measured?.altitude_agl_m ?? null) : null;
   if (agl_m !== null) return known(`${mark}${heightText(agl_m)}`, t("AGL"), { title: t("Height above ground") });
-  const told = certainty === MEASURED ? measured : (estimated ?? measured);
-  const relative_m = told?.altitude_relative_m ?? null;
+  const reported = certainty === MEASURED ? measured : (estimated ?? measured);
+  const relative_m = reported?.altitude_relative_m ?? null;
   const why =
     certainty === MEASURED
       ? t("Height above ground not known: it does not report it, and there is no terrain data here.")
       : t("Height above ground not known: its position is estimated.");
   if (relative_m !== null) return known(`${mark}${heightText(relative_m)}`, t("above take-off"), { title: why });
-  const amsl_m = told?.altitude_amsl_m ?? null;
+  const amsl_m = reported?.altitude_amsl_m ?? null;
   return amsl_m === null
     ? unknown(t("AGL"), NO_REPORT())
     : known(`${mark}${heightText(amsl_m)}`, t("AMSL"), { title: why });
@@ -166,8 +166,8 @@ function ageFigure(uav, now_ms) {
  */
 export function figuresOf(uav, certainty, beside) {
   const mark = certainty === MEASURED ? "" : "~\u2009";
-  const told = certainty === MEASURED ? uav.measured : (uav.estimated ?? uav.measured);
-  const speed_mps = told?.speed_mps ?? null;
+  const reported = certainty === MEASURED ? uav.measured : (uav.estimated ?? uav.measured);
+  const speed_mps = reported?.speed_mps ?? null;
   return [
     batteryFigure(uav, beside, mark),
     heightFigure(uav, certainty, mark),

@@ -3,16 +3,16 @@
 import { ApiError, freshKey } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { KINDS } from "../domain/flying.js";
+import { commandUav } from "../page/command_uav.js";
 import { confirmAct } from "../page/confirm.js";
 import { presentQuestion } from "../page/present_returns.js";
-import { tellUav } from "../page/tell_uav.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { overtakenWords } from "./alert_words.js";
 import { createBatch } from "./batch_commanding.js";
 import { dropSent, markSending } from "./sending.js";
-import { unheardLines } from "./unheard.js";
+import { unreachableLines } from "./unreachable.js";
 
 /** @import { AskedKind } from "../domain/command_questions.js" */
 /** @import { CommandKind, LiveMission, LiveUav, Mission } from "../api_types.d.ts" */
@@ -28,7 +28,7 @@ export function figuresLine({ measured, estimated, place }, mission) {
   const open = (mission?.targets ?? []).filter(
     ({ uav, state }) => uav === place && (state === "pending" || state === "in-progress"),
   ).length;
-  const said = [
+  const summary = [
     typeof measured?.battery_percent === "number" &&
       t("battery {figure}", { figure: percentText(measured.battery_percent) }),
     typeof estimated?.to_go_m === "number" &&
@@ -36,7 +36,7 @@ export function figuresLine({ measured, estimated, place }, mission) {
     estimated?.ends_at && t("would land {time}", { time: clockText(estimated.ends_at) }),
     open > 0 && tn(open, "{count} target open", "{count} targets open"),
   ].filter(Boolean);
-  return said.length ? `${said.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
+  return summary.length ? `${summary.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
 }
 
 const ANSWER_WITHIN_MS = 8_000; // a frozen connection never answers
@@ -96,14 +96,14 @@ export function createCommanding(store, page) {
    * @param {Record<string, any>} [filled] what was filled in
    * @param {string} [key] of the command: tried again it is the same
    */
-  async function told(uav, kind, filled = {}, key = freshKey()) {
+  async function order(uav, kind, filled = {}, key = freshKey()) {
     markSending(store, [uav.id], kind);
     try {
-      const isTold = await tellUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
+      const isOrdered = await commandUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
       keptUnsent(store, uav.id, null);
-      if (!isTold) markSending(store, [uav.id], null);
-      if (isTold) say(t("{act}: sending to {name}.", { act: KINDS[kind], name: uav.name }));
-      return isTold;
+      if (!isOrdered) markSending(store, [uav.id], null);
+      if (isOrdered) announce(t("{act}: sending to {name}.", { act: KINDS[kind], name: uav.name }));
+      return isOrdered;
     } catch (error) {
       markSending(store, [uav.id], null);
       if (!(error instanceof ApiError)) throw error;
@@ -137,7 +137,7 @@ export function createCommanding(store, page) {
       hold_s: uav.estimated?.battery?.hold_s,
       route: store.state.details.get(uav.mission ?? "")?.plan?.routes[uav.place ?? -1],
     };
-    const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
+    const late = certainty(uav) === MEASURED ? null : unreachableLines([uav], kind, store.state.now_ms)[0];
     const already = overtakenWords(kind, uav);
     const question = presentQuestion(isStop ? null : uav.id, kind, flyer, ([first, ...rest]) => [
       already,
@@ -149,8 +149,8 @@ export function createCommanding(store, page) {
     const watch = watchOvertaken(store, uav, kind);
     const asked = await confirmAct({ ...question, opener, overtaken: watch.overtaken });
     watch.stop();
-    if (asked?.safer) await told(uav, asked.safer.kind, asked.safer.parameters);
-    else if (asked) await told(uav, kind, asked);
+    if (asked?.safer) await order(uav, asked.safer.kind, asked.safer.parameters);
+    else if (asked) await order(uav, kind, asked);
   }
 
   dropArrived(store);
@@ -161,7 +161,7 @@ export function createCommanding(store, page) {
     const uav = store.state.uavs.find((entry) => entry.id === id);
     if (!unsent || !uav || unsent.isBusy) return;
     keptUnsent(store, id, { ...unsent, isBusy: true });
-    await told(uav, unsent.kind, unsent.filled, unsent.key);
+    await order(uav, unsent.kind, unsent.filled, unsent.key);
   }
 
   return { ask, askAll: createBatch(store, page), tryAgain, giveUp: (id) => keptUnsent(store, id, null) };

@@ -66,7 +66,7 @@ const store = createStore(
     olderEvents: null,
     link: null,
     since_ms: 0,
-    heard_ms: null,
+    received_ms: null,
     silent_ms: 0,
     unsent: new Map(),
     sending: new Map(),
@@ -92,7 +92,7 @@ mountCards(store, {
   isOfOne: page.mission !== null,
   pick,
   close: () => store.update({ chosen: null, isFollowing: false }),
-  tellShown: (shown, all) => fleetFilter?.tell(shown, all),
+  showShown: (shown, all) => fleetFilter?.notify(shown, all),
   jumpTo: (id) => map.jumpTo(id),
   follow: () => store.update({ isFollowing: !store.state.isFollowing }),
   commanding,
@@ -126,7 +126,7 @@ function followFeed(stage) {
   let { revision } = source;
   return store.listen(["uavs", "now_ms", "silent_ms", "link"], (state) => {
     const { uavs, now_ms } = state;
-    stage.sayStale(staleWords(state));
+    stage.showStale(staleWords(state));
     if (!source.take?.({ uavs, now_ms })) return;
     stage.refresh(source.revision !== revision);
     revision = source.revision;
@@ -209,16 +209,16 @@ function take(touched) {
 
 function show() {
   /** @type {Partial<Live>} */
-  const told = Object.fromEntries([...(waiting ?? [])].map((kind) => [kind, [...feed.shown[kind].values()]]));
-  if (told.uavs || told.missions) {
-    told.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
+  const reported = Object.fromEntries([...(waiting ?? [])].map((kind) => [kind, [...feed.shown[kind].values()]]));
+  if (reported.uavs || reported.missions) {
+    reported.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
   }
   waiting = null;
   const numbers =
     page.mission === null
       ? missionNumbers(store.state.numbers, [...feed.shown.missions.values()])
       : store.state.numbers;
-  store.update({ ...told, numbers, ...timesOf() });
+  store.update({ ...reported, numbers, ...timesOf() });
   if (!store.state.isWhole) pickNamed();
   store.update({ isWhole: true }); // from here on what comes is news
 }
@@ -232,7 +232,7 @@ const feed =
       })
     : silentFeed(copiedAt);
 /** What is shown is of `now_ms`: it stands still while the device has no data. */
-const timesOf = () => ({ now_ms: feed.shown_ms(), heard_ms: feed.heard_ms, silent_ms: feed.silent_ms() });
+const timesOf = () => ({ now_ms: feed.shown_ms(), received_ms: feed.received_ms, silent_ms: feed.silent_ms() });
 setInterval(() => store.update(timesOf()), TICK_MS);
 addEventListener("pagehide", () => feed.close());
 

@@ -83,10 +83,10 @@ export function createMissionDetails(store) {
       flown.set(uav, line);
       line.parts.at(-1)?.push(...live.slice(-1));
     }
-    tell();
+    notify();
   }
 
-  const tell = () => store.update({ flown: new Map([...flown].map(([uav, { parts }]) => [uav, parts])) });
+  const notify = () => store.update({ flown: new Map([...flown].map(([uav, { parts }]) => [uav, parts])) });
 
   store.listen(["missions"], ({ missions }) => {
     for (const mission of missions) void read(mission);
@@ -99,6 +99,6 @@ export function createMissionDetails(store) {
         inAir(uav) !== false &&
         addReport(flown, uav.id, uav.measured.position, Date.parse(uav.measured.measured_at)),
     );
-    if (isNew.some(Boolean)) tell();
+    if (isNew.some(Boolean)) notify();
   });
 }

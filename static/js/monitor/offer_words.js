@@ -1,7 +1,7 @@
 /** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
 
 import { routeLetter } from "../domain/palette.js";
-import { BLIND_MS } from "../live/feed.js";
+import { FEED_LOST_MS } from "../live/feed.js";
 import { t, tn } from "../text.js";
 import { clockText, countdownText, lengthText, percentText } from "../units.js";
 
@@ -155,9 +155,9 @@ export const validWords = (until, now_ms) =>
  */
 export function whyNotDecided(offer, { now_ms, silent_ms }) {
   const { valid_until } = differenceOf(offer);
-  if (valid_until && Date.parse(valid_until) <= now_ms + (silent_ms >= BLIND_MS ? silent_ms : 0))
+  if (valid_until && Date.parse(valid_until) <= now_ms + (silent_ms >= FEED_LOST_MS ? silent_ms : 0))
     return t("Expired {time}.", { time: clockText(valid_until) });
-  return silent_ms >= BLIND_MS ? t("No data on this device: it may have expired.") : "";
+  return silent_ms >= FEED_LOST_MS ? t("No data on this device: it may have expired.") : "";
 }
 
 /**

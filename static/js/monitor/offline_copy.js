@@ -42,7 +42,7 @@ export function missionOfCopy({ id, name, state, revision, departs_at, colours, 
 export function silentFeed(keptAt) {
   return {
     shown: nothingShown(),
-    heard_ms: null,
+    received_ms: null,
     shown_ms: () => Date.parse(keptAt),
     silent_ms: () => 0,
     close: () => {},

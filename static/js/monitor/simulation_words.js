@@ -160,7 +160,7 @@ export function stateWords(simulation, canFly) {
   if (simulation.state === "ended")
     return { words: t("The simulation is over: {why}", { why: simulation.message }), isBad: false };
   const crashed = flown.filter(({ told }) => told?.is_crashed);
-  const said = [
+  const summary = [
     simulation.speed === 1
       ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.")
       : tn(
@@ -176,5 +176,5 @@ export function stateWords(simulation, canFly) {
         seconds: Math.round(simulation.pace?.slipped_s ?? 0),
       }),
   ];
-  return { words: said.filter(Boolean).join(" "), isBad: crashed.length + lost.length > 0 };
+  return { words: summary.filter(Boolean).join(" "), isBad: crashed.length + lost.length > 0 };
 }

@@ -81,7 +81,7 @@ export interface MonitorState extends Live {
   /** since when `link` is so, by the server's clock */
   since_ms: number;
   /** when the last message came, by the server's clock; null before the first */
-  heard_ms: number | null;
+  received_ms: number | null;
   /** since then */
   silent_ms: number;
   /** commands that could not leave this device, by UAV */

@@ -28,9 +28,9 @@ export function showAlertCount({ all, critical }) {
   badge.textContent = `${all}`;
   bell.classList.toggle("critical", critical > 0);
   const words = all ? tn(all, "{count} open alert", "{count} open alerts") : t("Alerts");
-  const said = critical ? `${words}, ${t("{count} critical", { count: critical })}` : words;
-  bell.setAttribute("aria-label", said);
-  bell.title = said;
+  const summary = critical ? `${words}, ${t("{count} critical", { count: critical })}` : words;
+  bell.setAttribute("aria-label", summary);
+  bell.title = summary;
   mark = all ? `(${all}${critical ? "!" : ""}) ` : "";
   markTitle();
 }

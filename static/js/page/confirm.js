@@ -46,11 +46,11 @@ export function confirmAct(question) {
     dialog.addEventListener("close", () => {
       if (dialog.returnValue !== "go" && dialog.returnValue !== "safer") return resolve(null);
       const filled = input && { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() };
-      const told = new FormData(form);
+      const reported = new FormData(form);
       resolve({
         ...filled,
-        ...(choices && { [choices.name]: told.get(choices.name) }),
-        ...Object.fromEntries(checks.map(({ name }) => [name, told.has(name)])),
+        ...(choices && { [choices.name]: reported.get(choices.name) }),
+        ...Object.fromEntries(checks.map(({ name }) => [name, reported.has(name)])),
         ...(dialog.returnValue === "safer" && { safer: acts.safer() }),
       });
     });

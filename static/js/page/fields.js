@@ -16,7 +16,7 @@ import { numberText } from "../units.js";
  * @property {HTMLElement} element
  * @property {Control} input
  * @property {() => Value} read its value as the API takes it
- * @property {(fault: string) => void} tell shows what is wrong with it; "" clears it
+ * @property {(fault: string) => void} notify shows what is wrong with it; "" clears it
  */
 /** @typedef {{ unit?: string, hint?: string }} How */
 
@@ -47,7 +47,7 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
     fault,
   );
   /** @param {string} words */
-  const tell = (words) => {
+  const notify = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
     if (words) input.setAttribute("aria-invalid", "true");
@@ -56,12 +56,12 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
   // Said beside the field and in the page's language, not in a bubble of the browser's.
   input.addEventListener("invalid", (event) => {
     event.preventDefault();
-    tell(faultWords(input));
+    notify(faultWords(input));
     const controls = /** @type {Input[]} */ ([...(input.form?.elements ?? [])]);
     if (controls.find(({ validity }) => validity?.valid === false) === input) input.focus();
   });
-  input.addEventListener("input", () => input.validity.valid && tell(""));
-  return { name, label, element, input, read, tell };
+  input.addEventListener("input", () => input.validity.valid && notify(""));
+  return { name, label, element, input, read, notify };
 }
 
 /** @param {Input} input */
@@ -204,9 +204,9 @@ export function switchField(name, label, value, { hint = "", disabled = false } 
     fault,
   );
   /** @param {string} words */
-  const tell = (words) => {
+  const notify = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
   };
-  return { name, label, element, input, read: () => input.checked, tell };
+  return { name, label, element, input, read: () => input.checked, notify };
 }

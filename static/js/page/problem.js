@@ -5,10 +5,10 @@ import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
 
 /** How a part of a page reports what became of a request: tell(title, error) shows a fault, settle() takes it away. */
-/** @typedef {{ tell: (title: string, error: unknown) => void, settle: () => void }} Reporter */
+/** @typedef {{ notify: (title: string, error: unknown) => void, settle: () => void }} Reporter */
 
 /** Shows an error of the API; throws any other. @param {string} title @param {unknown} error */
-export function tell(title, error) {
+export function notify(title, error) {
   if (!(error instanceof ApiError)) throw error;
   const way = error.isSignedOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : null;
   byId("problem").replaceChildren(

@@ -42,7 +42,7 @@ export function createSessionWatch({
   let shown = null;
 
   /** @param {Ending | null} state */
-  function tell(state) {
+  function notify(state) {
     if (state === null && shown === null) return;
     shown = state;
     show(state);
@@ -52,7 +52,7 @@ export function createSessionWatch({
   function plan(left_s) {
     clearTimer(timer);
     const isSoon = left_s <= WARNS_S;
-    tell(isSoon ? { ends_at_ms: now_ms() + left_s * 1_000 } : null);
+    notify(isSoon ? { ends_at_ms: now_ms() + left_s * 1_000 } : null);
     const wait_s = isSoon ? Math.min(ASKS_AGAIN_S, left_s + 1) : Math.min(left_s - WARNS_S, MAX_TIMER_S);
     timer = setTimer(look, wait_s * 1_000);
   }
@@ -64,7 +64,7 @@ export function createSessionWatch({
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       clearTimer(timer);
-      if (error.isSignedOut) tell({ isOver: true });
+      if (error.isSignedOut) notify({ isOver: true });
       else timer = setTimer(look, ASKS_AGAIN_S * 1_000);
     }
   }

@@ -3,7 +3,7 @@
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { copyText } from "./clipboard.js";
-import { say, toast } from "./toast.js";
+import { announce, toast } from "./toast.js";
 
 /** @param {{ title: string, secret: string, label: string, more?: import("../dom.js").Child }} what */
 export function shownOnce({ title, secret, label, more = null }) {
@@ -15,7 +15,7 @@ export function shownOnce({ title, secret, label, more = null }) {
       return;
     }
     getSelection()?.selectAllChildren(code);
-    say(t("It is selected. Copy it with Ctrl+C."));
+    announce(t("It is selected. Copy it with Ctrl+C."));
   });
   return h(
     "div",

@@ -28,19 +28,19 @@ export function chooseTheme(theme) {
   if (document.documentElement.dataset.themeOf === "account") {
     kept = kept.then(() => patch("/account", { theme })).catch(() => {}); // away: the choice lasts as long as the page
   }
-  for (const tell of listeners) tell();
+  for (const notify of listeners) notify();
 }
 
 export function nextTheme() {
   chooseTheme(ORDER[(ORDER.indexOf(chosenTheme()) + 1) % ORDER.length]);
 }
 
-/** Tells of each change, the system's own included. Returns a function that ends it. @param {() => void} tell */
-export function onTheme(tell) {
-  listeners.add(tell);
-  return () => listeners.delete(tell);
+/** Tells of each change, the system's own included. Returns a function that ends it. @param {() => void} notify */
+export function onTheme(notify) {
+  listeners.add(notify);
+  return () => listeners.delete(notify);
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  if (chosenTheme() === "system") for (const tell of listeners) tell();
+  if (chosenTheme() === "system") for (const notify of listeners) notify();
 });

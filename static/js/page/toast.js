@@ -32,6 +32,6 @@ export function toast(sentence, action = null) {
 }
 
 /** For screen readers alone: what a sighted person sees happen anyway. @param {string} sentence */
-export function say(sentence) {
+export function announce(sentence) {
   byId("spoken").textContent = sentence;
 }

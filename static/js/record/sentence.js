@@ -53,11 +53,11 @@ export function reasonsOf({ targets, incidents }) {
     if (group) group.targets.push(target);
     else groups.set(`${result} ${words}`, { targets: [target], result, words });
   }
-  const said = new Set([...groups.values()].map(({ words }) => words));
+  const sentences = new Set([...groups.values()].map(({ words }) => words));
   const others = incidents
     .filter(({ kind }) => TOLD.includes(kind))
     .map(({ message, at }) => withTime(message, at))
-    .filter((words) => !said.has(words));
+    .filter((words) => !sentences.has(words));
   return [
     ...[...groups.values()].map(({ targets: of, result, words }) => ({
       targets: of,

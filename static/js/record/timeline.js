@@ -50,11 +50,11 @@ const SAME_MS = 500; // an event that the cursor stands on
  */
 export function spanOf(tracks) {
   const flown = tracks.flatMap(({ flights }) => flights.flatMap(({ from_ms, to_ms }) => [from_ms, to_ms]));
-  const heard = tracks.flatMap(({ samples }) =>
+  const received = tracks.flatMap(({ samples }) =>
     [...samples.slice(0, 1), ...samples.slice(-1)].map(({ at_ms }) => at_ms),
   );
   const estimated = tracks.flatMap(({ estimated: runs }) => runs.map((run) => lastOf(run).at_ms));
-  const moments = flown.length ? [...flown, ...estimated] : heard;
+  const moments = flown.length ? [...flown, ...estimated] : received;
   if (!moments.length) return null;
   const from_ms = Math.min(...moments);
   return { from_ms, to_ms: Math.max(...moments, from_ms + SECOND) };

@@ -148,11 +148,11 @@ export function flightsOf(samples) {
   const flights = [];
   /** @type {TimeSpan | null} */
   let flight = null;
-  const isTold = samples.some(({ isInAir }) => isInAir !== null);
+  const isOrdered = samples.some(({ isInAir }) => isInAir !== null);
   for (const { at_ms, isInAir } of samples) {
     if (isInAir === false) flight = null;
     else if (flight) flight.to_ms = at_ms;
-    else if (isInAir || !isTold) {
+    else if (isInAir || !isOrdered) {
       flight = { from_ms: at_ms, to_ms: at_ms };
       flights.push(flight);
     }
@@ -195,8 +195,8 @@ export function momentOf(track, at_ms) {
   if (!before) return null;
   const sample = samples[nearestTo(samples, at_ms)];
   const estimate = estimates[nearestTo(estimates, at_ms)];
-  const isHeard = track.measured.some((run) => run[0].at_ms <= at_ms && at_ms <= lastOf(run).at_ms);
-  if (isHeard) return { kind: MEASURED, sample };
+  const isReceived = track.measured.some((run) => run[0].at_ms <= at_ms && at_ms <= lastOf(run).at_ms);
+  if (isReceived) return { kind: MEASURED, sample };
   if (estimate && Math.abs(estimate.at_ms - at_ms) <= silence_ms / 2) return { kind: ESTIMATED, sample: estimate };
   if (at_ms > samples[samples.length - 1].at_ms) return null;
   return { kind: SILENT, sample: before };

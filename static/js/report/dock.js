@@ -30,7 +30,7 @@ import { drawStrip } from "./strip.js";
  * @typedef {object} Chart
  * @property {"height_m" | "speed_mps" | "battery_percent"} name
  * @property {string} words
- * @property {string} said for screen readers
+ * @property {string} summary for screen readers
  * @property {number} unit
  * @property {number} height_px
  * @property {number} [highest]
@@ -49,7 +49,7 @@ const CHARTS = [
   {
     name: "height_m",
     words: t("Height"),
-    said: t("Height above take-off by time"),
+    summary: t("Height above take-off by time"),
     unit: SHORT_UNIT.metres,
     height_px: 64,
     text: heightText,
@@ -58,7 +58,7 @@ const CHARTS = [
   {
     name: "speed_mps",
     words: t("Speed"),
-    said: t("Speed over ground by time"),
+    summary: t("Speed over ground by time"),
     unit: SPEED_UNIT.mps,
     height_px: 44,
     text: speedText,
@@ -66,7 +66,7 @@ const CHARTS = [
   {
     name: "battery_percent",
     words: t("Battery"),
-    said: t("Battery by time"),
+    summary: t("Battery by time"),
     unit: 1,
     highest: 100,
     height_px: 44,
@@ -141,7 +141,7 @@ function chartRow(chart, { routes, span }, { x, width_px }) {
     planned: chart.hasPlan ? plannedHeights(route).filter(({ at_ms }) => at_ms <= span.to_ms) : [],
   }));
   if (!series.some(({ lines }) => lines.length)) return [];
-  const drawing = drawChart({ ...chart, series, x, width_px, ruleText: chart.text, label: chart.said });
+  const drawing = drawChart({ ...chart, series, x, width_px, ruleText: chart.text, label: chart.summary });
   const readings = h("span", { class: "replay-reading replay-figures" });
   const row = h(
     "div",

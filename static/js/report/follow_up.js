@@ -44,9 +44,9 @@ export function offerDownloads(record) {
 /** @param {HTMLButtonElement} button @param {string} mission */
 async function ask(button, mission) {
   key ??= crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
-  const said = byId("report-follow-up-said");
+  const summary = byId("report-follow-up-said");
   button.disabled = true;
-  said.textContent = "";
+  summary.textContent = "";
   try {
     const { data } = /** @type {Answer<Mission>} */ (
       await post(`/missions/${mission}/follow-up`, {}, { headers: { "Idempotency-Key": key } })
@@ -55,7 +55,7 @@ async function ask(button, mission) {
   } catch (error) {
     const { status, message } = /** @type {ApiError} */ (error);
     if (status) key = null;
-    said.textContent = `${t("No follow-up was made.")} ${message}`;
+    summary.textContent = `${t("No follow-up was made.")} ${message}`;
     button.disabled = false;
   }
 }

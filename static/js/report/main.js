@@ -80,15 +80,15 @@ function showTarget(place) {
 async function read() {
   try {
     take(await loadMission(page.mission));
-    tellFault(null);
+    showFault(null);
   } catch (error) {
-    tellFault(error);
+    showFault(error);
   }
   if (!loaded || isUnderWay(loaded.record)) setTimeout(read, AGAIN_MS);
 }
 
 /** @param {unknown} error null: there is none any more */
-function tellFault(error) {
+function showFault(error) {
   const { isSignedOut = false, message = "" } = /** @type {Partial<ApiError>} */ (error ?? {});
   const fault = byId("report-fault");
   fault.hidden = error === null;
@@ -151,7 +151,7 @@ function take(answer) {
   byId("dock").classList.toggle("without-replay", span === null);
   byId("replay-empty").hidden = span !== null;
   if (!span) {
-    tellNothing(record);
+    showNothing(record);
     return;
   }
   byId("replay-tables").replaceChildren(...replayTables(routes));
@@ -181,7 +181,7 @@ const targetOnStrip = ({ place, label: name, state, reached_at }) => {
 };
 
 /** @param {MissionRecord} record */
-function tellNothing(record) {
+function showNothing(record) {
   const [title, words] = byId("replay-empty").children;
   title.textContent = isOver(record) ? t("Nothing to replay.") : t("Nothing to replay yet.");
   words.textContent = isOver(record)

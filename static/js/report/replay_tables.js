@@ -55,13 +55,13 @@ function row(at_ms, moment) {
     );
   const { height_m, speed_mps, battery_percent } = moment.sample;
   /** @param {number | null} value @param {(value: number) => string} text */
-  const said = (value, text) => h("td", {}, value === null ? "—" : text(value));
+  const summary = (value, text) => h("td", {}, value === null ? "—" : text(value));
   return h(
     "tr",
     {},
     h("th", { scope: "row" }, exactClockText(at_ms)),
-    said(height_m, heightText),
-    said(speed_mps, speedText),
-    said(battery_percent, percentText),
+    summary(height_m, heightText),
+    summary(speed_mps, speedText),
+    summary(battery_percent, percentText),
   );
 }

@@ -23,8 +23,8 @@ const KEY = /^[0-9a-f-]{1,36}$/i;
  * @returns {WantedSource | null}
  */
 export function readSource(text) {
-  const [said, rehearsal = "", run = ""] = (text ?? "").split(":");
-  const kind = SOURCES.find((one) => one === said);
+  const [summary, rehearsal = "", run = ""] = (text ?? "").split(":");
+  const kind = SOURCES.find((one) => one === summary);
   if (!kind) return null;
   if (kind !== "rehearsal") return { kind, rehearsal: null, run: null };
   return { kind, rehearsal: KEY.test(rehearsal) ? rehearsal : null, run: /^\d{1,3}$/.test(run) ? Number(run) : null };
@@ -51,24 +51,24 @@ const round = (value, digits) => `${Number(value.toFixed(digits))}`;
  * @param {string} search
  */
 export function readLink(search) {
-  const said = new URLSearchParams(search);
-  const t = said.get("t") ?? "";
+  const summary = new URLSearchParams(search);
+  const t = summary.get("t") ?? "";
   const isSeconds = /^-?\d+(\.\d+)?$/.test(t);
   const moment = isSeconds ? NaN : Date.parse(t);
   /** @param {string} name */
-  const number = (name) => (/^\d{1,4}$/.test(said.get(name) ?? "") ? Number(said.get(name)) : null);
-  const mode = CAMERAS.find((one) => one === said.get("camera"));
+  const number = (name) => (/^\d{1,4}$/.test(summary.get(name) ?? "") ? Number(summary.get(name)) : null);
+  const mode = CAMERAS.find((one) => one === summary.get("camera"));
   /** @type {LinkedCamera | null} */
   const camera = mode
     ? {
         mode,
-        view: figures(said.get("view")),
-        place: figures(said.get("from")),
-        offset: figures(said.get("offset")),
+        view: figures(summary.get("view")),
+        place: figures(summary.get("from")),
+        offset: figures(summary.get("offset")),
       }
     : null;
   return {
-    source: readSource(said.get("source")),
+    source: readSource(summary.get("source")),
     at_ms: Number.isNaN(moment) ? null : moment,
     since_s: isSeconds ? Number(t) : null,
     uav: number("uav"),
@@ -89,22 +89,22 @@ export function readLink(search) {
  * @param {{ mode: CameraMode, bearing_deg: number, elevation_deg: number, distance_m: number, place?: Vector | null, offset?: Vector } | null} [moment.camera]
  */
 export function linkText({ source, at_ms = null, since_s = null, uav = null, target = null, camera = null }) {
-  const said = new URLSearchParams();
-  said.set("source", sourceText(source));
-  if (since_s !== null) said.set("t", round(since_s, 1));
-  else if (at_ms !== null) said.set("t", new Date(at_ms).toISOString());
-  if (uav !== null) said.set("uav", `${uav}`);
-  if (target !== null) said.set("target", `${target}`);
+  const summary = new URLSearchParams();
+  summary.set("source", sourceText(source));
+  if (since_s !== null) summary.set("t", round(since_s, 1));
+  else if (at_ms !== null) summary.set("t", new Date(at_ms).toISOString());
+  if (uav !== null) summary.set("uav", `${uav}`);
+  if (target !== null) summary.set("target", `${target}`);
   if (camera) {
-    said.set("camera", camera.mode);
-    said.set(
+    summary.set("camera", camera.mode);
+    summary.set(
       "view",
       [round(camera.bearing_deg, 1), round(camera.elevation_deg, 1), round(camera.distance_m, 1)].join(","),
     );
     if (camera.place)
-      said.set("from", [round(camera.place[0], 6), round(camera.place[1], 6), round(camera.place[2], 1)].join(","));
+      summary.set("from", [round(camera.place[0], 6), round(camera.place[1], 6), round(camera.place[2], 1)].join(","));
     if (camera.offset?.some((metres) => Math.abs(metres) > 0.05))
-      said.set("offset", camera.offset.map((metres) => round(metres, 1)).join(","));
+      summary.set("offset", camera.offset.map((metres) => round(metres, 1)).join(","));
   }
-  return `?${`${said}`.replaceAll("%2C", ",").replaceAll("%3A", ":")}`;
+  return `?${`${summary}`.replaceAll("%2C", ",").replaceAll("%3A", ":")}`;
 }

@@ -62,7 +62,7 @@ function keepAddress() {
 }
 
 /** @param {string} words @param {(() => void) | null} [again] */
-function tell(words, again = null) {
+function notify(words, again = null) {
   root.replaceChildren(
     h(
       "p",
@@ -75,9 +75,9 @@ function tell(words, again = null) {
 }
 
 /** What went wrong in words, with a way on. @param {unknown} error @param {() => void} again */
-function tellFault(error, again) {
+function showFault(error, again) {
   if (!(error instanceof ApiError)) throw error;
-  tell(error.message, error.isSignedOut ? null : again);
+  notify(error.message, error.isSignedOut ? null : again);
   if (error.isSignedOut) root.firstElementChild?.append(" ", h("a", { href: signInAddress() }, t("Sign in")));
 }
 
@@ -89,13 +89,13 @@ async function open(mission, wanted, link = null) {
   feed?.close();
   feed = null;
   clearInterval(following);
-  tell(t("Reading what there is to see."));
+  notify(t("Reading what there is to see."));
   try {
     const { source, choices } = await readSource(mission, wanted);
     if (turn !== opened) return;
     drawSources(mission, source, choices);
     if (!source.routes.length) {
-      tell(t("There is nothing to see yet: plan the mission first."));
+      notify(t("There is nothing to see yet: plan the mission first."));
       return;
     }
     if (source.kind === "live") follow(source);
@@ -112,7 +112,7 @@ async function open(mission, wanted, link = null) {
     stage = made;
     root.dataset.kind = stage.kind;
   } catch (error) {
-    if (turn === opened) tellFault(error, () => void open(mission, wanted, link));
+    if (turn === opened) showFault(error, () => void open(mission, wanted, link));
   }
 }
 
@@ -123,8 +123,8 @@ function follow(source) {
   feed = own;
   following = setInterval(() => {
     take();
-    const { state: link, since_ms, heard_ms } = own;
-    stage?.sayStale(staleWords({ link, since_ms, heard_ms, now_ms: own.now_ms(), silent_ms: own.silent_ms() }));
+    const { state: link, since_ms, received_ms } = own;
+    stage?.showStale(staleWords({ link, since_ms, received_ms, now_ms: own.now_ms(), silent_ms: own.silent_ms() }));
   }, TICK_MS);
 
   function take() {
@@ -191,7 +191,7 @@ async function begin() {
     const link = readLink(location.search);
     await open(mission, link.source, link);
   } catch (error) {
-    tellFault(error, () => void begin());
+    showFault(error, () => void begin());
   }
 }
 

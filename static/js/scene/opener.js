@@ -1,7 +1,7 @@
 /** The button "3D" on a page's map. The view behind it is loaded with the first click: a page without it pays for this alone. */
 
 import { find, h } from "../dom.js";
-import { say } from "../page/toast.js";
+import { announce } from "../page/toast.js";
 import { t } from "../text.js";
 
 /** @import { Panel, PanelOptions } from "./panel.js" */
@@ -64,7 +64,7 @@ export function mountSceneOpener(options) {
     } catch (error) {
       if (panel === own) panel = null;
       showOpen(false);
-      say(t("The 3D view could not be opened."));
+      announce(t("The 3D view could not be opened."));
       throw error;
     }
   }

@@ -100,9 +100,9 @@ function createNotices() {
   return {
     element: h("div", { class: "scene-notices" }, notice, stale, alerts),
     overlays: [notice, stale, alerts],
-    /** Pinned over the picture, the worst first. @param {Alert[]} told of a live source @param {string} address where they are answered */
-    showAlerts(told, address) {
-      const shown = alertsInOrder(pinnedAlerts(told).filter(isUnanswered)).slice(0, MAX_ALERTS);
+    /** Pinned over the picture, the worst first. @param {Alert[]} reported of a live source @param {string} address where they are answered */
+    showAlerts(reported, address) {
+      const shown = alertsInOrder(pinnedAlerts(reported).filter(isUnanswered)).slice(0, MAX_ALERTS);
       const key = JSON.stringify(shown.map(({ id, revision, message }) => [id, revision, message]));
       if (alerts.dataset.key === key) return;
       alerts.dataset.key = key;
@@ -110,28 +110,28 @@ function createNotices() {
       alerts.replaceChildren(...shown.map((alert) => alertLine(alert, address)));
     },
     /** @param {string} title @param {string} words */
-    tell(title, words) {
+    notify(title, words) {
       notice.hidden = false;
       notice.replaceChildren(icon("info"), h("span", {}, h("strong", {}, title), ` ${words}`));
     },
     quiet() {
       notice.hidden = true;
     },
-    /** Of a live source. @param {ReturnType<typeof staleWords>} said */
-    sayStale(said) {
-      const words = [said?.words, said?.rest].filter(Boolean).join(" ");
+    /** Of a live source. @param {ReturnType<typeof staleWords>} summary */
+    showStale(summary) {
+      const words = [summary?.words, summary?.rest].filter(Boolean).join(" ");
       if (stale.dataset.words === words) return;
       stale.dataset.words = words;
-      stale.hidden = !said;
-      if (!said) return;
+      stale.hidden = !summary;
+      if (!summary) return;
       stale.replaceChildren(
         icon("cloud-off"),
         h(
           "span",
           {},
-          h("strong", {}, said.words),
-          said.rest && ` ${said.rest}`,
-          said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
+          h("strong", {}, summary.words),
+          summary.rest && ` ${summary.rest}`,
+          summary.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
         ),
       );
     },
@@ -235,7 +235,7 @@ function mountStage(root, scene, options) {
     palette,
     draw: (time) => frames?.draw(time) ?? false,
     onLost: () =>
-      notices.tell(t("The graphics have stopped."), t("They are started again as soon as the browser can.")),
+      notices.notify(t("The graphics have stopped."), t("They are started again as soon as the browser can.")),
     onFound: notices.quiet,
   });
   const { canvas, picture } = drawn;
@@ -289,7 +289,7 @@ function mountStage(root, scene, options) {
     seeTarget: acts.seeTarget,
   });
   holder.append(notices.element, h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
-  if (stage.isFlat) notices.tell(t("This browser draws no 3D."), NO_WEBGL);
+  if (stage.isFlat) notices.notify(t("This browser draws no 3D."), NO_WEBGL);
   acts.begin(link);
   bar?.show();
   picture.request();
@@ -297,7 +297,7 @@ function mountStage(root, scene, options) {
     ...acts,
     ...pictureActs({ ...context, source, bar }),
     source,
-    sayStale: notices.sayStale,
+    showStale: notices.showStale,
     showAlerts: notices.showAlerts,
     /** For a page with a time of its own: it has moved, or another UAV is looked at. @param {number | null} place */
     point(place) {

@@ -180,9 +180,9 @@ export function createTimeBar({ player, source, span: firstSpan, eventWords }) {
     slider.value = `${shareOf(span, at_ms) * STEPS}`;
     const near_ms = Math.max(NEAR_EVENT_MS, speed * 1_000);
     const happened = source.events.findLast((one) => one.at_ms <= at_ms && at_ms - one.at_ms < near_ms);
-    const said = happened ? eventWords(happened) : "";
-    write(event, said);
-    const spoken = [words, said].filter(Boolean).join(", ");
+    const summary = happened ? eventWords(happened) : "";
+    write(event, summary);
+    const spoken = [words, summary].filter(Boolean).join(", ");
     if (!isPlaying && slider.getAttribute("aria-valuetext") !== spoken) slider.setAttribute("aria-valuetext", spoken);
     for (const input of speeds) input.checked = Number(input.value) === speed;
   }

@@ -121,7 +121,7 @@ export interface FlightSource {
   /** of a live one: what was flown has grown */
   revision?: number;
   /** of a live one: returns whether anything is another than before */
-  take?(heard: { uavs: readonly LiveUav[]; now_ms: number }): boolean;
+  take?(received: { uavs: readonly LiveUav[]; now_ms: number }): boolean;
   /** of a live one: where a UAV is shown */
   momentAt?(route: FlightRoute, now_ms: number): Moment | null;
   isGliding?(now_ms: number): boolean;

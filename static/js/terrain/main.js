@@ -5,7 +5,7 @@ import { byId, find, h } from "../dom.js";
 import { pathLength_m } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
-import { say, toast } from "../page/toast.js";
+import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { countText } from "../units.js";
 import { mountGroundPanel } from "./ground_panel.js";
@@ -40,7 +40,7 @@ let cursor = null;
 let asked = 0;
 
 const { page, map, open } = mountGroundPage({
-  click: (thing, position) => (tool === "profile" ? clickInProfile(thing, position) : tellHeight(position)),
+  click: (thing, position) => (tool === "profile" ? clickInProfile(thing, position) : showHeight(position)),
   hover: (_thing, point) => pointAlong(point),
   kinds: () => (tool === "profile" ? (points.length ? [] : ["line"]) : null),
 });
@@ -113,7 +113,7 @@ async function ask(question) {
 }
 
 /** @param {readonly number[]} clicked */
-async function tellHeight(clicked) {
+async function showHeight(clicked) {
   const position = rounded(clicked);
   layer.showLine(map.map, [], [position]);
   const answer = await ask(() => get(`/terrain/height?position=${position.join(",")}`));
@@ -184,7 +184,7 @@ async function towersIn(box) {
 function show(profile, towers, words) {
   along = { profile, towers };
   panel.profile(profile, towers, words);
-  say(profileSentence(profile, towers));
+  announce(profileSentence(profile, towers));
 }
 
 function takePointBack() {

@@ -99,7 +99,7 @@ class ScheduleEditor {
     return this.#periods.length ? structuredClone(this.#periods) : null;
   }
 
-  #tell() {
+  #notify() {
     this.element.dispatchEvent(new Event("input", { bubbles: true }));
   }
 
@@ -113,7 +113,7 @@ class ScheduleEditor {
       act();
       this.#draw();
       if (place >= 0) controls()[Math.min(place, controls().length - 1)].focus();
-      this.#tell();
+      this.#notify();
     };
   }
 
@@ -189,7 +189,7 @@ class ScheduleEditor {
     const input = h("input", { class: "input", id, type: "datetime-local", value: toField(period[side]) });
     input.addEventListener("change", () => {
       period[side] = fromField(input.value);
-      this.#tell();
+      this.#notify();
     });
     return h("div", { class: "field" }, h("label", { for: id }, words), input);
   }

@@ -21,7 +21,7 @@ from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Finding, acts
 from telemetry.alerting.modes import ModeKind
-from telemetry.alerting.said import is_worse, words_of_battery
+from telemetry.alerting.status_texts import is_worse, newest_battery_text
 
 CODE = "battery-short"
 TURN_BACK = "%(uav)s: battery %(percent)s %%, just enough to return (%(home)s %%) with the reserve of %(reserve)s %%."
@@ -35,7 +35,7 @@ NO_WAY_BUT_LANDING = (
     "%(uav)s: battery %(percent)s %%, not enough to return home (%(home)s %%). The landing place %(metres)s m away is in reach."
 )
 STATED = "%(uav)s itself reports its battery as %(state)s."
-SAID = "%(uav)s itself reports its battery as %(state)s: %(words)s"
+STATED_AS = "%(uav)s itself reports its battery as %(state)s: %(words)s"
 STATES = {"low": WARNING, "critical": CRITICAL, "emergency": CRITICAL, "failed": CRITICAL, "unhealthy": CRITICAL}
 OVERRULES_AFTER_S = 15.0  # a state that is well counts more than words that are so old
 CLEARS_ABOVE_PERCENT = 2.0  # of what raises it
@@ -72,18 +72,18 @@ def _forecast(situation: Situation) -> BatteryForecast | None:
 
 
 def _stated(situation: Situation) -> Finding | None:
-    state, word = situation.link.battery_state, words_of_battery(situation.said, situation.now_s)
-    if word is not None and state == "ok" and situation.now_s - word.at_s > OVERRULES_AFTER_S:
-        word = None
-    if state not in STATES and word is None:
+    state, text = situation.link.battery_state, newest_battery_text(situation.status_texts, situation.now_s)
+    if text is not None and state == "ok" and situation.now_s - text.at_s > OVERRULES_AFTER_S:
+        text = None
+    if state not in STATES and text is None:
         return None
-    named = state if state in STATES else "critical" if word is not None and is_worse(word) else "low"
+    named = state if state in STATES else "critical" if text is not None and is_worse(text) else "low"
     values = {"uav": situation.uav.name, "state": named}
-    details = {"charge_state": state, "words": "" if word is None else word.text}
-    if word is None:
+    details = {"charge_state": state, "words": "" if text is None else text.text}
+    if text is None:
         return Finding(CODE, STATES[named], STATED, values, details=details)
-    level = CRITICAL if is_worse(word) else STATES[named]
-    return Finding(CODE, level, SAID, values | {"words": word.text}, details=details)
+    level = CRITICAL if is_worse(text) else STATES[named]
+    return Finding(CODE, level, STATED_AS, values | {"words": text.text}, details=details)
 
 
 def _expected(situation: Situation, forecast: BatteryForecast) -> list[Finding]:
@@ -169,8 +169,8 @@ def _answer(situation: Situation, forecast: BatteryForecast | None) -> dict[str,
         best = None if forecast is None else _best_landing(forecast)
         may_fall_short = best is None or best < floor_percent
         return {ACTS: acts(LAND, uav_id=uav_id) if may_fall_short else [], **own, **_advice_of_return(forecast)}
-    kinds, said = _ways_down(forecast, floor_percent)
-    return {ACTS: acts(*kinds, uav_id=uav_id), **said}
+    kinds, status_texts = _ways_down(forecast, floor_percent)
+    return {ACTS: acts(*kinds, uav_id=uav_id), **status_texts}
 
 
 def _best_landing(forecast: BatteryForecast) -> float | None:

@@ -17,7 +17,7 @@ WORDS = (
 )
 AWAY_M = 30.0  # of the places at which it was planned to stand; GPS and a landing by hand stay well within
 SETS_OFF = frozenset({"start", "take-off", "resume"})
-TOLD_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
+ORDERED_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
 FELL_WITHIN_S = 10.0  # before it was on the ground
 GIVEN_AFTER_S = 2.0  # that clocks and reports may differ by
 
@@ -88,7 +88,7 @@ def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[L
 
 def _was_started(situation: Situation) -> bool:
     order = situation.order
-    if order is not None and order.kind in TOLD_TO and _could_land(situation.memory, order):
+    if order is not None and order.kind in ORDERED_TO and _could_land(situation.memory, order):
         return False
     return situation.memory.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
 

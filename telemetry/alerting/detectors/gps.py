@@ -32,19 +32,19 @@ def detect(situation: Situation) -> list[Finding] | None:
     fresh, limits = situation.fresh, situation.limits
     if fresh is None:
         return None
-    told, is_open = fresh.measurement, situation.is_open(CODE)
+    reported, is_open = fresh.measurement, situation.is_open(CODE)
     jump_m = _jump_m(situation, fresh)
     found: tuple[str, str, dict[str, object]] | None = None
-    if told.gps_fix is not None and told.gps_fix < FIX_IN_SPACE:
+    if reported.gps_fix is not None and reported.gps_fix < FIX_IN_SPACE:
         found = CRITICAL, NO_FIX, {}
     elif position_of(fresh) is None:
         found = CRITICAL, NO_POSITION, {}
     elif jump_m is not None:
         found = WARNING, JUMPED, {"metres": round(jump_m)}
-    elif told.satellites is not None and told.satellites < limits.least_satellites + (MORE_SATELLITES if is_open else 0):
-        found = WARNING, FEW, {"satellites": told.satellites}
-    elif told.hdop is not None and told.hdop > limits.most_hdop * (CLEAR_SHARE if is_open else 1.0):
-        found = WARNING, WEAK, {"hdop": f"{told.hdop:.1f}"}
+    elif reported.satellites is not None and reported.satellites < limits.least_satellites + (MORE_SATELLITES if is_open else 0):
+        found = WARNING, FEW, {"satellites": reported.satellites}
+    elif reported.hdop is not None and reported.hdop > limits.most_hdop * (CLEAR_SHARE if is_open else 1.0):
+        found = WARNING, WEAK, {"hdop": f"{reported.hdop:.1f}"}
     if found is None:
         return []
     level, words, values = found
@@ -52,7 +52,13 @@ def detect(situation: Situation) -> list[Finding] | None:
     if is_lost:
         values["own"] = OWN.get(situation.link.autopilot, OWN_UNKNOWN)
     answers = acts(LAND, TAKE_OVER, uav_id=situation.uav.uav_id) if is_lost else acts(HOLD, uav_id=situation.uav.uav_id)
-    details = {ACTS: answers, "gps_fix": told.gps_fix, "satellites": told.satellites, "hdop": told.hdop, "jump_m": jump_m and round(jump_m)}
+    details = {
+        ACTS: answers,
+        "gps_fix": reported.gps_fix,
+        "satellites": reported.satellites,
+        "hdop": reported.hdop,
+        "jump_m": jump_m and round(jump_m),
+    }
     return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
 
 

@@ -25,7 +25,7 @@ from telemetry.alerting.modes import ModeKind
 CODE = "link-lost"
 LATE = "%(uav)s: no telemetry for %(seconds)s s."
 LOST = "Link to %(uav)s lost: no telemetry for %(seconds)s s."
-_LAST_HEARD: dict[ModeKind | None, str] = {ModeKind.RETURN: WAS_RETURNING, ModeKind.LAND: WAS_LANDING, ModeKind.HOLD: WAS_HOLDING}
+_LAST_RECEIVED: dict[ModeKind | None, str] = {ModeKind.RETURN: WAS_RETURNING, ModeKind.LAND: WAS_LANDING, ModeKind.HOLD: WAS_HOLDING}
 LATE_INTERVALS, LOST_INTERVALS = 2.5, 5.0
 
 
@@ -38,10 +38,10 @@ def lost_after_s(limits: Limits, report_interval_s: float) -> float:
 
 
 def detect(situation: Situation) -> list[Finding]:
-    heard_s = situation.heard_s
-    if heard_s is None:
+    last_message_s = situation.last_message_s
+    if last_message_s is None:
         return []
-    silent_s, interval_s = situation.now_s - heard_s, situation.report_interval_s
+    silent_s, interval_s = situation.now_s - last_message_s, situation.report_interval_s
     if silent_s < late_after_s(situation.limits, interval_s):
         return []
     is_lost = silent_s >= lost_after_s(situation.limits, interval_s)
@@ -53,7 +53,7 @@ def detect(situation: Situation) -> list[Finding]:
             LOST if is_lost else LATE,
             {"uav": situation.uav.name, "seconds": round(silent_s)},
             details={
-                "heard_s": heard_s,
+                "heard_s": last_message_s,
                 "silent_s": round(silent_s, 1),
                 "contact_expected_s": expected_s,
                 **_does_by_itself(situation),
@@ -65,8 +65,8 @@ def detect(situation: Situation) -> list[Finding]:
 def _does_by_itself(situation: Situation) -> dict[str, Any]:
     """What it does meanwhile: as it was last heard, and as was planned for a lost link. Failsafes of autopilots are not read."""
     mode, model = situation.mode, situation.model
-    if mode in _LAST_HEARD:
-        return advice(_LAST_HEARD[mode])
+    if mode in _LAST_RECEIVED:
+        return advice(_LAST_RECEIVED[mode])
     if mode in (ModeKind.BY_HAND, ModeKind.GUIDED):
         newest = situation.uav.newest
         return advice(WAS_FLOWN, mode=(newest.measurement.mode if newest is not None else "") or situation.link.mode)

@@ -4,7 +4,7 @@ from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import Situation
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import LEADS_TO, WITHOUT_ORDER, ModeKind
-from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
+from telemetry.alerting.status_texts import AFTER_S, BEFORE_S, quoted
 
 CODE = "mode-changed"
 RETURNS = "%(uav)s is returning (%(mode)s): failsafe or pilot, not commanded from here."
@@ -12,19 +12,19 @@ LANDS = "%(uav)s is landing (%(mode)s): failsafe or pilot, not commanded from he
 FLOWN = "%(uav)s is under other control (mode %(mode)s): pilot or another ground station."
 HOLDS = "%(uav)s has stopped its mission (%(mode)s), not commanded from here."
 FLIES = "%(uav)s has resumed its mission (%(mode)s), not commanded from here."
-RETURNS_SAYING = "%(uav)s is returning (%(mode)s), not commanded from here. Autopilot: %(words)s"
-LANDS_SAYING = "%(uav)s is landing (%(mode)s), not commanded from here. Autopilot: %(words)s"
-FLOWN_SAYING = "%(uav)s is under other control (mode %(mode)s). Autopilot: %(words)s"
-HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
-FLIES_SAYING = "%(uav)s has resumed its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
+RETURN_TEXTS = "%(uav)s is returning (%(mode)s), not commanded from here. Autopilot: %(words)s"
+LANDING_TEXTS = "%(uav)s is landing (%(mode)s), not commanded from here. Autopilot: %(words)s"
+PILOT_TEXTS = "%(uav)s is under other control (mode %(mode)s). Autopilot: %(words)s"
+HOLD_TEXTS = "%(uav)s has stopped its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
+MISSION_TEXTS = "%(uav)s has resumed its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
 SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
 
 _WORDS = {
     ModeKind.RETURN: RETURNS, ModeKind.LAND: LANDS, ModeKind.HOLD: HOLDS, ModeKind.MISSION: FLIES, ModeKind.TAKE_OFF: FLIES,
     ModeKind.GUIDED: FLOWN, ModeKind.BY_HAND: FLOWN,
 }  # fmt: skip
-_SAYING = {
-    RETURNS: RETURNS_SAYING, LANDS: LANDS_SAYING, FLOWN: FLOWN_SAYING, HOLDS: HOLDS_SAYING, FLIES: FLIES_SAYING,
+_TEXTS = {
+    RETURNS: RETURN_TEXTS, LANDS: LANDING_TEXTS, FLOWN: PILOT_TEXTS, HOLDS: HOLD_TEXTS, FLIES: MISSION_TEXTS,
 }  # fmt: skip
 
 
@@ -46,7 +46,7 @@ def detect(situation: Situation) -> list[Finding] | None:
     template, values = _WORDS[kind], {"uav": situation.uav.name, "mode": mode}
     words = _words_about(situation, mode)
     if words:
-        template, values = _SAYING[template], values | {"words": words}
+        template, values = _TEXTS[template], values | {"words": words}
     return [Finding(CODE, level, template, values, details=details)]
 
 
@@ -56,7 +56,7 @@ def _words_about(situation: Situation, mode: str) -> str:
     if of_mode == mode and words:
         return words
     since_s = situation.now_s if cause is None else min(cause.since_s.values(), default=situation.now_s)
-    words = quoted(situation.said, since_s - BEFORE_S, since_s + AFTER_S)
+    words = quoted(situation.status_texts, since_s - BEFORE_S, since_s + AFTER_S)
     situation.memory.mode_words = (mode, words)
     return words
 

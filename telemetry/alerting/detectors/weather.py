@@ -26,13 +26,13 @@ def detect(situation: Situation) -> list[Finding] | None:
     return [Finding(CODE, level, WORDS, values, details={"wind_mps": round(wind_mps, 1), "limit_mps": round(limit_mps, 1)})]
 
 
-def wind_of(told: Measurement) -> float | None:
+def wind_of(reported: Measurement) -> float | None:
     """As measured; else the least that it can be by the speeds through the air and over ground. None where neither is told."""
-    if told.wind_north_mps is not None and told.wind_east_mps is not None:
-        return math.hypot(told.wind_north_mps, told.wind_east_mps)
-    if told.airspeed_mps is None or told.velocity_north_mps is None or told.velocity_east_mps is None:
+    if reported.wind_north_mps is not None and reported.wind_east_mps is not None:
+        return math.hypot(reported.wind_north_mps, reported.wind_east_mps)
+    if reported.airspeed_mps is None or reported.velocity_north_mps is None or reported.velocity_east_mps is None:
         return None
-    return abs(told.airspeed_mps - math.hypot(told.velocity_north_mps, told.velocity_east_mps))
+    return abs(reported.airspeed_mps - math.hypot(reported.velocity_north_mps, reported.velocity_east_mps))
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=10.0, clear_after_s=20.0)

@@ -55,22 +55,22 @@ def _finding(situation: Situation, zone: NearZone, in_s: float) -> Finding:
 
 def _heights_ahead(situation: Situation, agl_m: float | None) -> tuple[float | None, float | None]:
     """The lowest and the highest above ground within the time ahead, by its climb and by its route."""
-    told, place, model = situation.uav.newest, situation.place, situation.model
-    if agl_m is None or told is None:
+    reported, place, model = situation.uav.newest, situation.place, situation.model
+    if agl_m is None or reported is None:
         return None, None
-    heights_m = [agl_m, agl_m - (told.measurement.velocity_down_mps or 0.0) * situation.limits.zone_ahead_s]
+    heights_m = [agl_m, agl_m - (reported.measurement.velocity_down_mps or 0.0) * situation.limits.zone_ahead_s]
     if place is not None and model is not None and situation.flies_mission:
-        speed_mps = math.hypot(told.measurement.velocity_north_mps or 0.0, told.measurement.velocity_east_mps or 0.0)
+        speed_mps = math.hypot(reported.measurement.velocity_north_mps or 0.0, reported.measurement.velocity_east_mps or 0.0)
         heights_m += model.line.agl_between(place.along_m, place.along_m + speed_mps * situation.limits.zone_ahead_s)
     return min(heights_m), max(heights_m)
 
 
 def _ways(situation: Situation, position: LonLat) -> Iterator[list[tuple[float, float]]]:
     """Where it will be at each step, in lon/lat: by its velocity, and along its route."""
-    told, horizon_s = situation.uav.newest, situation.limits.zone_ahead_s
-    if told is None:
+    reported, horizon_s = situation.uav.newest, situation.limits.zone_ahead_s
+    if reported is None:
         return
-    north_mps, east_mps = told.measurement.velocity_north_mps or 0.0, told.measurement.velocity_east_mps or 0.0
+    north_mps, east_mps = reported.measurement.velocity_north_mps or 0.0, reported.measurement.velocity_east_mps or 0.0
     speed_mps = math.hypot(north_mps, east_mps)
     if speed_mps > SLOW_MPS:
         degree_north_m = 111_195.0

@@ -49,8 +49,8 @@ class Command(BaseCommand):
                 return
 
 
-async def _run(gateway: Gateway, say: Any) -> None:
+async def _run(gateway: Gateway, report: Any) -> None:
     gateway.stop_on_signals(after_s=ENDS_WITHIN_S)
     with figures_of(gateway):
         program_begins("gateway", gateway.not_ready)
-        await gateway.run(on_listening=lambda names: say(f"listening on {', '.join(names)}"))
+        await gateway.run(on_listening=lambda names: report(f"listening on {', '.join(names)}"))

@@ -21,8 +21,8 @@ from telemetry.selectors.alert_facts import (
     estimated_by_other_watches,
     links_of,
     orders_to,
-    said_by,
     stated_limits,
+    status_texts_of,
 )
 from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_of
 from telemetry.services.alerts.approved_flights import approved_content, flight_model
@@ -57,7 +57,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
     memories = _OF_THIS_PROCESS if memories is None else memories
     memories.keep_only(uav.uav_id for uav in watched)
     batteries: dict[int, dict[str, Any] | None] = {}
-    told = close_alerts_of_ended_missions(codes={*CODES, OTHER_LIST} - {down.CODE}, but=[uav.uav_id for uav in watched], now=now)
+    reported = close_alerts_of_ended_missions(codes={*CODES, OTHER_LIST} - {down.CODE}, but=[uav.uav_id for uav in watched], now=now)
     if watched:
         open_rows = open_alerts_of([uav.uav_id for uav in watched], (*CODES, MIXED))
         levels = {uav_id: {(row.code, row.subject): row.level for row in rows} for uav_id, rows in open_rows.items()}
@@ -66,7 +66,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
             (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
         ]
         in_mission = {situation.uav.uav_id for situation in situations if situation.is_in_flight and situation.flies_mission}
-        told |= settle(found, open_rows=open_rows, now=now)
+        reported |= settle(found, open_rows=open_rows, now=now)
         batteries = {situation.uav.uav_id: situation.memory.battery if situation.is_in_flight else None for situation in situations}
         _end_flights(situations)
         suggest_for_findings(
@@ -77,7 +77,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
         withdraw_for_closed(
             (uav.mission_id, uav.uav_id, change) for uav, change in found if isinstance(change, Closed) and uav.uav_id in in_mission
         )
-    for organisation_id in told:
+    for organisation_id in reported:
         publish_live(organisation_id)
     return batteries
 
@@ -113,7 +113,7 @@ def _situations(
 ) -> Iterator[Situation]:
     flying = [(uav.uav_id, uav.mission_id) for uav in watched]
     links, orders, stated, zones = links_of([uav_id for uav_id, _ in flying]), orders_to(flying), stated_limits(flying), zones_about(now_s)
-    said = said_by([uav_id for uav_id, _ in flying], now_s)
+    status_texts = status_texts_of([uav_id for uav_id, _ in flying], now_s)
     for uav in watched:
         memory, model = memories.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
         memory.take(uav.newest, None if model is None else model.line)
@@ -131,7 +131,7 @@ def _situations(
             held=_held(uav, loaded, is_changing=is_changing),
             order=order,
             zones=_zones(uav, limits, zones),
-            said=said.get(uav.uav_id, ()),
+            status_texts=status_texts.get(uav.uav_id, ()),
         )
         if model is not None:
             memory.note_flight(is_in_flight=situation.is_in_flight)

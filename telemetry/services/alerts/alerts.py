@@ -64,15 +64,15 @@ def open_alert(
         open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject=subject, closed_at=None).first()
         if open_one is None:  # closed in this moment
             return inserted[0]
-        said = (alert.message, alert.values, alert.details, alert.level)
-        if (open_one.message, open_one.values, open_one.details, open_one.level) != said:
+        stated = (alert.message, alert.values, alert.details, alert.level)
+        if (open_one.message, open_one.values, open_one.details, open_one.level) != stated:
             if RANK[level] > RANK[open_one.level]:
                 open_one.acknowledged_at = open_one.acknowledged_by = None
                 open_one.course = [*open_one.course, step(ROSE, now, level=str(level))]
-            open_one.message, open_one.values, open_one.details, open_one.level = said
+            open_one.message, open_one.values, open_one.details, open_one.level = stated
             open_one.written_at, open_one.revision = now, open_one.revision + 1
             open_one.save()
-        _tell(uav.organisation_id)
+        _notify(uav.organisation_id)
     return open_one
 
 
@@ -86,7 +86,7 @@ def close_alert(*, uav: Uav, code: str) -> bool:
         Alert.objects.filter(pk=alert.pk).update(
             closed_at=now, close_reason=CLEARED, revision=F("revision") + 1, course=[*alert.course, step(CLOSED, now, reason=CLEARED)]
         )
-        _tell(uav.organisation_id)
+        _notify(uav.organisation_id)
     return True
 
 
@@ -100,7 +100,7 @@ def acknowledge_alert(*, alert: Alert, actor: User, note: str = "", seen_level: 
         held = _acknowledge_cause(alert, actor, note, seen_level)
         if note:
             note_alert(alert=held, actor=actor, text=note)
-        _tell(held.organisation_id)
+        _notify(held.organisation_id)
     return held
 
 
@@ -124,7 +124,7 @@ def acknowledge_ended(*, organisation: Organisation, alert_ids: Collection[int],
                 outcomes[alert.pk] = STILL_OPEN if alert.closed_at is None else ACKNOWLEDGED
                 if is_new:
                     _record_acknowledged(alert, actor)
-        _tell(organisation.pk)
+        _notify(organisation.pk)
     return outcomes
 
 
@@ -161,7 +161,7 @@ def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
         note = AlertNote.objects.create(alert=alert, author=actor, text=text)
         note.refresh_from_db()
         _record(alert, actor, "note", {"note": note.pk, "text": text})
-        _tell(alert.organisation_id)
+        _notify(alert.organisation_id)
     return note
 
 
@@ -170,7 +170,7 @@ def alert_was_closed(alert: Alert, actor: User, reason: str) -> None:
     _record(alert, actor, "close", {"code": alert.code, "level": alert.level, "uav": alert.uav_id, "reason": reason})
 
 
-def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:
+def raise_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:
     """Without another one it is over."""
     uav = Uav.objects.filter(pk=uav_id).first()
     if uav is None:
@@ -188,5 +188,5 @@ def _record(alert: Alert, actor: User, action: str, after: dict[str, Any]) -> No
     )  # fmt: skip
 
 
-def _tell(organisation_id: int) -> None:
+def _notify(organisation_id: int) -> None:
     transaction.on_commit(lambda: publish_live(organisation_id))

@@ -19,7 +19,7 @@ class ClosedByItself(Exception):
     """An alert that is over when its cause is gone is closed by nobody."""
 
 
-def tell_of_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
+def raise_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
     """A flight whose companion computer has reported that it failed, of a UAV that is not where it begins or ends."""
     model, uav = flight_model(approval_id, uav_id, flight), Uav.objects.get(pk=uav_id)
     position = LonLat(*uav.location.coords[:2])

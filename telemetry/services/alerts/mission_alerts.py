@@ -9,7 +9,7 @@ IS_MIXED = "%(uav)s holds a mix of missions. %(words)s"
 HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on board. %(words)s"
 
 
-def tell_of_mission(command: UavCommand, *, is_mixed: bool, words: str) -> None:
+def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, words: str) -> None:
     """After a load was brought, or while it is."""
     if not is_mixed:
         close_alert(uav=command.uav, code=MIXED)
@@ -20,7 +20,7 @@ def tell_of_mission(command: UavCommand, *, is_mixed: bool, words: str) -> None:
     )  # fmt: skip
 
 
-def tell_of_other_list(command: UavCommand, words: str = "") -> None:
+def raise_other_list(command: UavCommand, words: str = "") -> None:
     """After the list on board was read before a start or resume. Without words it is the approved one, and the alert is over."""
     if not words:
         close_alert(uav=command.uav, code=OTHER_LIST)

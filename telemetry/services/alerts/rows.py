@@ -25,15 +25,15 @@ MISSION_ENDED = "mission-ended"
 
 _RENEW = """
 UPDATE telemetry_alert alert
-SET level = told.level, message = told.message, "values" = told.vals::jsonb, details = told.details::jsonb, written_at = %s,
+SET level = reported.level, message = reported.message, "values" = reported.vals::jsonb, details = reported.details::jsonb, written_at = %s,
     revision = alert.revision + 1,
-    course = CASE WHEN told.is_raised THEN alert.course || jsonb_build_object('at', %s::text, 'what', 'rose', 'level', told.level)
+    course = CASE WHEN reported.is_raised THEN alert.course || jsonb_build_object('at', %s::text, 'what', 'rose', 'level', reported.level)
         ELSE alert.course END,
-    acknowledged_at = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_at END,
-    acknowledged_by_id = CASE WHEN told.is_raised THEN NULL ELSE alert.acknowledged_by_id END
+    acknowledged_at = CASE WHEN reported.is_raised THEN NULL ELSE alert.acknowledged_at END,
+    acknowledged_by_id = CASE WHEN reported.is_raised THEN NULL ELSE alert.acknowledged_by_id END
 FROM unnest(%s::bigint[], %s::text[], %s::text[], %s::text[], %s::text[], %s::bool[])
-    AS told(id, level, message, vals, details, is_raised)
-WHERE alert.id = told.id AND alert.closed_at IS NULL
+    AS reported(id, level, message, vals, details, is_raised)
+WHERE alert.id = reported.id AND alert.closed_at IS NULL
 """
 
 _CLOSE = """
@@ -120,7 +120,7 @@ def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime
 def _words_to_write(row: OpenRow, change: Opened, now: datetime) -> tuple[str, Mapping[str, Any]] | None:
     """Message and values that an open alert is to have with the details of the finding; None: nothing is written.
 
-    Where an alert keeps a level that was worse, the words that told of it stay. What it is answered with is always that of now.
+    Where an alert keeps a level that was worse, the words that reported of it stay. What it is answered with is always that of now.
     """
     finding = change.finding
     is_answered_otherwise = answer_of(finding.details) != row.answer

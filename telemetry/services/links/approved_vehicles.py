@@ -45,8 +45,8 @@ def kind_refusal(name: str, link: UavLink) -> str:
 
 def connection_warnings(uav: Uav, link: UavLink) -> list[str]:
     """What whoever looks at its connection must know."""
-    told = uav.autopilot_return if uav.link == LinkKind.MAVLINK else {}
-    off_by = fence_off_by(told.get("autopilot", ""), told.get("parameters", {}))
+    reported = uav.autopilot_return if uav.link == LinkKind.MAVLINK else {}
+    off_by = fence_off_by(reported.get("autopilot", ""), reported.get("parameters", {}))
     fence = _("Its autopilot ignores every fence that is sent to it: %(parameter)s.") % {"parameter": off_by} if off_by else ""
     return [words for words in (kind_refusal(uav.name, link), fence) if words]
 

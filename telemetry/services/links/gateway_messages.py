@@ -18,7 +18,7 @@ from telemetry.services.links.sightings import Sighting, note_unknown_vehicles
 
 
 @dataclass(frozen=True)
-class HeardText:
+class ReceivedText:
     uav_id: int
     severity: int
     text: str
@@ -26,10 +26,10 @@ class HeardText:
 
 
 @dataclass(frozen=True)
-class Heard:
+class Received:
     records: Sequence[NewRecord] = ()
     links: Sequence[LinkState] = ()
-    texts: Sequence[HeardText] = ()
+    texts: Sequence[ReceivedText] = ()
     sightings: Sequence[Sighting] = ()
 
     def __bool__(self) -> bool:
@@ -37,15 +37,15 @@ class Heard:
 
 
 @transaction.atomic
-def store_heard(*, heard: Heard, holder: str) -> StoredCount:
-    stored = store_records(heard.records) if heard.records else StoredCount()
-    save_links(states=heard.links, holder=holder)
-    if heard.texts:
-        there = set(Uav.objects.filter(pk__in={text.uav_id for text in heard.texts}).values_list("pk", flat=True))
+def store_received(*, received: Received, holder: str) -> StoredCount:
+    stored = store_records(received.records) if received.records else StoredCount()
+    save_links(states=received.links, holder=holder)
+    if received.texts:
+        there = set(Uav.objects.filter(pk__in={text.uav_id for text in received.texts}).values_list("pk", flat=True))
         VehicleText.objects.bulk_create(
             VehicleText(uav_id=text.uav_id, severity=text.severity, text=text.text, received_at=text.received_at)
-            for text in heard.texts
+            for text in received.texts
             if text.uav_id in there
         )
-    note_unknown_vehicles(sightings=heard.sightings)
+    note_unknown_vehicles(sightings=received.sightings)
     return stored

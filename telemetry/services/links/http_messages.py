@@ -10,15 +10,15 @@ from telemetry.models import UavLink
 from telemetry.selectors.log import newest_of
 from workspace.prepared_statements import prepared_rows
 
-_HEARD = """
+_RECEIVED = """
     WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
     UPDATE telemetry_uavlink SET heard_at = statement_timestamp(), address = %s FROM quick WHERE uav_id = %s RETURNING uav_id"""
 
 
-def note_heard_over_http(*, uav_id: int, address: str) -> None:
+def note_received_over_http(*, uav_id: int, address: str) -> None:
     """Nobody waits for the disk: the next request says it again."""
     words = f"http {address}"[:100]
-    if not prepared_rows(_HEARD, [words, uav_id]):
+    if not prepared_rows(_RECEIVED, [words, uav_id]):
         UavLink.objects.get_or_create(uav_id=uav_id, defaults={"heard_at": timezone.now(), "address": words})
 
 

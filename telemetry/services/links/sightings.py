@@ -11,8 +11,8 @@ INSERT INTO telemetry_unknownvehicle
     (mavlink_system_id, autopilot, vehicle_type, address, is_signed, state, heard_at, location)
 SELECT system, autopilot, vehicle_type, address, is_signed, 'new', heard_at, ST_SetSRID(ST_MakePoint(longitude_deg, latitude_deg), 4326)
 FROM unnest(%s::int4[], %s::text[], %s::text[], %s::text[], %s::bool[], %s::timestamptz[], %s::float8[], %s::float8[])
-    AS heard(system, autopilot, vehicle_type, address, is_signed, heard_at, longitude_deg, latitude_deg)
-WHERE system BETWEEN 1 AND 254 AND NOT EXISTS (SELECT 1 FROM missions_uav uav WHERE uav.mavlink_system_id = heard.system)
+    AS received(system, autopilot, vehicle_type, address, is_signed, heard_at, longitude_deg, latitude_deg)
+WHERE system BETWEEN 1 AND 254 AND NOT EXISTS (SELECT 1 FROM missions_uav uav WHERE uav.mavlink_system_id = received.system)
 ORDER BY system
 ON CONFLICT (mavlink_system_id) DO UPDATE SET heard_at = excluded.heard_at, autopilot = excluded.autopilot,
     vehicle_type = excluded.vehicle_type, address = excluded.address, is_signed = excluded.is_signed,

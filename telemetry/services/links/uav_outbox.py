@@ -66,49 +66,49 @@ def note_acknowledgements(*, uav_id: int, acknowledgements: Sequence[Acknowledge
 
 
 @transaction.atomic
-def _note(uav_id: int, told: Acknowledgement) -> Noted:
+def _note(uav_id: int, reported: Acknowledgement) -> Noted:
     command = (
         UavCommand.objects.select_related("approval", "uav", "mission")
-        .filter(pk=told.command_id, uav_id=uav_id, link=LinkKind.HTTP, uav__link=LinkKind.HTTP)
+        .filter(pk=reported.command_id, uav_id=uav_id, link=LinkKind.HTTP, uav__link=LinkKind.HTTP)
         .first()
     )
     if command is None:
-        return Noted(told.command_id, False, None, "There is no such command to this UAV.")
+        return Noted(reported.command_id, False, None, "There is no such command to this UAV.")
     if command.state not in OPEN_COMMANDS:
-        is_known = command.state == told.state
+        is_known = command.state == reported.state
         return Noted(command.pk, is_known, command.state, "" if is_known else f"The command has ended before: {command.outcome}"[:500])
     holding: dict[str, Any] = {"attempt": command.attempts, "holder": command.holder}
     words = ""
-    if told.state == CommandState.ACKNOWLEDGED:
+    if reported.state == CommandState.ACKNOWLEDGED:
         noted = note_acknowledged(command.pk, **holding)
-    elif told.state == CommandState.FAILED:
-        words = told.reason or "The UAV gave no reason."
+    elif reported.state == CommandState.FAILED:
+        words = reported.reason or "The UAV gave no reason."
         noted = note_failed(command.pk, REFUSED, words, **holding)
         _hold(command, None, is_known=False)
     elif command.kind == CommandKind.UPLOAD_MISSION:
-        noted, words = _note_upload(command, told, holding)
+        noted, words = _note_upload(command, reported, holding)
     else:
-        noted = note_applied(command.pk, note=told.reason, **holding)
+        noted = note_applied(command.pk, note=reported.reason, **holding)
         if noted and command.kind == CommandKind.CLEAR_MISSION:
             _hold(command, None)
     command.refresh_from_db(fields=["state"])
     return Noted(command.pk, noted, command.state, words)
 
 
-def _note_upload(command: UavCommand, told: Acknowledgement, holding: dict[str, Any]) -> tuple[bool, str]:
+def _note_upload(command: UavCommand, reported: Acknowledgement, holding: dict[str, Any]) -> tuple[bool, str]:
     """The UAV is ready only when what it holds is what was approved."""
     load = load_of(command)
-    if told.content_sha256 == load.content_sha256:
-        noted = note_applied(command.pk, note=told.reason, **holding)
+    if reported.content_sha256 == load.content_sha256:
+        noted = note_applied(command.pk, note=reported.reason, **holding)
         if noted:
             _hold(command, load)
         return noted, ""
-    words = "The UAV holds something else than what was approved." if told.content_sha256 else "The UAV does not say what it holds."
+    words = "The UAV holds something else than what was approved." if reported.content_sha256 else "The UAV does not say what it holds."
     noted = note_failed(command.pk, OTHER_CONTENT, words, **holding)
     _hold(command, None)
     if noted:
         open_alert(
-            uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=HOLDS if told.content_sha256 else SAYS_NOTHING,
+            uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=HOLDS if reported.content_sha256 else SAYS_NOTHING,
             values={"uav": command.uav.name}, mission=command.mission,
         )  # fmt: skip
     return noted, words

@@ -14,7 +14,7 @@ from inspection.selectors import asset_label, assets_near, ground_heights_m
 from inspection.selectors.zone_table import zone_table
 from missions.models import Uav
 from missions.services.commands.rtl_check import zones_applying
-from telemetry.selectors.present import Heard, Present, heard_of
+from telemetry.selectors.present import Present, Received, last_received
 
 BESIDE_M = 30.0  # from where it comes down: what wind and position errors may carry it into
 BELOW_M = 3.0
@@ -50,12 +50,12 @@ class LandingHere:
 
 def landing_here(*, uav: Uav, now: datetime) -> LandingHere:
     """Below where it is now, and beside that as far as its position is uncertain."""
-    (heard,) = heard_of([uav], now)
-    present = heard.present
+    (received,) = last_received([uav], now)
+    present = received.present
     if present is None or present.uncertainty_m > MAX_ABOUT_M:
         words = _("Where %(uav)s is now is not known well enough: what lies below it is not known.") % {"uav": uav.name}
         return LandingHere(uav, present, warnings=(words,))
-    agl_m, slope_deg = _height_m(heard, present), _slope_deg(present)
+    agl_m, slope_deg = _height_m(received, present), _slope_deg(present)
     found = assets_near(present.position, BESIDE_M + present.uncertainty_m)
     assets = tuple(NearAsset(asset.pk, asset.kind, asset_label(asset), round(away_m, 1)) for asset, away_m in found)
     zones = _zones(present, agl_m, now)
@@ -72,13 +72,13 @@ def landing_here(*, uav: Uav, now: datetime) -> LandingHere:
     return LandingHere(uav, present, agl_m, slope_deg, assets, zones, tuple(warnings), tuple(facts))
 
 
-def _height_m(heard: Heard, present: Present) -> float | None:
+def _height_m(received: Received, present: Present) -> float | None:
     """Above the ground below, as it measures, else by the terrain model."""
-    if heard.altitude_agl_m is not None and present.is_measured:
-        return round(heard.altitude_agl_m, 1)
-    if present.altitude_relative_m is None or heard.home is None:
+    if received.altitude_agl_m is not None and present.is_measured:
+        return round(received.altitude_agl_m, 1)
+    if present.altitude_relative_m is None or received.home is None:
         return None
-    home_m, ground_m = ground_heights_m(np.array([heard.home, present.position])).tolist()
+    home_m, ground_m = ground_heights_m(np.array([received.home, present.position])).tolist()
     height_m = home_m + present.altitude_relative_m - ground_m
     return None if math.isnan(height_m) else round(height_m, 1)
 

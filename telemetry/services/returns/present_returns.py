@@ -25,7 +25,7 @@ from planning.separation.separation import TimedRoute, conflicts
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying
 from telemetry.selectors.in_the_air import reported_in_the_air
-from telemetry.selectors.present import Heard, Present, heard_of
+from telemetry.selectors.present import Present, Received, last_received
 from telemetry.services.returns.along_route import FURTHER, AlongRoute, along_route, on_board
 from telemetry.services.returns.safe_returns import (
     BatteryAtLanding,
@@ -89,19 +89,19 @@ class _Air:
 def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn]:
     """For each of these UAVs of one organisation, as if all of them were told to return at this moment. Raises NoGraph."""
     refused = {command.uav_id for command in stuck_returns() if command.kind == CommandKind.SET_RETURN_HEIGHT}
-    flown = [_checked(replace(_flown(heard), keeps_height=heard.uav.pk in refused), now) for heard in heard_of(uavs, now)]
+    flown = [_checked(replace(_flown(received), keeps_height=received.uav.pk in refused), now) for received in last_received(uavs, now)]
     air = _Air([one for one in flown if one.straight is not None])
     air.others = _others(uavs, now)
     met, safest = _met(air), safest_returns(air.returning, [way for _other, way in air.others])
     found = []
     for one in flown:
-        battery, others = battery_at_landing(one.heard), met.get(one.heard.uav.pk, ())
+        battery, others = battery_at_landing(one.received), met.get(one.received.uav.pk, ())
         warnings = (*one.check.warnings, *(_met_words(other) for other in others), *_battery_words(battery))
         found.append(
             PresentReturn(
                 check=replace(one.check, warnings=warnings),
                 mission=None if one.mission is None else one.mission.pk,
-                present=one.heard.present if one.straight is not None else None,
+                present=one.received.present if one.straight is not None else None,
                 distance_m=None if one.straight is None else length_m(one.straight.position, one.straight.goal),
                 duration_s=None if one.straight is None else one.straight.duration_s(),
                 level_m=_level_m(one),
@@ -109,7 +109,7 @@ def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn
                 met=tuple(others),
                 along=one.along,
                 along_percent=along_landing_percent(one, battery),
-                safest=safest.get(one.heard.uav.pk),
+                safest=safest.get(one.received.uav.pk),
             )
         )
     return found
@@ -139,18 +139,18 @@ def _met_words(met: MetOnReturn) -> str:
 # one UAV
 
 
-def _flown(heard: Heard) -> Flown:
+def _flown(received: Received) -> Flown:
     """Where it is and how it would return, its way home not yet looked at."""
-    uav, present = heard.uav, heard.present
+    uav, present = received.uav, received.present
     mission = mission_in_hand(uav)
     place = None if mission is None else mission.mission_uavs.filter(uav=uav).first()
     rally = [] if mission is None or place is None else rally_points(mission, place.sequence)
     reported = reported_return(uav, uav.name, has_rally=bool(rally))
-    one = Flown(heard, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally)
-    home = heard.home or (None if place is None else LonLat(*(place.home or place.start).coords[:2]))
+    one = Flown(received, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally)
+    home = received.home or (None if place is None else LonLat(*(place.home or place.start).coords[:2]))
     if present is None or present.altitude_relative_m is None or present.uncertainty_m > MAX_UNCERTAINTY_M or home is None:
         return one
-    own, height_m, base_m = reported.own, present.altitude_relative_m, _base_m(heard, home)
+    own, height_m, base_m = reported.own, present.altitude_relative_m, _base_m(received, home)
     goal, goal_m = _goal(present.position, home, rally, shuns_home=own is not None and own.shuns_home)
     level_m = math.nan if own is None else own.level_m(height_m, length_m(present.position, goal), goal_m)
     speed_mps = place.cruise_speed_mps if place is not None else uav.cruise_speed_mps or settings.FLIGHT_RULES.cruise_speed_mps
@@ -160,8 +160,8 @@ def _flown(heard: Heard) -> Flown:
 
 def _checked(one: Flown, now: datetime) -> Flown:
     """With what is in its way home. One on the ground has none."""
-    heard, present, own = one.heard, one.heard.present, one.own
-    if heard.is_in_air is False:
+    received, present, own = one.received, one.received.present, one.own
+    if received.is_in_air is False:
         words = _("It is on the ground.")
         return replace(one, check=replace(one.check, state=ReturnState.NOT_CHECKED, warnings=(words,)), straight=None)
     if one.straight is None or present is None or one.home is None:
@@ -180,10 +180,10 @@ def _checked(one: Flown, now: datetime) -> Flown:
 
 def _along(one: Flown, present: Present, now: datetime) -> AlongRoute | None:
     """Only of one that was measured: the way from an uncertain place to its route is looked at by nobody."""
-    held = on_board(one.heard.uav) if present.is_measured and present.uncertainty_m <= MAX_ALONG_UNCERTAINTY_M else None
+    held = on_board(one.received.uav) if present.is_measured and present.uncertainty_m <= MAX_ALONG_UNCERTAINTY_M else None
     if held is None or present.altitude_relative_m is None:
         return None
-    waypoint = one.heard.waypoint_sequence
+    waypoint = one.received.waypoint_sequence
     return along_route(held, position=present.position, height_m=present.altitude_relative_m, waypoint=waypoint, now=now)
 
 
@@ -191,7 +191,7 @@ def _from_route(one: Flown) -> ReturnCheck:
     """Nobody knows where it is: from all along its route."""
     if one.check.state != ReturnState.CLEAR:
         return one.check
-    words = _("Position of %(uav)s too uncertain: its return path is not checked from there.") % {"uav": one.heard.uav.name}
+    words = _("Position of %(uav)s too uncertain: its return path is not checked from there.") % {"uav": one.received.uav.name}
     along = [] if one.mission is None else [check for check in return_checks(one.mission) if check.place == one.check.place]
     if not along:
         return replace(one.check, state=ReturnState.UNKNOWN, warnings=(words,))
@@ -207,12 +207,12 @@ def _goal(
     return min(goals, key=lambda goal: length_m(position, goal[0]))
 
 
-def _base_m(heard: Heard, home: LonLat) -> float:
+def _base_m(received: Received, home: LonLat) -> float:
     """Above the sea: of the ground where it took off, else as it reports; NaN where nobody knows."""
     ground_m = float(ground_heights_m(np.array([home]))[0])
     if not math.isnan(ground_m):
         return ground_m
-    return math.nan if heard.home_amsl_m is None else heard.home_amsl_m
+    return math.nan if received.home_amsl_m is None else received.home_amsl_m
 
 
 def _ground_m(goal: LonLat, base_m: float) -> float:
@@ -222,7 +222,7 @@ def _ground_m(goal: LonLat, base_m: float) -> float:
 
 def _level_m(one: Flown) -> float | None:
     """At which it flies home, above its take-off."""
-    if one.straight is None or one.heard.present is None or math.isnan(one.straight.level_m):
+    if one.straight is None or one.received.present is None or math.isnan(one.straight.level_m):
         return None
     return one.straight.level_m - one.base_m
 
@@ -232,42 +232,42 @@ def _level_m(one: Flown) -> float | None:
 
 def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[Flown, TimedRoute]]:
     """UAVs of the organisation in the air that are not told, with what they do from now on; not simulated ones beside real ones."""
-    told = {uav.pk for uav in uavs}
+    returning_ids = {uav.pk for uav in uavs}
     organisations = {uav.organisation_id for uav in uavs}
     candidates = Uav.objects.filter(organisation__in=organisations, is_simulated__in={uav.is_simulated for uav in uavs}).exclude(
-        pk__in=told
+        pk__in=returning_ids
     )
     in_the_air = reported_in_the_air(list(candidates.values_list("pk", flat=True)))
     found = []
-    for heard in heard_of(candidates.filter(pk__in=in_the_air), now):
-        if heard.present is None or heard.present.altitude_relative_m is None:
+    for received in last_received(candidates.filter(pk__in=in_the_air), now):
+        if received.present is None or received.present.altitude_relative_m is None:
             continue
-        one = _flown(heard)
+        one = _flown(received)
         found.append((one, _going_on(one)))
     return found
 
 
 def _going_on(one: Flown) -> TimedRoute:
     """As it is now: on its way home, along its route, or where it is."""
-    heard, present = one.heard, one.heard.present
+    received, present = one.received, one.received.present
     assert present is not None  # noqa: S101 - asked by the caller
-    mode = mode_kind(heard.mode)
+    mode = mode_kind(received.mode)
     if mode is ModeKind.RETURN and one.straight is not None:
         return one.straight.after(0.0)
     height_m = one.base_m + (present.altitude_relative_m or 0.0)
     ahead = _ahead(one) if mode in (ModeKind.MISSION, ModeKind.TAKE_OFF) else []
     if not ahead or one.place is None:
-        return staying(heard.uav.name, present.position, height_m)
+        return staying(received.uav.name, present.position, height_m)
     lands = one.place.mission.return_to_start or one.place.end_action != EndAction.HOVER
-    return flying_on(heard.uav.name, [(present.position, height_m, 0.0), *ahead], one.place.cruise_speed_mps, lands=lands)
+    return flying_on(received.uav.name, [(present.position, height_m, 0.0), *ahead], one.place.cruise_speed_mps, lands=lands)
 
 
 def _ahead(one: Flown) -> list[tuple[LonLat, float, float]]:
     """Points of its route from the waypoint on to which it flies: position, height above the sea, seconds there."""
     route = Route.objects.filter(mission=one.mission, mission_uav=one.place, geometry__isnull=False).first()
-    if route is None or one.heard.waypoint_sequence is None:
+    if route is None or one.received.waypoint_sequence is None:
         return []
-    points = route.waypoints.filter(sequence__gte=one.heard.waypoint_sequence).order_by("sequence")
+    points = route.waypoints.filter(sequence__gte=one.received.waypoint_sequence).order_by("sequence")
     rows = points.values_list("position", "altitude_relative_m", "task")
     return [
         (LonLat(*position.coords[:2]), one.base_m + altitude_m, float((task or {}).get("hold_s", 0.0)))
@@ -286,20 +286,20 @@ def _rules(one: Flown, other: Flown) -> SeparationRules:
 
 def _met(air: _Air) -> Mapping[int, list[MetOnReturn]]:
     """By UAV: whom it meets if all that are told return at once, the nearest in time first."""
-    found: dict[int, list[MetOnReturn]] = {one.heard.uav.pk: [] for one in air.returning}
+    found: dict[int, list[MetOnReturn]] = {one.received.uav.pk: [] for one in air.returning}
     at_once = [(one, one.straight.after(0.0)) for one in air.returning if one.straight is not None]
     pairs = [(one, other, True) for number, one in enumerate(at_once) for other in at_once[number + 1 :]]
-    pairs += [(one, other, mode_kind(other[0].heard.mode) is ModeKind.RETURN) for one in at_once for other in air.others]
+    pairs += [(one, other, mode_kind(other[0].received.mode) is ModeKind.RETURN) for one in at_once for other in air.others]
     for (one, way), (other, others_way), is_returning in pairs:
-        if one.heard.uav.is_simulated != other.heard.uav.is_simulated:
+        if one.received.uav.is_simulated != other.received.uav.is_simulated:
             continue
         for encounter in conflicts([way], [others_way], rules=_rules(one, other)):
             apart = round(encounter.metres, 1), None if encounter.vertical_m is None else round(encounter.vertical_m, 1)
-            found[one.heard.uav.pk].append(
-                MetOnReturn(other.heard.uav.pk, other.heard.uav.name, *apart, round(encounter.at_s[0], 1), is_returning)
+            found[one.received.uav.pk].append(
+                MetOnReturn(other.received.uav.pk, other.received.uav.name, *apart, round(encounter.at_s[0], 1), is_returning)
             )
-            if other.heard.uav.pk in found:
-                found[other.heard.uav.pk].append(
-                    MetOnReturn(one.heard.uav.pk, one.heard.uav.name, *apart, round(encounter.at_s[1], 1), is_returning)
+            if other.received.uav.pk in found:
+                found[other.received.uav.pk].append(
+                    MetOnReturn(one.received.uav.pk, one.received.uav.name, *apart, round(encounter.at_s[1], 1), is_returning)
                 )
     return {uav: sorted(met, key=lambda other: other.in_s) for uav, met in found.items()}

@@ -16,7 +16,7 @@ from missions.services.commands.start_slots import KEPT_SHARE
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute
 from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on
-from telemetry.selectors.present import Heard
+from telemetry.selectors.present import Received
 from telemetry.services.returns.along_route import AlongRoute
 
 MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
@@ -59,7 +59,7 @@ class SafeReturn:
 class Flown:
     """What is known of a UAV in the air, and its straight return; None where nobody knows from or to where that leads."""
 
-    heard: Heard
+    received: Received
     mission: Mission | None
     place: MissionUav | None
     check: ReturnCheck
@@ -75,19 +75,19 @@ class Flown:
 
     @property
     def uncertainty_m(self) -> float:
-        return 0.0 if self.heard.present is None else min(self.heard.present.uncertainty_m, MAX_WIDENING_M)
+        return 0.0 if self.received.present is None else min(self.received.present.uncertainty_m, MAX_WIDENING_M)
 
 
-def battery_at_landing(heard: Heard) -> BatteryAtLanding:
+def battery_at_landing(received: Received) -> BatteryAtLanding:
     """By what the watch has made of its reports; with the reason where that is not known."""
-    values, forecast = {"uav": heard.uav.name}, heard.battery
-    if heard.is_in_air is False:
-        return BatteryAtLanding(left_percent=heard.battery_percent)
-    if heard.battery_percent is None:
+    values, forecast = {"uav": received.uav.name}, received.battery
+    if received.is_in_air is False:
+        return BatteryAtLanding(left_percent=received.battery_percent)
+    if received.battery_percent is None:
         return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
-    if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
+    if forecast is None or received.battery_age_s is None or received.battery_age_s > MAX_BATTERY_AGE_S:
         words = _("The return energy of %(uav)s is calculated during a mission with telemetry only.")
-        return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
+        return BatteryAtLanding(left_percent=received.battery_percent, unknown=words % values)
     left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
     if home is None:
         words = _("Return energy of %(uav)s unknown: no position, or no headway against the wind.")
@@ -111,14 +111,14 @@ def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> 
     """
     if not returning:
         return {}
-    batteries = {one.heard.uav.pk: battery_at_landing(one.heard) for one in returning}
+    batteries = {one.received.uav.pk: battery_at_landing(one.received) for one in returning}
 
     def spare(one: Flown) -> float:
-        battery = batteries[one.heard.uav.pk]
+        battery = batteries[one.received.uav.pk]
         return math.inf if battery.landing_percent is None else battery.landing_percent - (battery.reserve_percent or 0.0)
 
     in_order = sorted(returning, key=spare)
-    choices = [_choices(one, batteries[one.heard.uav.pk]) for one in in_order]
+    choices = [_choices(one, batteries[one.received.uav.pk]) for one in in_order]
     planned = settings.SEPARATION_RULES
     widest_m = max(one.uncertainty_m for one in in_order)
     rules = SeparationRules(planned.lateral_m + 2.0 * widest_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
@@ -126,7 +126,8 @@ def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> 
     flown = [[route for _way, route in of_uav] for of_uav in choices]
     chosen = chosen_apart(flown, others, rules, first)
     return {
-        one.heard.uav.pk: None if place is None else of_uav[place][0] for one, of_uav, place in zip(in_order, choices, chosen, strict=True)
+        one.received.uav.pk: None if place is None else of_uav[place][0]
+        for one, of_uav, place in zip(in_order, choices, chosen, strict=True)
     }
 
 
@@ -134,7 +135,7 @@ def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, Ti
     """Ways home with nothing in the way, as far as its battery allows, the best first."""
     if one.straight is None:
         return []
-    straight, uav = one.straight, one.heard.uav.name
+    straight, uav = one.straight, one.received.uav.name
     is_clear, found = one.check.state == ReturnState.CLEAR, []
     heights = _heights(one)
     if is_clear:
@@ -164,7 +165,7 @@ def _along(one: Flown, straight: StraightReturn, uav: str) -> list[tuple[SafeRet
 
 def _heights(one: Flown) -> list[tuple[float, StraightReturn]]:
     """Return heights that can be set on it, at which nothing is in the way, with the return: at least the separation apart."""
-    own, present, straight = one.own, one.heard.present, one.straight
+    own, present, straight = one.own, one.received.present, one.straight
     if one.keeps_height or own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:
         return []
     step_m = float(math.ceil(settings.SEPARATION_RULES.vertical_m)) + 1.0

@@ -90,10 +90,10 @@ def opened(page: Page, path: str) -> Page:
     return page
 
 
-def told(flyers: list[Flyer]) -> list[list[str]]:
+def reported(flyers: list[Flyer]) -> list[list[str]]:
     for flyer in flyers:
         flyer.obeys()
-    return [[kind for kind in flyer.told if kind in {"hold", "return"}] for flyer in flyers]
+    return [[kind for kind in flyer.reported if kind in {"hold", "return"}] for flyer in flyers]
 
 
 def test_return_all_on_the_page_of_a_mission_reaches_that_mission_alone(visitor: Visitor, two: dict, picture: Picture) -> None:
@@ -108,8 +108,8 @@ def test_return_all_on_the_page_of_a_mission_reaches_that_mission_alone(visitor:
         question.get_by_role("button", name="Return: 2").click()
     assert sent.value.url.endswith(f"/missions/{south}/commands")
     expect(page.locator(".toast")).to_contain_text("2 UAVs are being told.")
-    assert told(of_south) == [["return"], ["return"]]
-    assert told(of_north) == [[], []]
+    assert reported(of_south) == [["return"], ["return"]]
+    assert reported(of_north) == [[], []]
 
 
 def test_live_asks_of_which_mission_with_nothing_chosen(visitor: Visitor, two: dict, picture: Picture) -> None:
@@ -129,8 +129,8 @@ def test_live_asks_of_which_mission_with_nothing_chosen(visitor: Visitor, two: d
     question.get_by_role("radio", name=re.compile("^North")).check()
     question.get_by_role("button", name="Return all").click()
     expect(page.locator(".toast")).to_contain_text("2 UAVs are being told.")
-    assert told(of_south) == [[], []]
-    assert told(of_north) == [["return"], ["return"]]
+    assert reported(of_south) == [[], []]
+    assert reported(of_north) == [["return"], ["return"]]
 
 
 def test_starts_in_planned_order_go_on_without_the_page_and_are_stopped_from_another(
@@ -156,7 +156,7 @@ def test_starts_in_planned_order_go_on_without_the_page_and_are_stopped_from_ano
     expect(row.get_by_text("Start given").first).to_be_visible(timeout=20_000)
     for flyer in flyers:
         flyer.obeys()
-    assert sorted(flyer.told.count("start") for flyer in flyers) in ([0, 1], [1, 1])
+    assert sorted(flyer.reported.count("start") for flyer in flyers) in ([0, 1], [1, 1])
     if row.get_by_role("button", name="Stop starting").count():
         row.get_by_role("button", name="Stop starting").click()
         expect(row).to_contain_text("No further UAV is started")

@@ -54,14 +54,14 @@ def switched_on(standing: list[tuple[Flyer, list[float]]]) -> None:
         flyer.stands(at)
 
 
-def uploads(page: Page, standing: list[tuple[Flyer, list[float]]], heard: int) -> Locator:
+def uploads(page: Page, standing: list[tuple[Flyer, list[float]]], received: int) -> Locator:
     """Presses Upload while the first UAVs report, as often as the service asks for; returns the panel once they take the mission."""
     panel = page.get_by_role("region", name="Before start")
     upload = panel.get_by_role("button", name="Upload to 2 UAVs")
     is_uploading = panel.get_by_role("button", name="Uploading")
     for button in (upload, is_uploading):
         for _ in range(MAX_REPORTS):
-            switched_on(standing[:heard])
+            switched_on(standing[:received])
             if button.count():
                 break
             page.wait_for_timeout(1000)  # a UAV reports once a second

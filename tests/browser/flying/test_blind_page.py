@@ -33,16 +33,16 @@ def test_a_page_without_data_says_so_within_6_s(fault: str, size: tuple[int, int
         stopped_s, stopped_at_s = time.monotonic(), time.time()
         expect(stale).to_contain_text("No data on this device for 5 s.")
         took_s = time.monotonic() - stopped_s
-        said = stale.inner_text()
+        stated = stale.inner_text()
         line.mend()
         expect(stale).to_be_hidden()
     page.context.close()
     visitor.complaints.clear()  # of a line that was cut
     visitor.requests_outside[:] = [url for url in visitor.requests_outside if not url.startswith(address)]
     assert took_s <= WITHIN_S
-    minutes, seconds = map(int, re.search(r"Last message \d\d:(\d\d):(\d\d)", said).groups())  # type: ignore[union-attr]
+    minutes, seconds = map(int, re.search(r"Last message \d\d:(\d\d):(\d\d)", stated).groups())  # type: ignore[union-attr]
     ago_s = (stopped_at_s - (minutes * 60 + seconds)) % 3600
-    assert ago_s <= BETWEEN_HEARTBEATS_S or ago_s >= 3600 - 1, f"{said!r}, {ago_s:.1f} s before the line stopped"
+    assert ago_s <= BETWEEN_HEARTBEATS_S or ago_s >= 3600 - 1, f"{stated!r}, {ago_s:.1f} s before the line stopped"
 
 
 def test_the_bell_and_its_count_are_on_every_page(visitor: Visitor) -> None:

@@ -95,10 +95,10 @@ def test_clicks_from_approved_to_the_follow_up(visitor: Visitor, mission: str, n
     steps.clicks["approved to airborne, all UAVs"] = page.evaluate("window.clicked")
     other, newest = take_offs(page, names)[-2:]
     print(f"approved to airborne, {len(names)} UAVs: {page.evaluate('window.clicked')} clicks, {time.monotonic() - began_s:.0f} s")
-    steps.take("hold one", lambda: tell(page, newest, "Hold"), card(page, newest), "Holding")
+    steps.take("hold one", lambda: notify(page, newest, "Hold"), card(page, newest), "Holding")
     lose_gps(page, mission, other)
     steps.take("read the most urgent alert", lambda: None, page.locator("#alert-list .alert").first, other)
-    steps.take("return one", lambda: tell(page, newest, "Return"), card(page, newest), re.compile("Return"))
+    steps.take("return one", lambda: notify(page, newest, "Return"), card(page, newest), re.compile("Return"))
     steps.take("return all", lambda: return_all(page), page.locator("#uav-cards"), re.compile("Return"))
     fly_fast(page)
     close = page.get_by_role("button", name="Close mission", exact=True)
@@ -139,7 +139,7 @@ def take_offs(page: Page, names: tuple[str, ...]) -> list[str]:
     return seen
 
 
-def tell(page: Page, name: str, act: str) -> None:
+def notify(page: Page, name: str, act: str) -> None:
     """By its card, the button over the map and the question; a UAV that is selected already keeps its card."""
     bar = page.get_by_role("group", name=f"Commands to {name}")
     if not bar.is_visible():

@@ -132,7 +132,7 @@ def test_a_flight_day_of_two_missions(visitor: Visitor, site: Site, day: dict[st
     opened(page, f"/missions/{south.mission}/fly")
     in_flight(page, south)
     batch_reaches_one_mission(page, south, north)
-    faults_are_told(page, south, north)
+    faults_are_reported(page, south, north)
     blind_pages_blame_no_uav(visitor, site, north)
     returning_and_abort_reach_one_mission(page, south, north)
     page.context.close()
@@ -160,7 +160,7 @@ def batch_reaches_one_mission(page: Page, south: Flown, north: Flown) -> None:
     assert {name: commands_of(page, uav) for name, uav in north.uavs.items()} == before
 
 
-def faults_are_told(page: Page, south: Flown, north: Flown) -> None:
+def faults_are_reported(page: Page, south: Flown, north: Flown) -> None:
     tern, kite, gull = south.uavs.values()
     breaks(page, south, "Tern", gps_lost_for_s=3_600)
     breaks(page, south, "Kite", link_lost_for_s=3_600)

@@ -57,7 +57,7 @@ def answers(page: Page, act: str) -> None:
     expect(page.get_by_role("dialog")).to_have_count(0)
 
 
-def cannot_be_told(page: Page, name: str) -> None:
+def cannot_be_reported(page: Page, name: str) -> None:
     """One that never connected: every command says why not."""
     page.locator("#uav-cards .card").filter(has_text=name).get_by_role("button", name=re.compile(name)).click()
     bar = page.get_by_role("group", name=f"Commands to {name}")
@@ -107,7 +107,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     picture(page, "flying-light")
     page.get_by_role("link", name="Fly in simulation").click()
     wait_for_map(page)
-    cannot_be_told(page, "Petrel")
+    cannot_be_reported(page, "Petrel")
     page.go_back()
     wait_for_map(page)
 

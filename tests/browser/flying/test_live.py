@@ -62,7 +62,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
 
 
 def flies_until(
-    page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MAX_STEPS, **told: Any
+    page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MAX_STEPS, **reported: Any
 ) -> float:
     """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
     for step in range(most):
@@ -71,7 +71,7 @@ def flies_until(
         along_m += STEP_M
         for number, flyer in enumerate(flyers):
             flyer.obeys()
-            flyer.reports(along_m, aside_m=0.0 if number else drifts_m * step, **told)
+            flyer.reports(along_m, aside_m=0.0 if number else drifts_m * step, **reported)
         page.wait_for_timeout(1000)  # a UAV reports once a second
     raise AssertionError("the page does not show it")
 
@@ -106,7 +106,7 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     expect(question).to_contain_text("battery 71", ignore_case=True)
     in_both_themes(watcher, picture, "live-question")
     question.get_by_role("button", name="Keep flying").click()
-    assert [kind for flyer in flyers for kind in flyer.told if kind == "return"] == []
+    assert [kind for flyer in flyers for kind in flyer.reported if kind == "return"] == []
     in_both_themes(watcher, picture, "live")
     assert faults(watcher) == []
     assert watcher.evaluate(TOO_WIDE) == []
@@ -152,8 +152,8 @@ def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(
     silent = page.locator("#alert-list .alert").filter(has_text="no telemetry for")
     expect(silent).to_contain_text("(last message ")
     expect(silent).to_contain_text("Planned for link loss: it continues its mission by itself.")
-    said = silent.locator(".alert-title").inner_text()
-    expect(silent.locator(".alert-title")).not_to_have_text(said)
+    stated = silent.locator(".alert-title").inner_text()
+    expect(silent.locator(".alert-title")).not_to_have_text(stated)
     kite.get_by_role("button", name=re.compile("Kite")).click()
     in_both_themes(page, picture, "live-estimated")
 

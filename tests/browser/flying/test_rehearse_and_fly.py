@@ -136,7 +136,7 @@ def flies(plan: Page, live: Page, picture: Picture) -> None:
 def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     """While it stands in the air, so that the flight waits for whoever looks at it."""
     panel = panel_of(page)
-    is_told(page, "Hold")
+    is_reported(page, "Hold")
     expect(card(page, NAME).locator(".chip").first).to_have_text("Holding", timeout=SOON_MS)
     panel.get_by_label("Link or GPS lost for").fill(SILENT_S)
     mend = panel.get_by_role("button", name="Clear faults")
@@ -154,7 +154,7 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     expect(page.locator(".alert.known").filter(has_text="Acknowledged by opal").first).to_be_visible(timeout=SOON_MS)
     mend.click()
     expect(page.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
-    is_told(page, "Resume")
+    is_reported(page, "Resume")
 
 
 def reads_the_log(page: Page, picture: Picture) -> None:
@@ -171,7 +171,7 @@ def reads_the_log(page: Page, picture: Picture) -> None:
     page.get_by_role("button", name="Back to target status").click()
 
 
-def is_told(page: Page, act: str) -> None:
+def is_reported(page: Page, act: str) -> None:
     """By the button over the map, once the question is answered."""
     bar = page.get_by_role("group", name=f"Commands to {NAME}")
     if not bar.is_visible():

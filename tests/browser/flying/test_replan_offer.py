@@ -45,8 +45,15 @@ def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
     for name, tower in zip(NAMES, (towers[0], towers[-1]), strict=True):
         at = (tower["geometry"]["coordinates"][0], tower["geometry"]["coordinates"][1] + BESIDE_DEG)
         system = next(_systems)
-        said = {"name": name, "position": at, "is_simulated": True, "link": "mavlink", "mavlink_system_id": system, "allows_unsigned": True}
-        uavs.append(writes(page, "POST", "/uavs", said)["id"])
+        stated = {
+            "name": name,
+            "position": at,
+            "is_simulated": True,
+            "link": "mavlink",
+            "mavlink_system_id": system,
+            "allows_unsigned": True,
+        }
+        uavs.append(writes(page, "POST", "/uavs", stated)["id"])
         vehicles[name] = Autopilot(Px4(system=system), site.gateway_port, at=at)
     made = writes(
         page,

@@ -27,7 +27,7 @@ class Autopilot(Flyer):
     battery_percent: float = 93.0
     _home: tuple[float, float] = (0.0, 0.0)
     _moved_s: float = 0.0
-    _told_s: float = 0.0
+    _reported_s: float = 0.0
     _velocity_mps: tuple[float, float] = (0.0, 0.0)
     _held_s: float = 0.0
     _reached: list[int] = field(default_factory=list)
@@ -45,19 +45,19 @@ class Autopilot(Flyer):
         self._fly(min(now_s - self._moved_s, 1.0) if self._moved_s else 0.0)
         self._moved_s = now_s
         self.altitude_amsl_m = HOME_AMSL_M + self.relative_m
-        told, home = super()._reports(now_s)
+        reported, home = super()._reports(now_s)
         east_mps, north_mps = self._velocity_mps
-        told.relative_alt = round(self.relative_m * 1000)
-        told.vx, told.vy, told.vz = round(north_mps * 100), round(east_mps * 100), 0
+        reported.relative_alt = round(self.relative_m * 1000)
+        reported.vx, reported.vy, reported.vz = round(north_mps * 100), round(east_mps * 100), 0
         if east_mps or north_mps:
-            told.hdg = round(math.degrees(math.atan2(east_mps, north_mps)) % 360.0 * 100)
+            reported.hdg = round(math.degrees(math.atan2(east_mps, north_mps)) % 360.0 * 100)
         home.longitude, home.latitude, home.altitude = round(self._home[0] * 1e7), round(self._home[1] * 1e7), round(HOME_AMSL_M * 1000)
         reached = [mavlink.MAVLink_mission_item_reached_message(item) for item in self._reached]
         self._reached.clear()
-        if now_s < self._told_s + REPORT_INTERVAL_S:
-            return [told, home, *reached]
-        self._told_s = now_s
-        return [told, home, *reached, *self._of_the_second(round((now_s - self.booted_s) * 1e6))]
+        if now_s < self._reported_s + REPORT_INTERVAL_S:
+            return [reported, home, *reached]
+        self._reported_s = now_s
+        return [reported, home, *reached, *self._of_the_second(round((now_s - self.booted_s) * 1e6))]
 
     def _of_the_second(self, boot_us: int) -> list[Any]:
         lat_e7, lon_e7, alt_mm = round(self.at[1] * 1e7), round(self.at[0] * 1e7), round(self.altitude_amsl_m * 1000)

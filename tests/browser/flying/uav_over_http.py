@@ -24,7 +24,7 @@ class Flyer:
 
     link: HttpLink
     content: dict[str, Any] | None = None
-    told: list[str] = field(default_factory=list)
+    reported: list[str] = field(default_factory=list)
     sequence: int = 0
 
     def obeys(self) -> list[str]:
@@ -43,30 +43,30 @@ class Flyer:
         if done:
             answer = self.link.ask("POST", "acknowledgements", {"acknowledgements": done})
             assert answer.status == 200, answer
-        self.told += kinds
+        self.reported += kinds
         return kinds
 
-    def reports(self, along_m: float, *, aside_m: float = 0.0, **told: Any) -> list[float]:
+    def reports(self, along_m: float, *, aside_m: float = 0.0, **reported: Any) -> list[float]:
         """aside_m to the right of the route. Where it says that it is."""
         assert self.content is not None
         position, heading_deg, waypoint = self._place(along_m, aside_m)
         height_m = self.content["waypoints"][waypoint]["altitude_relative_m"]
-        self._tells({
+        self._reports({
             "position": position, "altitude_relative_m": height_m,
             "velocity_north_mps": 9.0 * math.cos(math.radians(heading_deg)), "velocity_east_mps": 9.0 * math.sin(math.radians(heading_deg)),
             "heading_deg": heading_deg, "battery_percent": 71.0, "mode": "Mission", "is_armed": True, "is_in_air": True,
             "gps_fix": 3, "satellites": 14, "hdop": 0.8, "waypoint_sequence": waypoint,
-        } | told)  # fmt: skip
+        } | reported)  # fmt: skip
         return position
 
     def stands(self, position: Sequence[float]) -> None:
         """On the ground, with or without a route."""
-        self._tells({
+        self._reports({
             "position": list(position), "altitude_relative_m": 0.0, "battery_percent": 97.0, "mode": "Standby", "is_armed": False,
             "is_in_air": False, "gps_fix": 3,
         })  # fmt: skip
 
-    def _tells(self, values: dict[str, Any]) -> None:
+    def _reports(self, values: dict[str, Any]) -> None:
         self.sequence += 1
         record = {"sequence": self.sequence, "measured_at": datetime.now(UTC).isoformat()} | values
         answer = self.link.ask("POST", "telemetry", {"stream": "boot-1", "records": [record]})

@@ -21,7 +21,7 @@ VIEWS: dict[str, dict[str, Any]] = {
 }
 
 # A dialog tells that it is closed with the next frame; a busy machine draws that after the server's answer.
-TELL_LATE = """addEventListener("close", (event) => {
+REPORT_LATE = """addEventListener("close", (event) => {
     if (!event.isTrusted) return;
     event.stopImmediatePropagation();
     const { target } = event;
@@ -80,7 +80,7 @@ def test_an_invitation_makes_an_account_once(visitor: Visitor) -> None:
 
 def test_the_link_keeps_the_focus_however_late_the_dialog_says_that_it_is_closed(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
-    page.evaluate(TELL_LATE)
+    page.evaluate(REPORT_LATE)
     invites(page, "Viewer")
     page.locator("html[data-told=late]").wait_for(state="attached")
     expect(page.get_by_role("button", name="Copy")).to_be_focused()

@@ -87,13 +87,13 @@ def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(vis
 def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, picture: Picture) -> None:
     page = account(newcomer(visitor, "walter"))
     page.evaluate("path => import(path).then(({ watchSessionEnd }) => watchSessionEnd(240))", module(page, "session_end"))
-    word = page.get_by_role("alert").filter(has_text="You will be signed out at")
-    expect(word).to_be_visible()
+    message = page.get_by_role("alert").filter(has_text="You will be signed out at")
+    expect(message).to_be_visible()
     pictures(page, picture, "session-word")
     page.set_viewport_size({"width": 390, "height": 844})
     pictures(page, picture, "session-word-phone")
-    word.get_by_role("button", name="Stay signed in").click()
-    expect(word).to_have_count(0)
+    message.get_by_role("button", name="Stay signed in").click()
+    expect(message).to_have_count(0)
 
 
 def module(page: Page, name: str) -> str:

@@ -192,8 +192,8 @@ def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor
     operator.unroute("**/api/v1/tiles/**", away)
     operator.get_by_role("button", name="Try now").click()
     expect(notice).to_be_hidden()
-    heard = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint and not complaint.startswith("map: ")]
-    assert heard == []
+    received = [complaint for complaint in visitor.complaints if "ERR_FAILED" not in complaint and not complaint.startswith("map: ")]
+    assert received == []
     visitor.complaints.clear()
 
 

@@ -62,7 +62,7 @@ def reading(page: Page, name: str) -> str:
     return page.locator(f"[data-reading={name}] .scene-value").inner_text()
 
 
-def is_said(place: Locator, words: str) -> bool:
+def is_shown(place: Locator, words: str) -> bool:
     return place.count() > 0 and words in place.inner_text()
 
 
@@ -78,21 +78,21 @@ def test_beside_the_map_a_flight_moves_and_what_is_measured_is_told_from_what_is
     page.get_by_role("button", name="3D view").click()
     view = page.get_by_role("region", name="3D view")
     certainty = view.locator(".scene-certainty")
-    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, along_m)
+    along_m = flies_until(page, lambda: is_shown(certainty, "measured"), flyers, along_m)
     expect(view.locator(".simulated-mark")).to_have_text("Simulated")
     expect(view.get_by_role("img", name=re.compile("^3D view: 2 UAVs"))).to_be_visible()
     first = reading(page, "tower")
     along_m = flies_until(page, lambda: reading(page, "tower") != first, flyers, along_m)
 
-    along_m = flies_until(page, lambda: is_said(certainty, "estimated, ±"), flyers[1:], along_m)
+    along_m = flies_until(page, lambda: is_shown(certainty, "estimated, ±"), flyers[1:], along_m)
     assert reading(page, "tower").startswith("~")
     view.get_by_role("button", name=re.compile("^Follow B")).click()
-    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers[1:], along_m)
+    along_m = flies_until(page, lambda: is_shown(certainty, "measured"), flyers[1:], along_m)
     page.keyboard.press("o")
     in_both_themes(page, picture, "scene-live")
     view.get_by_role("button", name=re.compile("^Follow A")).click()
     expect(certainty).to_contain_text("estimated")
-    flies_until(page, lambda: is_said(certainty, "measured"), flyers, along_m)
+    flies_until(page, lambda: is_shown(certainty, "measured"), flyers, along_m)
 
 
 def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visitor: Visitor, flight: tuple[str, list[Flyer]]) -> None:
@@ -103,7 +103,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     page.goto(f"/missions/{mission}/3d?source=live")
     page.locator("html[data-loaded]").wait_for(state="attached", timeout=TIMEOUT_MS)
     certainty = page.locator(".scene-certainty")
-    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, BEGINS_M)
+    along_m = flies_until(page, lambda: is_shown(certainty, "measured"), flyers, BEGINS_M)
     cut_off = page.get_by_role("status").filter(has_text="everything here is as of then. Connecting again.")
     expect(cut_off).to_have_count(0)
     line.cut()
@@ -111,7 +111,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     seen = reading(page, "tower")
     line.mend()
     expect(cut_off).to_be_hidden()
-    flies_until(page, lambda: is_said(certainty, "measured") and reading(page, "tower") != seen, flyers, along_m)
+    flies_until(page, lambda: is_shown(certainty, "measured") and reading(page, "tower") != seen, flyers, along_m)
     visitor.complaints[:] = [words for words in visitor.complaints if "ERR_FAILED" not in words]
 
 

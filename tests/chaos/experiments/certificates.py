@@ -36,15 +36,15 @@ def _redirects(course: Course, site: Site) -> None:
     connection.close()
     are_led = all(status in (301, 308) and address.startswith("https://localhost") for status, address in (found[0], found[2]))
     are_led &= found[1][0] in (301, 308, 403)  # a program that sends its token in the clear is better refused than led on
-    course.tell(
+    course.record(
         "plain HTTP",
         f"{', '.join(str(status) for status, _ in found)} (page, API, page)",
         "pages led to https, the API led or refused",
         are_led,
     )
-    said = site.client().ask("GET", "/sign-in").headers.get("strict-transport-security", "")
-    age_s = next((int(part.partition("=")[2]) for part in said.split(";") if part.strip().startswith("max-age")), 0)
-    course.tell("HSTS", said or "not said", f"max-age of {HSTS_S:,} s or more", age_s >= HSTS_S)
+    stated = site.client().ask("GET", "/sign-in").headers.get("strict-transport-security", "")
+    age_s = next((int(part.partition("=")[2]) for part in stated.split(";") if part.strip().startswith("max-age")), 0)
+    course.record("HSTS", stated or "not said", f"max-age of {HSTS_S:,} s or more", age_s >= HSTS_S)
 
 
 def _versions(course: Course, site: Site) -> None:
@@ -53,8 +53,8 @@ def _versions(course: Course, site: Site) -> None:
         for version in (ssl.TLSVersion.TLSv1, ssl.TLSVersion.TLSv1_1, ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3)
     }
     expected = {"TLSv1": False, "TLSv1_1": False, "TLSv1_2": True, "TLSv1_3": True}
-    told = ", ".join(f"{name} {'taken' if is_taken else 'refused'}" for name, is_taken in taken.items())
-    course.tell("versions of TLS", told, "1.2 and 1.3 alone", taken == expected)
+    reported = ", ".join(f"{name} {'taken' if is_taken else 'refused'}" for name, is_taken in taken.items())
+    course.record("versions of TLS", reported, "1.2 and 1.3 alone", taken == expected)
 
 
 def _is_taken(site: Site, version: ssl.TLSVersion) -> bool:
@@ -99,12 +99,12 @@ def _swaps(course: Course, site: Site) -> None:
             seen.append(_certificate(site))
         time.sleep(BETWEEN_S)
     dropped = askers.counted.total() - askers.counted["200"]
-    told = f"{dropped} of {askers.counted.total():,} requests dropped at {swaps} swaps, {len(set(seen))} certificates seen"
-    told += f", {sum(client.opened_again for client in clients)} asked again over a kept connection that was closed"
-    told += f", the new one within {max(waits_s):.1f} s"
-    course.tell(
+    reported = f"{dropped} of {askers.counted.total():,} requests dropped at {swaps} swaps, {len(set(seen))} certificates seen"
+    reported += f", {sum(client.opened_again for client in clients)} asked again over a kept connection that was closed"
+    reported += f", the new one within {max(waits_s):.1f} s"
+    course.record(
         "a new certificate under load",
-        told + (f": {askers.faults[:2]}" if dropped else ""),
+        reported + (f": {askers.faults[:2]}" if dropped else ""),
         "0 dropped",
         dropped == 0 and len(set(seen)) == swaps + 1,
     )

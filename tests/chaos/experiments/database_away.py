@@ -47,8 +47,8 @@ def run(course: Course) -> None:
                         ready_s[name] = max(taken_s, ready_s.get(name, 0.0))
                     time.sleep(BEFORE_S)
             again = {name: pid for name, pid in pids.items() if day.installation.pid(name) != pid}
-        _tell(course, day, askers, written, ready_s)
-        course.tell("programs that had to be started again", ", ".join(again) or "none", "none", not again)
+        _notify(course, day, askers, written, ready_s)
+        course.record("programs that had to be started again", ", ".join(again) or "none", "none", not again)
         day.judge(course, played)
 
 
@@ -106,21 +106,23 @@ def _until_all_work(day: Day, pages: Pages) -> dict[str, float]:
     return ready_s | dict.fromkeys(checks, GIVEN_UP_S)
 
 
-def _tell(course: Course, day: Day, askers: Askers, written: list[str], ready_s: dict[str, float]) -> None:
+def _notify(course: Course, day: Day, askers: Askers, written: list[str], ready_s: dict[str, float]) -> None:
     away = askers.counted["503 with Retry-After"]
-    odd = {told: number for told, number in askers.counted.items() if told not in {"200", "201", "202", "503 with Retry-After"}}
+    odd = {reported: number for reported, number in askers.counted.items() if reported not in {"200", "201", "202", "503 with Retry-After"}}
     figure = f"{away:,} of {askers.counted.total():,} answered 503 with Retry-After" + (
         f"; {odd} {askers.faults[:2]}" if odd else ", nothing else"
     )
-    course.tell(
+    course.record(
         f"PostgreSQL killed (-9) and {AWAY_S:.0f} s away: requests", figure, "503 with Retry-After, never 500", away > 0 and not odd
     )
     lost = [one for one in written if day.one("SELECT 1 FROM missions_mission WHERE id = %s", one) is None]
-    course.tell("missions whose saving was acknowledged", f"{len(lost)} of {len(written)} lost", "0 lost", not lost and bool(written))
+    course.record("missions whose saving was acknowledged", f"{len(lost)} of {len(written)} lost", "0 lost", not lost and bool(written))
     slowest = sorted(ready_s.items(), key=lambda item: -item[1])
-    told = ", ".join(f"{name} {taken_s:.1f}" for name, taken_s in slowest[:5])
+    reported = ", ".join(f"{name} {taken_s:.1f}" for name, taken_s in slowest[:5])
     is_met = slowest[0][1] <= READY_WITHIN_S
-    course.tell(f"at work again, {len(ready_s)} programs", f"{slowest[0][1]:.1f} s ({told})", f"{READY_WITHIN_S:.0f} s, by itself", is_met)
+    course.record(
+        f"at work again, {len(ready_s)} programs", f"{slowest[0][1]:.1f} s ({reported})", f"{READY_WITHIN_S:.0f} s, by itself", is_met
+    )
 
 
 if __name__ == "__main__":

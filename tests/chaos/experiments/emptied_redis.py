@@ -40,14 +40,14 @@ def run(course: Course) -> None:
             ends = states_at_the_end(day.installation, jobs, JOBS_END_WITHIN_S)
             took_s = time.monotonic() - last_s
             pages.wait_until_live()
-        course.tell(
+        course.record(
             f"{len(live_again_s)} times killed, emptied and {AWAY_S:.0f} s away: {PAGES} open pages show what was reported later",
             f"after {max(live_again_s):.1f} s at most, {pages.gaps} gaps, {sum(page.opened - 1 for page in pages.all)} opened again",
             f"{LIVE_WITHIN_S:.0f} s, 0 gaps", max(live_again_s) <= LIVE_WITHIN_S and pages.gaps == 0,
         )  # fmt: skip
         done = sum(state == "done" for state in ends)
         figure = f"{done} of {len(jobs)} done, the last {took_s:.0f} s after Redis was there"
-        course.tell("large plans asked for just before and just after", figure, "all, from PostgreSQL", done == len(jobs))
+        course.record("large plans asked for just before and just after", figure, "all, from PostgreSQL", done == len(jobs))
         day.judge(course, played)
 
 

@@ -46,9 +46,9 @@ def run(course: Course) -> None:
             refused_s = wait_until(lambda: _is_written(site, course), "a write", 120.0)
             time.sleep(BEFORE_S)
         states = states_at_the_end(site.installation, jobs, JOBS_END_WITHIN_S)
-        _tell(course, site, askers, written, before, refused_s)
+        _notify(course, site, askers, written, before, refused_s)
         done = states.count("done")
-        course.tell("large plans that were taken on", f"{done} of {len(jobs)} done", "all", done == len(jobs))
+        course.record("large plans that were taken on", f"{done} of {len(jobs)} done", "all", done == len(jobs))
 
 
 @contextmanager
@@ -111,21 +111,25 @@ def _is_written(site: Site, course: Course) -> bool:
         return False
 
 
-def _tell(course: Course, site: Site, askers: Askers, written: list[str], before: int, refused_s: float) -> None:
+def _notify(course: Course, site: Site, askers: Askers, written: list[str], before: int, refused_s: float) -> None:
     refused = askers.counted["503 with Retry-After"]
-    odd = {told: number for told, number in askers.counted.items() if told not in {"200", "201", "202", "429", "503 with Retry-After"}}
+    odd = {
+        reported: number
+        for reported, number in askers.counted.items()
+        if reported not in {"200", "201", "202", "429", "503 with Retry-After"}
+    }
     figure = f"{refused:,} of {askers.counted.total():,} refused with 503 and Retry-After" + (
         f"; {odd} {askers.faults[:2]}" if odd else ", nothing else"
     )
-    course.tell("requests to a full disk", figure, "503 with Retry-After, never 500", refused > 0 and not odd)
+    course.record("requests to a full disk", figure, "503 with Retry-After, never 500", refused > 0 and not odd)
     lost = sum(one_of(site.installation, "SELECT 1 FROM missions_mission WHERE id = %s", one) is None for one in written)
-    course.tell(WRITTEN, f"{lost} of {len(written)} lost ({before} before it was full)", "0", not lost and before > 0)
+    course.record(WRITTEN, f"{lost} of {len(written)} lost ({before} before it was full)", "0", not lost and before > 0)
     half = one_of(
         site.installation,
         "SELECT count(*) FROM missions_mission m WHERE NOT EXISTS (SELECT 1 FROM missions_inspectiontarget t WHERE t.mission_id = m.id)",
     )
-    course.tell(HALF, f"{half}", "0", half == 0)
-    course.tell("saved again once there is room", f"after {refused_s:.1f} s", "30 s, by itself", refused_s <= 30.0)
+    course.record(HALF, f"{half}", "0", half == 0)
+    course.record("saved again once there is room", f"after {refused_s:.1f} s", "30 s, by itself", refused_s <= 30.0)
 
 
 if __name__ == "__main__":

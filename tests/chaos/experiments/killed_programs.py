@@ -44,7 +44,7 @@ def run(course: Course) -> None:
                 wait_until(lambda name=name: _works(day, pages, name, begins_at), f"{name} at work")  # type: ignore[misc]
             recovered_s = _kill_all(course, day, pages)
             time.sleep(5.0)
-        _tell(course, recovered_s, pages)
+        _notify(course, recovered_s, pages)
         day.judge(course, played)
 
 
@@ -80,7 +80,7 @@ def _works(day: Day, pages: Pages, name: str, since: datetime) -> bool:
     return is_ready(day.installation, name)
 
 
-def _tell(course: Course, recovered_s: list[tuple[str, float]], pages: Pages) -> None:
+def _notify(course: Course, recovered_s: list[tuple[str, float]], pages: Pages) -> None:
     all_s = [taken_s for _, taken_s in recovered_s]
     of_kind = defaultdict(list)
     for name, taken_s in recovered_s:
@@ -88,8 +88,8 @@ def _tell(course: Course, recovered_s: list[tuple[str, float]], pages: Pages) ->
     longest = ", ".join(f"{kind} {max(taken):.1f}" for kind, taken in sorted(of_kind.items()))
     figure = f"p50 {percentile(all_s, 0.5):.1f} s, p95 {percentile(all_s, 0.95):.1f} s, longest {max(all_s):.1f} s ({longest})"
     is_met = percentile(all_s, 0.95) <= P95_S and max(all_s) <= MAX_S
-    course.tell(f"{len(all_s)} kills (-9): until it works again", figure, f"p95 {P95_S:.0f} s, at most {MAX_S:.0f} s", is_met)
-    course.tell(f"{PAGES} open pages", f"{pages.gaps} gaps in the sequence", "0", pages.gaps == 0)
+    course.record(f"{len(all_s)} kills (-9): until it works again", figure, f"p95 {P95_S:.0f} s, at most {MAX_S:.0f} s", is_met)
+    course.record(f"{PAGES} open pages", f"{pages.gaps} gaps in the sequence", "0", pages.gaps == 0)
 
 
 if __name__ == "__main__":

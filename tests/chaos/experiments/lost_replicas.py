@@ -33,10 +33,10 @@ def run(course: Course) -> None:
         for number in range(PLANNERS * REPLICAS):  # each has its graph and its compiled core
             question(number % PLANNERS)()
         killed = _broken(course, site, question, _kill)
-        _tell(course, "killed with -9", killed)
+        _notify(course, "killed with -9", killed)
         drained = _broken(course, site, question, _drain)
-        _tell(course, "drained (TERM) and started again", drained)
-        _tell_saved(course, site, savers)
+        _notify(course, "drained (TERM) and started again", drained)
+        _report_saved(course, site, savers)
 
 
 def _broken(
@@ -66,24 +66,24 @@ def _serves(site: Site, name: str) -> bool:
     return is_ready(site.installation, name)
 
 
-def _tell(course: Course, harm: str, ran: tuple[Askers, int]) -> None:
+def _notify(course: Course, harm: str, ran: tuple[Askers, int]) -> None:
     askers, times = ran
-    failed = {told: number for told, number in askers.counted.items() if told != "200"}
+    failed = {reported: number for reported, number in askers.counted.items() if reported != "200"}
     slowest_s = percentile([wait_s for _, wait_s in askers.waits_s], 0.99)
     figure = f"{sum(failed.values())} of {askers.counted.total():,} failed at {times} times, p99 {slowest_s * 1000:.0f} ms"
-    course.tell(
+    course.record(
         f"one of {REPLICAS} web replicas is {harm}", figure + (f" {failed}, {askers.faults[:2]}" if failed else ""), "0 failed", not failed
     )
 
 
-def _tell_saved(course: Course, site: Site, savers: list[Saver]) -> None:
+def _report_saved(course: Course, site: Site, savers: list[Saver]) -> None:
     saved = [one for saver in savers for one in saver.saved]
     lost = sum(one_of(site.installation, "SELECT 1 FROM missions_mission WHERE id = %s", one) is None for one in saved)
     rows = one_of(site.installation, "SELECT count(*) FROM missions_mission WHERE name = %s", SAVED_AS)
     figure = (
         f"{len(saved)} saved, {sum(saver.again for saver in savers)} asked again under their key: {lost} lost, {rows - len(saved)} doubled"
     )
-    course.tell("missions saved meanwhile", figure, "0 lost, 0 doubled", bool(saved) and not lost and rows == len(set(saved)))
+    course.record("missions saved meanwhile", figure, "0 lost, 0 doubled", bool(saved) and not lost and rows == len(set(saved)))
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ ROUNDS = 2  # without, with, without, with: what the machine does beside it fall
 FLOODERS = 4
 FLOODER = 11  # of the operators
 MAX_CHANGE = 0.2
-NOT_TOLD_APART_S = 0.005  # of a p95 of some milliseconds
+INDISTINGUISHABLE_S = 0.005  # of a p95 of some milliseconds
 
 
 def run(course: Course) -> None:
@@ -23,26 +23,26 @@ def run(course: Course) -> None:
         for number in range(8):
             planner(site, site.client(number), number)()
         calm_s, flooded_s = [], []
-        told: Counter[str] = Counter()
+        reported: Counter[str] = Counter()
         for _ in range(ROUNDS):
             calm_s += _others(course, site)
             with Askers(lambda number: planner(site, site.client(FLOODER), number), FLOODERS) as flood:
                 flooded_s += _others(course, site)
-            told += flood.counted
-        refused, odd = told["429"], {what: number for what, number in told.items() if what not in {"200", "429"}}
-    course.tell(
+            reported += flood.counted
+        refused, odd = reported["429"], {what: number for what, number in reported.items() if what not in {"200", "429"}}
+    course.record(
         "the flood of one user",
-        f"{refused:,} of {told.total():,} plans refused with 429 {odd or ''}",
+        f"{refused:,} of {reported.total():,} plans refused with 429 {odd or ''}",
         "429 above 40 a second",
         refused > 0 and not odd,
     )
     before_s, after_s = percentile(calm_s, 0.95), percentile(flooded_s, 0.95)
     figure = f"p95 {before_s * 1000:.0f} ms without, {after_s * 1000:.0f} ms with: {after_s / before_s - 1:+.0%}"
-    is_met = after_s <= before_s * (1 + MAX_CHANGE) or after_s - before_s <= NOT_TOLD_APART_S
-    course.tell(
+    is_met = after_s <= before_s * (1 + MAX_CHANGE) or after_s - before_s <= INDISTINGUISHABLE_S
+    course.record(
         "what others wait for a plan or a list",
         figure,
-        f"changes by less than {MAX_CHANGE:.0%} or {NOT_TOLD_APART_S * 1000:.0f} ms",
+        f"changes by less than {MAX_CHANGE:.0%} or {INDISTINGUISHABLE_S * 1000:.0f} ms",
         is_met,
     )
 

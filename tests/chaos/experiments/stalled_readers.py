@@ -58,15 +58,15 @@ class Reader:
             self.error = repr(error)
             self.is_open.set()
 
-    def _take(self, word: dict[str, Any], socket: Socket) -> None:
+    def _take(self, message: dict[str, Any], socket: Socket) -> None:
         self.messages += 1
-        if word["type"] == "snapshot":
+        if message["type"] == "snapshot":
             self.snapshots += 1
-        elif word["type"] == "changes":
-            self.gaps += word["sequence"] != self._sequence + 1
-        if word["type"] != "still-there":
-            self._sequence = word["sequence"]
-            socket.say({"type": "have", "sequence": self._sequence})
+        elif message["type"] == "changes":
+            self.gaps += message["sequence"] != self._sequence + 1
+        if message["type"] != "still-there":
+            self._sequence = message["sequence"]
+            socket.report({"type": "have", "sequence": self._sequence})
 
 
 async def _open(port: int, trust: ssl.SSLContext, token: str) -> Socket:
@@ -105,10 +105,10 @@ async def _watch(course: Course, day: Day) -> None:
             await all_open
         await asyncio.sleep(settles_s)
         before = await asyncio.to_thread(lambda: installation.usage()["live"].resident_bytes)
-        heard_before = sum(reader.messages for reader in readers)
+        received_before = sum(reader.messages for reader in readers)
         await asyncio.sleep(lasts_s)
         after = await asyncio.to_thread(lambda: installation.usage()["live"].resident_bytes)
-        heard = sum(reader.messages for reader in readers) - heard_before
+        received = sum(reader.messages for reader in readers) - received_before
         for reader in readers:
             reader.goes_on.set()
         came_back = [reader for reader in readers if reader.stalls]
@@ -121,21 +121,23 @@ async def _watch(course: Course, day: Day) -> None:
     finally:
         fleet.terminate()
         fleet.wait(30)
-    _tell(course, readers, woken, heard / lasts_s, lasts_s)
+    _notify(course, readers, woken, received / lasts_s, lasts_s)
     growth = after / before - 1
     figure = f"{before / 2**20:.0f} MiB, {growth:+.1%} in {lasts_s:.0f} s"
-    course.tell("memory of the live program", figure, f"+{MAX_GROWTH:.0%} at most", growth <= MAX_GROWTH)
+    course.record("memory of the live program", figure, f"+{MAX_GROWTH:.0%} at most", growth <= MAX_GROWTH)
 
 
-def _tell(course: Course, readers: list[Reader], woken: int, heard_per_s: float, lasts_s: float) -> None:
+def _notify(course: Course, readers: list[Reader], woken: int, received_per_s: float, lasts_s: float) -> None:
     awake, stalled = [one for one in readers if not one.stalls], [one for one in readers if one.stalls]
     cut, gaps = [one.error for one in awake if one.error], sum(one.gaps for one in awake)
-    figure = f"{gaps} gaps, {len(cut)} cut off {cut[:2] or ''}; each told {heard_per_s / len(awake):.1f} times a second for {lasts_s:.0f} s"
-    is_met = not gaps and not cut and heard_per_s > 0
-    course.tell(f"{len(awake)} pages beside {STALLED} that read nothing", figure, "0 gaps, none cut off", is_met)
+    figure = (
+        f"{gaps} gaps, {len(cut)} cut off {cut[:2] or ''}; each told {received_per_s / len(awake):.1f} times a second for {lasts_s:.0f} s"
+    )
+    is_met = not gaps and not cut and received_per_s > 0
+    course.record(f"{len(awake)} pages beside {STALLED} that read nothing", figure, "0 gaps, none cut off", is_met)
     again, gaps = sum(one.snapshots > 1 for one in stalled), sum(one.gaps for one in stalled)
     figure = f"{woken} of {STALLED} told the latest, or hung up on, once they read again ({again} by a whole snapshot); {gaps} gaps"
-    course.tell("those that read nothing", figure, "all, 0 gaps", woken == STALLED and not gaps)
+    course.record("those that read nothing", figure, "all, 0 gaps", woken == STALLED and not gaps)
 
 
 if __name__ == "__main__":

@@ -70,15 +70,15 @@ def _worker(course: Course, site: Site, skew: str) -> None:
         done = states_at_the_end(site.installation, jobs, JOBS_END_WITHIN_S).count("done")
     from_rows = _rows(site, jobs)
     figure = f"{done} of {len(jobs)} done, in {sum(from_rows)} attempts"
-    course.tell(f"a planner's worker at {skew}", figure, "each once", done == len(jobs) == sum(from_rows))
+    course.record(f"a planner's worker at {skew}", figure, "each once", done == len(jobs) == sum(from_rows))
 
 
 def _rows(site: Site, jobs: list[str]) -> list[int]:
-    told = site.installation.manage(
+    reported = site.installation.manage(
         "shell", "--verbosity", "0", "-c",
         f"from workspace.models import Job; print(list(Job.objects.filter(pk__in={jobs!r}).values_list('attempts', flat=True)))",
     )  # fmt: skip
-    found: list[int] = json.loads(told.strip().splitlines()[-1])
+    found: list[int] = json.loads(reported.strip().splitlines()[-1])
     return found
 
 
@@ -93,7 +93,7 @@ def _web(course: Course, site: Site, skew: str) -> None:
         beside = site.client().ask("GET", "/api/v1/missions?limit=1").status
     expected = 401 if skew.endswith("y") else 200
     figure = f"a token of a day: {status}; the program beside it: {beside}"
-    course.tell(
+    course.record(
         f"a web program at {skew}", figure, f"by its own clock ({expected}); the other goes on", (status, beside) == (expected, 200)
     )
 
@@ -116,7 +116,7 @@ def _watched(course: Course, day: Day, skew: str) -> None:
             fleet.terminate()
             fleet.wait(30)
     figure = f"{stored:,} reports stored, UAVs estimated, {flagged} told as late or lost"
-    course.tell(f"a gateway and an estimator at {skew}", figure, "as if they were right", bool(stored) and not flagged)
+    course.record(f"a gateway and an estimator at {skew}", figure, "as if they were right", bool(stored) and not flagged)
 
 
 if __name__ == "__main__":

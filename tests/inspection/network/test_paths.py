@@ -244,9 +244,9 @@ def test_what_a_way_passes_has_the_bends_of_its_legs_in_the_order_flown():
         graph = drawn_graph(place, edges)
         x, y, z = [Attachment(0, 90.0, 180.0, (a, b))], [Attachment(2, 40.0, 80.0, (c,)), Attachment(1, 900.0, 900.0)], []
         travel = travel_between(graph, [x], [y, z], [DirectLeg(0, 1, 50.0, 100.0, (d,))])
-        told = passed_on(travel, np.array([(0, 0), (0, 1)]), graph.position)
-        assert told.position.tolist() == [list(at) for at in (a, b, *place[:3], c, d)]
-        assert (told.node.tolist(), told.first.tolist()) == ([BEND, BEND, 0, 1, 2, BEND, BEND], [0, 6, 7])
+        reported = passed_on(travel, np.array([(0, 0), (0, 1)]), graph.position)
+        assert reported.position.tolist() == [list(at) for at in (a, b, *place[:3], c, d)]
+        assert (reported.node.tolist(), reported.first.tolist()) == ([BEND, BEND, 0, 1, 2, BEND, BEND], [0, 6, 7])
         assert travel.length_m.tolist() == [[90.0 + 152.0 + 40.0, 50.0]]
         back = travel_between(graph, [y], [x])
         assert passed_on(back, np.array([(0, 0)]), graph.position).position.tolist() == [list(at) for at in (c, *place[2::-1], b, a)]
@@ -255,5 +255,5 @@ def test_what_a_way_passes_has_the_bends_of_its_legs_in_the_order_flown():
 def test_without_bends_nodes_alone_are_passed():
     graph = drawn_graph([(9.0, 47.0), (9.001, 47.0)], [(0, 1, 76.0)])
     travel = travel_between(graph, [[Attachment(0, 1.0, 1.0)]], [[Attachment(1, 1.0, 1.0)]])
-    told = passed_on(travel, np.array([(0, 0)]), graph.position)
-    assert (told.node.tolist(), told.position.tolist()) == ([0, 1], graph.position.tolist())
+    reported = passed_on(travel, np.array([(0, 0)]), graph.position)
+    assert (reported.node.tolist(), reported.position.tolist()) == ([0, 1], graph.position.tolist())

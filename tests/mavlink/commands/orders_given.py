@@ -38,7 +38,7 @@ def mode_of(vehicle: Vehicle) -> int:
     return vehicle.custom_mode >> 24 if isinstance(vehicle, px4.Px4) else vehicle.custom_mode
 
 
-def told(
+def reported(
     vehicle: Vehicle, order: Order, *, link: Link | None = None, seed: int = 0, parameters: Mapping[str, float] = PARAMETERS, **more: Any
 ) -> tuple[CommandOutcome, Channel]:
     """With a home that is 20 m above the sea, and one report of the vehicle heard before."""

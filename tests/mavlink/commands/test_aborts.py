@@ -18,10 +18,10 @@ from tests.mavlink.commands.orders_given import (
     RULES,
     SET_MODE,
     mode_of,
-    told,
+    reported,
     vehicle_of,
 )
-from tests.mavlink.mission_sync.test_upload import heard
+from tests.mavlink.mission_sync.test_upload import received
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 
@@ -30,7 +30,7 @@ from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 def test_abort_on_the_ground_disarms(flavour: str):
     vehicle = vehicle_of(flavour)
     vehicle.is_armed = True
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
+    assert reported(vehicle, Order.ABORT)[0] == APPLIED
     assert not vehicle.is_armed
 
 
@@ -40,7 +40,7 @@ def test_abort_lands_where_the_return_is_refused(flavour: str):
     carried_out = vehicle.carry_out
     back = float(MODES[flavour]["return"])
     vehicle.carry_out = lambda command, values: 2 if back in values[1:3] else carried_out(command, values)  # type: ignore[method-assign]
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
+    assert reported(vehicle, Order.ABORT)[0] == APPLIED
     assert mode_of(vehicle) == MODES[flavour]["land"]
 
 
@@ -53,18 +53,18 @@ class LeavesGround:
     answers: bool = True
 
     def __post_init__(self) -> None:
-        self.vehicle.is_armed, self._told_s = True, math.inf
+        self.vehicle.is_armed, self._reported_s = True, math.inf
         self._tick, self._receive = self.vehicle.tick, self.vehicle.receive
         self.vehicle.tick, self.vehicle.receive = self.tick, self.receive  # type: ignore[method-assign]
 
     def receive(self, message: Any, now_s: float) -> list[Any]:
         if message.get_type() == "COMMAND_LONG" and message.command == ARM:
-            self._told_s = min(self._told_s, now_s)
+            self._reported_s = min(self._reported_s, now_s)
             return [mavlink.MAVLink_command_ack_message(ARM, mavlink.MAV_RESULT_DENIED, 0, 0, *GROUND)] if self.answers else []
         return self._receive(message, now_s)
 
     def tick(self, now_s: float) -> list[Any]:
-        self.vehicle.is_in_air = self.vehicle.is_in_air or now_s >= self._told_s + self.after_s
+        self.vehicle.is_in_air = self.vehicle.is_in_air or now_s >= self._reported_s + self.after_s
         return self._tick(now_s)
 
 
@@ -74,7 +74,7 @@ class LeavesGround:
 def test_abort_during_the_take_off_calls_the_uav_back(flavour: str, after_s: float, answers: bool):
     vehicle = vehicle_of(flavour, mode="mission")
     LeavesGround(vehicle, after_s, answers)
-    outcome, channel = told(vehicle, Order.ABORT)
+    outcome, channel = reported(vehicle, Order.ABORT)
     assert (outcome.state, mode_of(vehicle)) == (CommandEnd.APPLIED, MODES[flavour]["return"])
     assert channel.now_s < after_s + 3.0
 
@@ -85,9 +85,9 @@ def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str)
     state = VehicleState(vehicle.system)
     vehicle.is_armed = True
     for message in vehicle.reports():
-        state.receive(heard(message), 0.0)
+        state.receive(received(message), 0.0)
     vehicle.is_in_air = True
-    beat = heard(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
+    beat = received(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
     state.receive(beat, RULES.fresh_s + 0.5)
     keeper = CommandDriver(Order.ABORT, state, ENDS, RULES)
     assert [message.command for message in keeper.start(RULES.fresh_s + 0.6)] == [SET_MODE]
@@ -99,7 +99,7 @@ def test_abort_that_is_refused_every_way_is_tried_again(flavour: str):
     carried_out, noes = vehicle.carry_out, iter([2, 2])  # return and land are refused once
 
     vehicle.carry_out = lambda command, values: next(noes, None) or carried_out(command, values)  # type: ignore[method-assign]
-    assert told(vehicle, Order.ABORT)[0] == APPLIED
+    assert reported(vehicle, Order.ABORT)[0] == APPLIED
     assert mode_of(vehicle) == MODES[flavour]["return"]
 
 
@@ -113,27 +113,27 @@ def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(flavour: st
     frames = mavlink.MAVLink(None, srcSystem=vehicle.system, srcComponent=1)
     now_s, sent = 0.0, 0
 
-    def hear(messages: list[Any]) -> None:
+    def receive_all(messages: list[Any]) -> None:
         for message in messages:
             parsed = mavlink.MAVLink(None).parse_char(message.pack(frames))
             state.receive(parsed, now_s)
-            tell(keeper.receive(parsed, now_s) if keeper.wake_at_s is not None else [])
+            notify(keeper.receive(parsed, now_s) if keeper.wake_at_s is not None else [])
 
-    def tell(messages: list[Any]) -> None:
+    def notify(messages: list[Any]) -> None:
         nonlocal sent
         for message in messages:
             sent += 1
-            hear(vehicle.receive(message, now_s))
+            receive_all(vehicle.receive(message, now_s))
 
-    hear(vehicle.reports())
-    tell(keeper.start(now_s))
+    receive_all(vehicle.reports())
+    notify(keeper.start(now_s))
     for step in range(1, 60):
         now_s = step / 10
         if step == 10:
             assert keeper.outcome is None and vehicle.custom_mode != flying
             vehicle.custom_mode = flying
-        hear(vehicle.reports() if step % 5 == 0 else [])
-        tell(keeper.tick(now_s))
+        receive_all(vehicle.reports() if step % 5 == 0 else [])
+        notify(keeper.tick(now_s))
         if keeper.outcome is not None:
             break
     assert (keeper.outcome, sent) == (APPLIED, 2) and now_s >= 2.0

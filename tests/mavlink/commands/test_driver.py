@@ -24,10 +24,10 @@ from tests.mavlink.commands.orders_given import (
     TAKEOFF,
     commands,
     mode_of,
-    told,
+    reported,
     vehicle_of,
 )
-from tests.mavlink.mission_sync.test_upload import heard
+from tests.mavlink.mission_sync.test_upload import received
 from tests.mavlink.test_vehicle_state import heartbeat
 from tests.telemetry.vehicles import ardupilot, px4
 from tests.telemetry.vehicles.channel import Link
@@ -38,26 +38,26 @@ from tests.telemetry.vehicles.vehicle import GROUND
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_arming_is_seen_in_the_heartbeat(flavour: str):
     vehicle = vehicle_of(flavour)
-    outcome, _ = told(vehicle, Order.ARM)
+    outcome, _ = reported(vehicle, Order.ARM)
     assert (outcome, vehicle.is_armed) == (APPLIED, True)
 
 
 def test_copter_that_cannot_be_armed_in_auto_is_put_into_guided_first():
     vehicle = vehicle_of("ardupilot", mode="mission")
-    outcome, channel = told(vehicle, Order.ARM)
+    outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome, commands(channel), mode_of(vehicle)) == (APPLIED, [SET_MODE, ARM], ardupilot.GUIDED)
 
 
 def test_px4_starts_by_its_mode_and_arming():
     vehicle = vehicle_of("px4")
-    outcome, channel = told(vehicle, Order.START)
+    outcome, channel = reported(vehicle, Order.START)
     assert (outcome, commands(channel)) == (APPLIED, [SET_ITEM, SET_MODE, ARM])
     assert (vehicle.is_in_air, mode_of(vehicle)) == (True, px4.MISSION)
 
 
 def test_copter_starts_by_guided_arming_auto_and_the_start():
     vehicle = vehicle_of("ardupilot")
-    outcome, channel = told(vehicle, Order.START)
+    outcome, channel = reported(vehicle, Order.START)
     assert (outcome, commands(channel)) == (APPLIED, [SET_ITEM, SET_MODE, ARM, SET_MODE, START])
     assert [message.param2 for message in channel.to_vehicle if message.command == SET_MODE] == [ardupilot.GUIDED, ardupilot.AUTO]
     assert (vehicle.is_in_air, mode_of(vehicle)) == (True, ardupilot.AUTO)
@@ -69,7 +69,7 @@ def test_start_on_the_ground_begins_with_the_first_item(flavour: str, knows_comm
     """Not where the last flight was broken off."""
     vehicle = vehicle_of(flavour)
     vehicle.current_item, vehicle.knows_set_current = 5, knows_command
-    outcome, channel = told(vehicle, Order.START)
+    outcome, channel = reported(vehicle, Order.START)
     assert (outcome, vehicle.is_in_air, vehicle.current_item) == (APPLIED, True, FIRST_ITEM[flavour])
     assert channel.to_vehicle[0].command == SET_ITEM
 
@@ -79,7 +79,7 @@ def test_start_does_not_begin_before_the_first_item_is_seen(flavour: str):
     vehicle = vehicle_of(flavour)
     vehicle.current_item = 5
     vehicle._set_current = lambda item: 0  # type: ignore[method-assign]
-    outcome, channel = told(vehicle, Order.START)
+    outcome, channel = reported(vehicle, Order.START)
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "no-effect")
     assert set(commands(channel)) == {SET_ITEM}
     assert not vehicle.is_armed
@@ -89,14 +89,14 @@ def test_start_does_not_begin_before_the_first_item_is_seen(flavour: str):
 def test_start_in_the_air_goes_on_where_it_was_held(flavour: str):
     vehicle = vehicle_of(flavour, mode="hold", in_air=True)
     vehicle.current_item = 5
-    told(vehicle, Order.START)
+    reported(vehicle, Order.START)
     assert vehicle.current_item == 5
 
 
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_uav_that_does_not_tell_whether_it_flies_is_not_set_in_motion(order: Order):
     keeper, state = fresh()
-    state.receive(heard(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
+    state.receive(received(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), RULES.fresh_s + 0.1)
     keeper = CommandDriver(order, state, ENDS, RULES)
     assert keeper.start(RULES.fresh_s + 0.2) == []
@@ -106,7 +106,7 @@ def test_uav_that_does_not_tell_whether_it_flies_is_not_set_in_motion(order: Ord
 def test_yes_to_a_start_without_leaving_the_ground_is_no_start():
     vehicle = vehicle_of("ardupilot")
     vehicle.carry_out = lambda command, values: 0 if command == START else type(vehicle).carry_out(vehicle, command, values)  # type: ignore[method-assign]
-    outcome, channel = told(vehicle, Order.START)
+    outcome, channel = reported(vehicle, Order.START)
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "no-effect")
     assert channel.now_s > RULES.lift_off_s
 
@@ -114,7 +114,7 @@ def test_yes_to_a_start_without_leaving_the_ground_is_no_start():
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_take_off_lifts_to_the_height_that_the_flavour_wants(flavour: str):
     vehicle = vehicle_of(flavour)
-    outcome, channel = told(vehicle, Order.TAKE_OFF)
+    outcome, channel = reported(vehicle, Order.TAKE_OFF)
     (up,) = [message for message in channel.to_vehicle if message.command == TAKEOFF]
     assert (outcome, vehicle.is_in_air) == (APPLIED, True)
     assert up.param7 == (32.0 if flavour == "px4" else 12.0)
@@ -128,7 +128,7 @@ def test_take_off_lifts_to_the_height_that_the_flavour_wants(flavour: str):
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_uav_in_the_air_changes_its_mode(flavour: str, order: Order, mode: str):
     vehicle = vehicle_of(flavour, mode="mission", in_air=True)
-    outcome, channel = told(vehicle, order)
+    outcome, channel = reported(vehicle, order)
     assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[flavour][mode], [SET_MODE])
 
 
@@ -136,14 +136,14 @@ def test_uav_in_the_air_changes_its_mode(flavour: str, order: Order, mode: str):
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_held_uav_goes_on_with_its_mission(flavour: str, order: Order):
     vehicle = vehicle_of(flavour, mode="hold", in_air=True)
-    outcome, channel = told(vehicle, order)
+    outcome, channel = reported(vehicle, order)
     assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[flavour]["mission"], [SET_MODE])
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_speed_is_changed_by_its_yes(flavour: str):
     vehicle = vehicle_of(flavour, mode="mission", in_air=True)
-    outcome, channel = told(vehicle, Order.CHANGE_SPEED)
+    outcome, channel = reported(vehicle, Order.CHANGE_SPEED)
     assert outcome == APPLIED
     assert (channel.to_vehicle[0].command, channel.to_vehicle[0].param1, channel.to_vehicle[0].param2) == (SPEED, 1.0, 4.5)
 
@@ -158,23 +158,23 @@ def test_speed_is_changed_by_its_yes(flavour: str):
 )  # fmt: skip
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_uav_that_is_so_already_is_told_nothing(flavour: str, order: Order, mode: str, in_air: bool):
-    outcome, channel = told(vehicle_of(flavour, mode=mode, in_air=in_air), order)
+    outcome, channel = reported(vehicle_of(flavour, mode=mode, in_air=in_air), order)
     assert (outcome.state, outcome.code, channel.to_vehicle) == (CommandEnd.APPLIED, "already", [])
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_repeated_order_changes_nothing(flavour: str):
     vehicle = vehicle_of(flavour)
-    told(vehicle, Order.START)
+    reported(vehicle, Order.START)
     taken = list(vehicle.taken)
-    assert told(vehicle, Order.START)[0].code == "already"
+    assert reported(vehicle, Order.START)[0].code == "already"
     assert vehicle.taken == taken
 
 
 def test_state_of_before_the_last_command_is_not_taken_for_the_present_one():
     """A pause is under way; the last heartbeat still says that the mission is flown."""
     vehicle = vehicle_of("px4", mode="mission", in_air=True)
-    outcome, channel = told(vehicle, Order.RESUME, unsettled_until_s=1.0)
+    outcome, channel = reported(vehicle, Order.RESUME, unsettled_until_s=1.0)
     assert (outcome, commands(channel)) == (APPLIED, [SET_MODE])
 
 
@@ -192,7 +192,7 @@ def test_refused_arming_is_told_in_the_vehicles_words(flavour: str, result: int,
     vehicle = vehicle_of(flavour)
     vehicle.denied = {ARM: result}
     vehicle.says = "Need Position Estimate"
-    outcome, channel = told(vehicle, Order.ARM)
+    outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, code)
     assert "Need Position Estimate" in outcome.words
     assert len(commands(channel)) == (1 + RULES.retries if code == "temporarily-rejected" else 1)
@@ -203,7 +203,7 @@ def test_refused_arming_is_told_in_the_vehicles_words(flavour: str, result: int,
 def test_yes_without_an_effect_is_asked_for_again(flavour: str):
     vehicle = vehicle_of(flavour)
     vehicle.deaf_commands = 2
-    outcome, channel = told(vehicle, Order.ARM)
+    outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome, commands(channel)) == (APPLIED, [ARM] * 3)
     assert [message.confirmation for message in channel.to_vehicle] == [0, 1, 2]
 
@@ -212,27 +212,27 @@ def test_yes_without_an_effect_is_asked_for_again(flavour: str):
 def test_yes_that_never_has_an_effect_is_a_failure(flavour: str):
     vehicle = vehicle_of(flavour)
     vehicle.deaf_commands = 100
-    outcome, channel = told(vehicle, Order.ARM)
+    outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome.state, outcome.code, len(channel.to_vehicle)) == (CommandEnd.FAILED, "no-effect", 1 + RULES.retries)
 
 
 def test_effect_without_a_yes_is_enough():
     vehicle = vehicle_of("px4")
     vehicle.is_mute = True
-    assert told(vehicle, Order.ARM)[0] == APPLIED
+    assert reported(vehicle, Order.ARM)[0] == APPLIED
 
 
 def test_silent_vehicle_is_told():
     vehicle = vehicle_of("px4")
     vehicle.is_alive = False
-    outcome, channel = told(vehicle, Order.ARM)
+    outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome.code, len(channel.to_vehicle)) == ("silent", 1 + RULES.retries)
 
 
 def test_abort_that_nobody_answers_is_not_turned_into_a_landing():
     vehicle = vehicle_of("px4", mode="mission", in_air=True)
     vehicle.is_alive = False
-    outcome, channel = told(vehicle, Order.ABORT)
+    outcome, channel = reported(vehicle, Order.ABORT)
     assert outcome.code == "silent"
     assert {message.param3 for message in channel.to_vehicle} == {float(px4.RETURN)}
 
@@ -243,7 +243,7 @@ def test_abort_that_nobody_answers_is_not_turned_into_a_landing():
 def test_orders_on_the_ground_get_through_a_bad_link(flavour: str, order: Order, seed: int):
     """Either it is done and said to be done, or it failed and says so; ArduCopter disarms itself meanwhile."""
     vehicle = vehicle_of(flavour)
-    outcome, _ = told(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
+    outcome, _ = reported(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
     if outcome.state is CommandEnd.APPLIED:
         assert vehicle.is_in_air or order is Order.ARM
     else:
@@ -255,7 +255,7 @@ def test_orders_on_the_ground_get_through_a_bad_link(flavour: str, order: Order,
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_orders_in_the_air_get_through_a_bad_link(flavour: str, order: Order, seed: int):
     vehicle = vehicle_of(flavour, mode="mission", in_air=True)
-    outcome, _ = told(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
+    outcome, _ = reported(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
     assert outcome == APPLIED
     assert mode_of(vehicle) in (MODES[flavour]["hold"], MODES[flavour]["return"], MODES[flavour]["land"])
 
@@ -269,7 +269,7 @@ def fresh(order: Order = Order.ARM) -> tuple[CommandDriver, VehicleState]:
 
 
 def answer(keeper: CommandDriver, result: int, at_s: float, command: int = ARM, to: tuple[int, int] = GROUND) -> None:
-    keeper.receive(heard(mavlink.MAVLink_command_ack_message(command, result, 0, 0, *to)), at_s)
+    keeper.receive(received(mavlink.MAVLink_command_ack_message(command, result, 0, 0, *to)), at_s)
 
 
 def test_late_no_to_an_earlier_command_is_overruled_by_the_yes():
@@ -354,7 +354,7 @@ def test_order_that_says_too_little_is_refused(order: Order, parameters: dict[st
 
 
 def test_resuming_on_the_ground_is_refused():
-    outcome, channel = told(vehicle_of("px4"), Order.RESUME)
+    outcome, channel = reported(vehicle_of("px4"), Order.RESUME)
     assert (outcome.code, channel.to_vehicle) == ("not-flying", [])
 
 
@@ -386,7 +386,7 @@ def test_the_late_answer_to_an_earlier_speed_is_no_answer_to_a_later_one():
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
     keeper = CommandDriver(Order.CHANGE_SPEED, state, ENDS, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
     assert keeper.start(0.5) == []
-    message = heard(mavlink.MAVLink_command_ack_message(SPEED, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GROUND))
+    message = received(mavlink.MAVLink_command_ack_message(SPEED, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GROUND))
     assert keeper.receive(message, 1.0) == [] and keeper.outcome is None
     (sent,) = keeper.tick(2.0)
     assert sent.command == SPEED

@@ -13,8 +13,8 @@ NEWER, OLDER = mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAV_CMD_GET_HOME_POSITIO
 
 def home(state: VehicleState, now_s: float) -> mavlink.MAVLink_message:
     packer = mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
-    told = mavlink.MAVLink_home_position_message(560_000_000, 100_000_000, 100_000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
-    message = mavlink.MAVLink(None).parse_char(told.pack(packer))
+    reported = mavlink.MAVLink_home_position_message(560_000_000, 100_000_000, 100_000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
+    message = mavlink.MAVLink(None).parse_char(reported.pack(packer))
     state.receive(message, now_s)
     return message
 

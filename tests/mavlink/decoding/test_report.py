@@ -8,15 +8,24 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.decoding.measurement import LinkQuality, Measurement
 from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_vehicle
 
-NOT_TOLD = Flown()
+NOT_REPORTED = Flown()
 
 
 def position(**changed):
-    told = {"lat": 553_000_000, "lon": 101_000_000, "alt": 30_500, "relative_alt": 20_250, "vx": 100, "vy": -250, "vz": 5, "hdg": 27_512}
-    return mavlink.MAVLink_global_position_int_message(1_000, **(told | changed))
+    reported = {
+        "lat": 553_000_000,
+        "lon": 101_000_000,
+        "alt": 30_500,
+        "relative_alt": 20_250,
+        "vx": 100,
+        "vy": -250,
+        "vz": 5,
+        "hdg": 27_512,
+    }
+    return mavlink.MAVLink_global_position_int_message(1_000, **(reported | changed))
 
 
-def measured(*messages, at_s=0.0, flown=NOT_TOLD, **changed) -> Measurement:
+def measured(*messages, at_s=0.0, flown=NOT_REPORTED, **changed) -> Measurement:
     reporter = Reporter()
     for message in messages:
         reporter.receive(message, 0.0)
@@ -35,21 +44,21 @@ def test_a_position_alone():
     "changed", [{"lat": 0, "lon": 0}, {"lat": 900_000_001}, {"lat": -(2**31)}, {"lon": 1_800_000_001}, {"lon": 2**31 - 1}]
 )
 def test_no_place(changed):
-    told = measured(**changed)
-    assert (told.longitude_deg, told.latitude_deg, told.altitude_amsl_m) == (None, None, None)
-    assert told.altitude_relative_m == 20.25
+    reported = measured(**changed)
+    assert (reported.longitude_deg, reported.latitude_deg, reported.altitude_amsl_m) == (None, None, None)
+    assert reported.altitude_relative_m == 20.25
 
 
 def test_the_gulf_of_guinea_is_a_place_for_who_has_a_fix():
     fix = mavlink.MAVLink_gps_raw_int_message(0, 3, 0, 0, 0, 90, 65_535, 0, 0, 14)
-    told = measured(fix, lat=0, lon=0)
-    assert (told.longitude_deg, told.latitude_deg, told.gps_fix, told.hdop, told.satellites) == (0.0, 0.0, 3, 0.9, 14)
+    reported = measured(fix, lat=0, lon=0)
+    assert (reported.longitude_deg, reported.latitude_deg, reported.gps_fix, reported.hdop, reported.satellites) == (0.0, 0.0, 3, 0.9, 14)
 
 
 def test_attitude_and_heading():
     attitude = mavlink.MAVLink_attitude_message(0, pi / 6, -pi / 12, -pi / 2, 0, 0, 0)
-    told = measured(attitude, hdg=65_535)
-    assert (told.roll_deg, told.pitch_deg, told.heading_deg) == (pytest.approx(30), pytest.approx(-15), pytest.approx(270))
+    reported = measured(attitude, hdg=65_535)
+    assert (reported.roll_deg, reported.pitch_deg, reported.heading_deg) == (pytest.approx(30), pytest.approx(-15), pytest.approx(270))
     assert measured(attitude).heading_deg == 275.12
     assert measured(mavlink.MAVLink_attitude_message(0, nan, nan, nan, 0, 0, 0), hdg=65_535).roll_deg is None
 
@@ -68,14 +77,14 @@ def battery(cells, current=1_550, remaining=73, number=0):
 def test_batteries():
     status = mavlink.MAVLink_sys_status_message(0, 0, 0, 0, 11_900, 900, 80, 0, 0, 0, 0, 0, 0)
     unknown = mavlink.MAVLink_sys_status_message(0, 0, 0, 0, 65_535, -1, -1, 0, 0, 0, 0, 0, 0)
-    told = measured(status)
-    assert (told.battery_v, told.battery_a, told.battery_percent) == (11.9, 9.0, 80.0)
-    told = measured(battery([4_000, 4_100, 4_050]), status)
-    assert (told.battery_v, told.battery_a, told.battery_percent) == (12.15, 15.5, 73.0)
+    reported = measured(status)
+    assert (reported.battery_v, reported.battery_a, reported.battery_percent) == (11.9, 9.0, 80.0)
+    reported = measured(battery([4_000, 4_100, 4_050]), status)
+    assert (reported.battery_v, reported.battery_a, reported.battery_percent) == (12.15, 15.5, 73.0)
     assert measured(battery([65_534, 10_000])).battery_v == pytest.approx(75.534)
     assert measured(battery([4_000], number=1)).battery_v is None
-    told = measured(unknown)
-    assert (told.battery_v, told.battery_a, told.battery_percent) == (None, None, None)
+    reported = measured(unknown)
+    assert (reported.battery_v, reported.battery_a, reported.battery_percent) == (None, None, None)
     assert measured(battery([], -1, -1), status).battery_v == 11.9, "what one does not know the other may"
 
 
@@ -129,10 +138,10 @@ def test_a_text_that_lacks_a_piece_is_told_with_a_gap():
 
 
 def test_unfinished_texts_are_bounded():
-    collector, told = TextCollector(), []
+    collector, reported = TextCollector(), []
     for number in range(1, 1_000):
-        told += collector.receive(text("a" * 50, number % 65_536, 200), 1.0)
-    assert len(told) >= 990 and all(len(status.text) <= 500 for status in told)
+        reported += collector.receive(text("a" * 50, number % 65_536, 200), 1.0)
+    assert len(reported) >= 990 and all(len(status.text) <= 500 for status in reported)
 
 
 def test_link_quality_by_the_numbers_of_frames():

@@ -126,16 +126,16 @@ def test_yaw_that_px4_keeps_in_radians_is_no_difference():
 @given(lost=st.integers(0, 11))
 def test_missing_items_are_named(flavour: Flavour, lost: int):
     items = mission(12)
-    told = differences(items, through(flavour, items)[:lost], flavour)
-    assert [difference.item for difference in told] == list(range(lost, 12))
-    assert all(difference.held == "missing" for difference in told)
+    reported = differences(items, through(flavour, items)[:lost], flavour)
+    assert [difference.item for difference in reported] == list(range(lost, 12))
+    assert all(difference.held == "missing" for difference in reported)
 
 
 @pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
 def test_items_too_many_are_named(flavour: Flavour):
     items = mission(12)
-    told = differences(items[:10], through(flavour, items), flavour)
-    assert [(difference.item, difference.wanted) for difference in told] == [(10, "nothing"), (11, "nothing")]
+    reported = differences(items[:10], through(flavour, items), flavour)
+    assert [(difference.item, difference.wanted) for difference in reported] == [(10, "nothing"), (11, "nothing")]
 
 
 def test_item_at_which_the_vehicle_would_stop_is_a_difference():
@@ -163,7 +163,7 @@ NEW, OLD = load(9).mission, load(7, east=500).mission
 
 
 @pytest.mark.parametrize(
-    ("held", "told"),
+    ("held", "reported"),
     [
         (NEW, Found.APPROVED),
         ((), Found.NOTHING),
@@ -176,8 +176,8 @@ NEW, OLD = load(9).mission, load(7, east=500).mission
     ],
 )
 @pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
-def test_list_is_told_from_what_was_approved(flavour: Flavour, held: tuple[MissionItem, ...], told: Found):
-    assert found(through(flavour, held), NEW, [OLD], flavour) is told
+def test_list_is_told_from_what_was_approved(flavour: Flavour, held: tuple[MissionItem, ...], reported: Found):
+    assert found(through(flavour, held), NEW, [OLD], flavour) is reported
 
 
 def test_mix_is_told_by_items():

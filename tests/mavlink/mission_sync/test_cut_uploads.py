@@ -9,7 +9,7 @@ from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
-from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
+from tests.mavlink.mission_sync.test_lossy_upload import stated_what_is_there
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
 from tests.telemetry.vehicles.vehicle import Vehicle
@@ -73,15 +73,15 @@ def test_ground_station_dies_at_each_message(flavour: str):
 def test_vehicle_dies_at_each_message(flavour: str):
     """What the ground station says of a vehicle that fell silent agrees with what is in its memory; back again, it is put right."""
     states = set()
-    for heard in range(messages_in_all(flavour)):
+    for received in range(messages_in_all(flavour)):
         vehicle = vehicle_with_old(flavour)
-        outcome = Channel(keeper_for(vehicle), vehicle, vehicle_dies_after=heard).run()
+        outcome = Channel(keeper_for(vehicle), vehicle, vehicle_dies_after=received).run()
         states.add(outcome.state)
         if outcome.state is SyncState.READY:
             continue  # only the last acknowledgement, of what was read, was lost
         if flavour == "px4":
-            assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), heard
-        assert said_what_is_there(outcome, vehicle, NEW, OLD), (heard, outcome)
+            assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), received
+        assert stated_what_is_there(outcome, vehicle, NEW, OLD), (received, outcome)
         vehicle.restart()
         assert Channel(keeper_for(vehicle), vehicle).run().state is SyncState.READY
     assert states == {SyncState.INTACT, SyncState.UNREAD, SyncState.READY}

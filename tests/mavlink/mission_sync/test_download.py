@@ -89,8 +89,8 @@ def test_vehicle_without_such_a_list_is_told_apart():
 def test_reading_can_be_cancelled():
     download = Download(KIND, ENDS, RULES)
     download.start(0.0)
-    (said,) = download.cancel(0.1)
-    assert said.type == mavlink.MAV_MISSION_OPERATION_CANCELLED
+    (stated,) = download.cancel(0.1)
+    assert stated.type == mavlink.MAV_MISSION_OPERATION_CANCELLED
     assert download.outcome is not None
     assert download.outcome.state is TransferState.CANCELLED
 

@@ -20,24 +20,24 @@ class Watched:
     def __init__(self, flavour: str) -> None:
         self.now_s = 1.0
         self.flavour, self.offset = flavour, 1 if flavour == "ardupilot" else 0
-        self.state, self.watch, self.told = VehicleState(7), FlightWatch(), []
+        self.state, self.watch, self.reported = VehicleState(7), FlightWatch(), []
         self._frames = mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
 
-    def hear(self, message) -> None:
+    def feed(self, message) -> None:
         parsed = mavlink.MAVLink(None).parse_char(message.pack(self._frames))
         self.state.receive(parsed, self.now_s)
-        self.told += self.watch.look(self.state, parsed.get_type())
+        self.reported += self.watch.look(self.state, parsed.get_type())
 
     def is_seen(self, *, armed: bool, in_air: bool, in_mission: bool = True) -> None:
         mode = MODES[self.flavour][0 if in_mission else 1]
-        self.hear(mavlink.MAVLink_extended_sys_state_message(0, 2 if in_air else 1))
-        self.hear(mavlink.MAVLink_heartbeat_message(2, FLAVOURS[self.flavour].autopilot, 1 | (128 if armed else 0), mode, 4, 3))
+        self.feed(mavlink.MAVLink_extended_sys_state_message(0, 2 if in_air else 1))
+        self.feed(mavlink.MAVLink_heartbeat_message(2, FLAVOURS[self.flavour].autopilot, 1 | (128 if armed else 0), mode, 4, 3))
 
     def goes_to(self, item: int) -> None:
-        self.hear(mavlink.MAVLink_mission_current_message(item + self.offset))
+        self.feed(mavlink.MAVLink_mission_current_message(item + self.offset))
 
     def reaches(self, item: int) -> None:
-        self.hear(mavlink.MAVLink_mission_item_reached_message(item + self.offset))
+        self.feed(mavlink.MAVLink_mission_item_reached_message(item + self.offset))
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -47,12 +47,12 @@ def test_a_flight_down_after_its_landing_was_flown(flavour):
     uav.goes_to(5)
     uav.reaches(5)
     uav.goes_to(6)
-    assert uav.told == [Flown(5)]
+    assert uav.reported == [Flown(5)]
     uav.is_seen(armed=True, in_air=False)
     uav.is_seen(armed=False, in_air=False)
     uav.is_seen(armed=False, in_air=False)
-    down = uav.told[-1]
-    assert uav.told == [Flown(5), Flown(6, is_reached=False, is_down=True)] and down.is_whole(LANDING)
+    down = uav.reported[-1]
+    assert uav.reported == [Flown(5), Flown(6, is_reached=False, is_down=True)] and down.is_whole(LANDING)
     assert not down.is_whole(HOVERING), "whose last place was not reached"
 
 
@@ -64,7 +64,7 @@ def test_a_flight_that_hovers_was_flown_once_it_is_down(flavour):
     uav.reaches(6)
     uav.is_seen(armed=True, in_air=True, in_mission=False)
     uav.is_seen(armed=False, in_air=False, in_mission=False)
-    assert uav.told[-1] == Flown(6, is_down=True) and uav.told[-1].is_whole(HOVERING)
+    assert uav.reported[-1] == Flown(6, is_down=True) and uav.reported[-1].is_whole(HOVERING)
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -73,7 +73,7 @@ def test_a_flight_that_was_broken_off_was_not_flown(flavour):
     uav.is_seen(armed=True, in_air=True)
     uav.goes_to(3)
     uav.is_seen(armed=False, in_air=False, in_mission=False)
-    assert not uav.told[-1].is_whole(LANDING) and not uav.told[-1].is_whole(HOVERING)
+    assert not uav.reported[-1].is_whole(LANDING) and not uav.reported[-1].is_whole(HOVERING)
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -83,7 +83,7 @@ def test_a_flight_by_hand_tells_nothing_of_the_list(flavour):
     uav.is_seen(armed=True, in_air=True, in_mission=False)
     uav.reaches(6)
     uav.is_seen(armed=False, in_air=False, in_mission=False)
-    assert uav.told == []
+    assert uav.reported == []
 
 
 BEAT, ITEM, DOWN = "disarmed", "item", "on the ground"
@@ -105,9 +105,9 @@ def test_an_ardupilot_that_has_landed_has_flown_its_list_in_whatever_order_it_te
     }
     for number, what in enumerate(order):
         uav.now_s += 0.9 * bool(number)
-        uav.hear(says[what])
-    assert [flown for flown in uav.told if flown.is_down] == [Flown(6, is_reached=False, is_down=True)]
-    assert uav.told[-1].is_whole(LANDING)
+        uav.feed(says[what])
+    assert [flown for flown in uav.reported if flown.is_down] == [Flown(6, is_reached=False, is_down=True)]
+    assert uav.reported[-1].is_whole(LANDING)
 
 
 def test_a_list_begun_anew_in_the_air_and_broken_off_was_not_flown():
@@ -119,7 +119,7 @@ def test_a_list_begun_anew_in_the_air_and_broken_off_was_not_flown():
         uav.is_seen(armed=True, in_air=True)
         uav.now_s += 1.0
     uav.is_seen(armed=False, in_air=False)
-    assert uav.told[-1].is_down and not uav.told[-1].is_whole(LANDING)
+    assert uav.reported[-1].is_down and not uav.reported[-1].is_whole(LANDING)
 
 
 def test_a_gateway_that_takes_over_before_the_touch_down_knows_where_the_vehicle_was_bound():
@@ -127,4 +127,4 @@ def test_a_gateway_that_takes_over_before_the_touch_down_knows_where_the_vehicle
     uav.watch.take_up(was_in_mission=True, mission_item=7)
     uav.goes_to(0)
     uav.is_seen(armed=False, in_air=False)
-    assert uav.told[-1].is_whole(LANDING)
+    assert uav.reported[-1].is_whole(LANDING)

@@ -45,8 +45,8 @@ def test_legs_are_measured_on_px4s_sphere():
     ]
     load = FlightLoad(tuple(items))
     assert leg_warnings(load, {"MIS_DIST_WPS": 111_196.0}, None) == ()
-    (told,) = leg_warnings(load, {"MIS_DIST_WPS": 110_700.0}, None)
-    assert "111195 m" in told.words
+    (reported,) = leg_warnings(load, {"MIS_DIST_WPS": 110_700.0}, None)
+    assert "111195 m" in reported.words
     assert leg_warnings(with_points_between(load, 900.0), {"MIS_DIST_WPS": 900.0}, None) == ()
 
 
@@ -57,9 +57,9 @@ def test_vehicle_without_limits_is_not_warned_of(parameters: dict[str, float]):
 
 def test_list_that_is_too_long_for_its_flavour_is_told():
     assert too_many(load(649), Flavour.ARDUPILOT) is None
-    told = too_many(load(650), Flavour.ARDUPILOT)
-    assert told is not None
-    assert told.code == "too-many-items"
+    reported = too_many(load(650), Flavour.ARDUPILOT)
+    assert reported is not None
+    assert reported.code == "too-many-items"
     assert too_many(FlightLoad(mission(650)), Flavour.PX4) is None
 
 

@@ -70,10 +70,10 @@ def test_upload_over_a_bad_link_arrives_byte_for_byte_and_is_the_only_one(flavou
 @pytest.mark.parametrize("flavour", FLAVOURS)
 def test_upload_over_half_a_link_arrives_or_fails_and_says_what_is_there(flavour: str, seed: int):
     ran = run(flavour, 0.5, seed)
-    assert said_what_is_there(ran.outcome, ran.vehicle, NEW, OLD), ran.outcome
+    assert stated_what_is_there(ran.outcome, ran.vehicle, NEW, OLD), ran.outcome
 
 
-def said_what_is_there(outcome: SyncOutcome, vehicle: Vehicle, new: FlightLoad, old: FlightLoad) -> bool:
+def stated_what_is_there(outcome: SyncOutcome, vehicle: Vehicle, new: FlightLoad, old: FlightLoad) -> bool:
     """The outcome against the vehicle's memory: never ready with a list that is not whole, never called whole where it is mixed."""
     state = known(vehicle)
     assert state.flavour is not None

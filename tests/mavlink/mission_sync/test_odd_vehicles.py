@@ -14,7 +14,7 @@ from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import CommandRules, TransferRules
 from mavlink.vehicle_plan import MissionType
-from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
+from tests.mavlink.mission_sync.test_lossy_upload import stated_what_is_there
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
@@ -42,7 +42,7 @@ def test_whatever_goes_wrong_the_outcome_says_what_is_on_the_vehicle(
     keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
     link = Link(loss, duplicates=0.1, reordered=0.1)
     outcome = Channel(keeper, vehicle, link, seed, vehicle_dies_after=dies_after).run(until_s=7_200.0)
-    assert said_what_is_there(outcome, vehicle, NEW, OLD), outcome
+    assert stated_what_is_there(outcome, vehicle, NEW, OLD), outcome
 
 
 class Babbling(Vehicle):

@@ -32,7 +32,7 @@ def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | No
 
 
 @pytest.mark.parametrize(
-    ("firmware", "told", "commands"),
+    ("firmware", "reported", "commands"),
     [
         ((4, 6, 0), (4, 6, 0), [201, 201]),
         ((4, 6, 0), None, [201, 201]),
@@ -40,9 +40,9 @@ def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | No
         ((4, 7, 0), None, [201, 201]),
     ],
 )
-def test_a_look_is_sent_to_ardupilot_by_what_its_firmware_knows(firmware, told, commands):
+def test_a_look_is_sent_to_ardupilot_by_what_its_firmware_knows(firmware, reported, commands):
     vehicle = ArduPilot(firmware=firmware)
-    outcome, _ = bring(vehicle, LOOKING, told)
+    outcome, _ = bring(vehicle, LOOKING, reported)
     assert (outcome.state, outcome.sha256) == (SyncState.READY, LOOKING.content_sha256), outcome.words
     held = vehicle.lists[MissionType.MISSION][1:]
     assert [held[2].command, held[4].command] == commands

@@ -170,15 +170,15 @@ def test_mix_is_told_while_it_is_being_put_right():
     vehicle.refuses = {4: mavlink.MAV_MISSION_UNSUPPORTED}
     keeper = keeper_for(vehicle, load(12))
     channel = Channel(keeper, vehicle)
-    told = []
+    reported = []
 
     class Watch:
         def receive(self, message: object, now_s: float) -> None:
-            told.append(bool(keeper.mixes) and keeper.outcome is None and "MISSION_CLEAR_ALL" in sent(channel))
+            reported.append(bool(keeper.mixes) and keeper.outcome is None and "MISSION_CLEAR_ALL" in sent(channel))
 
     channel.listeners.append(Watch())
     assert channel.run().state is SyncState.CLEARED
-    assert any(told)
+    assert any(reported)
 
 
 def test_list_that_nobody_approved_is_seen_from_the_beginning():

@@ -16,18 +16,18 @@ ITEMS = mission(5)
 RULES = TransferRules()
 
 
-def heard(message: Any, system: int = 7, component: int = 1) -> Any:
+def received(message: Any, system: int = 7, component: int = 1) -> Any:
     """As it comes from the vehicle."""
     frames = mavlink.MAVLink(None, srcSystem=system, srcComponent=component)
     return mavlink.MAVLink(None).parse_char(message.pack(frames))
 
 
 def request(number: int, kind: int = MISSION, **source: int) -> Any:
-    return heard(mavlink.MAVLink_mission_request_int_message(*GROUND, number, kind), **source)
+    return received(mavlink.MAVLink_mission_request_int_message(*GROUND, number, kind), **source)
 
 
 def ack(result: int, kind: int = MISSION, to: tuple[int, int] = GROUND) -> Any:
-    return heard(mavlink.MAVLink_mission_ack_message(*to, result, kind))
+    return received(mavlink.MAVLink_mission_ack_message(*to, result, kind))
 
 
 def begun(items: tuple[Any, ...] = ITEMS) -> Upload:
@@ -56,7 +56,7 @@ def test_all_items_and_a_yes_is_done():
 
 
 def test_old_float_request_is_answered_by_an_int_item():
-    asked = heard(mavlink.MAVLink_mission_request_message(*GROUND, 2, MISSION))
+    asked = received(mavlink.MAVLink_mission_request_message(*GROUND, 2, MISSION))
     (item,) = begun().receive(asked, 0.1)
     assert (item.get_type(), item.seq, item.x, item.y) == ("MISSION_ITEM_INT", 2, ITEMS[2].latitude_e7, ITEMS[2].longitude_e7)
 
@@ -73,8 +73,8 @@ def test_repeated_request_gets_the_same_item():
         ack(mavlink.MAV_MISSION_ACCEPTED, FENCE),
         ack(mavlink.MAV_MISSION_ACCEPTED, to=(254, 190)),
         ack(mavlink.MAV_MISSION_UNSUPPORTED, FENCE),
-        heard(mavlink.MAVLink_mission_ack_message(*GROUND, mavlink.MAV_MISSION_ACCEPTED, MISSION), system=8),
-        heard(mavlink.MAVLink_mission_ack_message(*GROUND, mavlink.MAV_MISSION_ACCEPTED, MISSION), component=100),
+        received(mavlink.MAVLink_mission_ack_message(*GROUND, mavlink.MAV_MISSION_ACCEPTED, MISSION), system=8),
+        received(mavlink.MAVLink_mission_ack_message(*GROUND, mavlink.MAV_MISSION_ACCEPTED, MISSION), component=100),
         request(3, FENCE),
         request(3, system=8),
         request(17),
@@ -195,8 +195,8 @@ def test_items_are_still_answered_after_the_end():
 
 def test_cancelling_tells_the_vehicle():
     upload = sent_to(begun(), 2)
-    (said,) = upload.cancel(0.3)
-    assert (said.get_type(), said.type, said.mission_type) == ("MISSION_ACK", mavlink.MAV_MISSION_OPERATION_CANCELLED, MISSION)
+    (stated,) = upload.cancel(0.3)
+    assert (stated.get_type(), stated.type, stated.mission_type) == ("MISSION_ACK", mavlink.MAV_MISSION_OPERATION_CANCELLED, MISSION)
     assert upload.outcome is not None
     assert upload.outcome.state is TransferState.CANCELLED
     assert upload.cancel(0.4) == []

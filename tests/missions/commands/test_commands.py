@@ -394,8 +394,8 @@ def test_whoever_listens_hears_of_a_committed_command_and_of_no_other() -> None:
             give(uav, CommandKind.ARM)
             transaction.set_rollback(True)
         give(uav, CommandKind.HOLD)
-        heard = next(ear.notifies(timeout=10, stop_after=1))
-        assert heard.payload == str(uav.pk)
+        received = next(ear.notifies(timeout=10, stop_after=1))
+        assert received.payload == str(uav.pk)
         assert list(ear.notifies(timeout=0.05)) == []
 
 

@@ -17,7 +17,7 @@ from tests.missions.api import post
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
 from tests.missions.worlds import world
-from tests.telemetry.records import heard
+from tests.telemetry.records import received
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -34,7 +34,7 @@ def crossing(person: User) -> tuple[Mission, MissionUav, MissionUav]:
     here, uavs = world(), fleet("Tern", "Kite")
     mission = dispatched(person, uavs, here.towers[4:6])
     carry(*uavs)
-    heard(*uavs)
+    received(*uavs)
     first, second = mission.mission_uavs.select_related("uav", "route").order_by("route__departs_s")
     assert second.route.departs_s - first.route.departs_s > 20.0
     return mission, first, second
@@ -199,8 +199,8 @@ def test_nothing_begins_before_each_has_its_route(person) -> None:
 @pytest.mark.parametrize("names_uavs", [False, True])
 def test_none_is_started_that_nobody_hears(crossing, person, names_uavs) -> None:
     mission, *places = crossing
-    for told in (UavLink, UavWatch):
-        told.objects.all().delete()
+    for reported in (UavLink, UavWatch):
+        reported.objects.all().delete()
     with pytest.raises(Refused) as error:
         begin_planned_starts(mission=mission, actor=person, uavs=[place.uav_id for place in places] if names_uavs else None)
     assert [reason.code for reason in error.value.reasons] == ["link", "link"]
@@ -209,9 +209,9 @@ def test_none_is_started_that_nobody_hears(crossing, person, names_uavs) -> None
 def test_over_the_api(crossing, person) -> None:
     mission, first, second = crossing
     client, path = client_of(person), f"missions/{mission.pk}/planned-starts"
-    told = client.get(f"/api/v1/{path}").json()
-    assert (told["starts"], [entry["name"] for entry in told["waiting"]]) == (None, [first.name, second.name])
-    assert told["waiting"][1]["after_s"] == pytest.approx(second.route.departs_s - first.route.departs_s)
+    reported = client.get(f"/api/v1/{path}").json()
+    assert (reported["starts"], [entry["name"] for entry in reported["waiting"]]) == (None, [first.name, second.name])
+    assert reported["waiting"][1]["after_s"] == pytest.approx(second.route.departs_s - first.route.departs_s)
     begun = post(client, path)
     assert begun.status_code == 201, begun.content
     assert [entry["name"] for entry in begun.json()["uavs"]] == [first.name, second.name]

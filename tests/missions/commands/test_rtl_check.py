@@ -29,7 +29,7 @@ def mission(uav) -> Mission:
     return planned(an_operator(), [uav], [towers[0], towers[5]])
 
 
-def told(mission: Mission) -> dict[str, Any]:
+def reported(mission: Mission) -> dict[str, Any]:
     (found,) = client_of(mission.author).get(f"/api/v1/missions/{mission.pk}/returns").json()["results"]
     return dict(found)
 
@@ -39,7 +39,7 @@ def read(uav: Uav, **parameters: float) -> None:
 
 
 def test_a_height_that_was_never_read_is_not_known(mission):
-    found = told(mission)
+    found = reported(mission)
     assert (found["state"], found["height_m"], found["read_at"]) == ("unknown", None, None)
     assert found["warnings"][0].startswith("Return altitude of Tern not reported by the autopilot.")
     assert "RTL" not in found["warnings"][0] and "RTL_ALT" in found["detail"]
@@ -47,7 +47,7 @@ def test_a_height_that_was_never_read_is_not_known(mission):
 
 def test_a_free_way_home_is_told_with_its_height(mission, uav):
     read(uav)
-    found = told(mission)
+    found = reported(mission)
     assert (found["state"], found["warnings"], found["parameter"], found["height_m"]) == ("clear", [], "RTL_ALT", 30.0)
     assert found["read_at"] is not None
     uav.refresh_from_db()
@@ -57,7 +57,7 @@ def test_a_free_way_home_is_told_with_its_height(mission, uav):
 def test_a_zone_across_the_straight_way_home_is_named_and_no_height_helps(mission, uav):
     zone_around((10.010, 55.9975), 0.0007, name="Fire brigade")
     read(uav)
-    found = told(mission)
+    found = reported(mission)
     assert (found["state"], found["safe_height_m"]) == ("in_the_way", None)
     assert "crosses Fire brigade" in found["warnings"][0] and "waypoint" in found["warnings"][0]
     assert found["warnings"][-1] == "No height of RTL_ALT is clear: use Hold and Land instead."
@@ -67,13 +67,13 @@ def test_wires_across_the_way_home_ask_for_a_height_that_is_told_as_it_is_to_be_
     power_line([things.tower((10.010, lat), height_m=60.0) for lat in (55.9965, 55.9985)])
     rebuild()
     read(uav)
-    found = told(mission)
+    found = reported(mission)
     assert found["state"] == "in_the_way"
     assert "below safe clearance over towers or conductors" in found["warnings"][0]
     assert found["safe_height_m"] == 75.0
     assert found["warnings"][-1] == "Set RTL_ALT on it to at least 7500 (75 m), or use Hold and Land instead."
     read(uav, RTL_ALT=7_500.0)
-    assert told(mission)["state"] == "clear"
+    assert reported(mission)["state"] == "clear"
 
 
 def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
@@ -81,7 +81,7 @@ def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
     towers = world().towers
     mission = planned(an_operator(), [uav], [towers[0], towers[5]])
     read(uav)
-    assert told(mission)["state"] == "clear"
+    assert reported(mission)["state"] == "clear"
 
 
 @pytest.mark.parametrize(
@@ -94,17 +94,17 @@ def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
 )
 def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, mission, uav):
     read(uav, **facts)
-    found = told(mission)
+    found = reported(mission)
     assert found["state"] == "unknown" and words in found["warnings"][0]
 
 
 def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
-    found = told(mission)
+    found = reported(mission)
     assert found["state"] == "unknown" and "its autopilot has not reported how it returns" in found["warnings"][0]
     assert found["detail"] == "RTL_TYPE", "for whoever sets it up, and not in the sentence"
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
-    assert told(mission)["state"] == "clear"
+    assert reported(mission)["state"] == "clear"
 
 
 @pytest.mark.parametrize(
@@ -119,14 +119,14 @@ def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
 )
 def test_a_fence_that_the_autopilot_ignores_is_told(facts, warning, mission, uav):
     read(uav, **facts)
-    assert told(mission)["fence_warning"] == "", "there is no fence"
+    assert reported(mission)["fence_warning"] == "", "there is no fence"
     zone_around((10.010, 56.02), 0.001, name="Airport")
-    assert told(mission)["fence_warning"] == warning
+    assert reported(mission)["fence_warning"] == warning
 
 
 def test_a_companions_return_is_its_own(mission, uav):
     Uav.objects.filter(pk=uav.pk).update(link=LinkKind.HTTP)
-    found = told(mission)
+    found = reported(mission)
     assert found["state"] == "not_checked" and "companion computer" in found["warnings"][0]
 
 

@@ -160,15 +160,15 @@ def test_a_return_along_the_route_is_refused_without_a_mission_and_beside_a_wait
 
 def test_a_return_along_the_route_is_not_sent_to_one_that_is_not_heard(uav, user):
     command = queue_command(uav=uav, kind=CommandKind.RETURN, actor=user, parameters={"along_route": True})
-    assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=10.0, limit=5, to_unheard=True) == []
+    assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=10.0, limit=5, to_unreachable=True) == []
     assert [one.pk for one in claim(uav)] == [command.pk]
 
 
 def test_the_api_takes_both(uav, user):
     note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
-    tell = client_of(user).post
+    notify = client_of(user).post
     address = f"/api/v1/uavs/{uav.pk}/commands"
     body = {"kind": "set-return-height", "parameters": {"height_m": 75, "then_return": True}}
-    assert tell(address, body, content_type="application/json").json()["kind"] == "set-return-height"
+    assert notify(address, body, content_type="application/json").json()["kind"] == "set-return-height"
     body = {"kind": "return", "parameters": {"wait_s": 40}}
-    assert tell(address, body, content_type="application/json").json()["kind"] == "hold"
+    assert notify(address, body, content_type="application/json").json()["kind"] == "hold"

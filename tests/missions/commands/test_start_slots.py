@@ -68,9 +68,9 @@ def test_who_answers_for_it_starts_it_all_the_same(crossing, person) -> None:
     asked = post(client, path, {"kind": "start"})
     assert (asked.status_code, asked.json()["error"]["code"]) == (409, "start_slot")
     assert post(client, path, {"kind": "start", "parameters": {"out_of_slot": False}}).status_code == 409
-    told = post(client, path, {"kind": "start", "parameters": {"out_of_slot": True}})
-    assert (told.status_code, told.json()["parameters"]) == (201, {"out_of_slot": True, "flight": 1})
-    assert reasons_to_carry_later(UavCommand.objects.get(pk=told.json()["id"])) == []
+    reported = post(client, path, {"kind": "start", "parameters": {"out_of_slot": True}})
+    assert (reported.status_code, reported.json()["parameters"]) == (201, {"out_of_slot": True, "flight": 1})
+    assert reasons_to_carry_later(UavCommand.objects.get(pk=reported.json()["id"])) == []
     assert post(client, path, {"kind": "hold", "parameters": {"out_of_slot": True}}).json()["error"]["code"] == "no_parameters"
 
 
@@ -84,16 +84,18 @@ def test_one_that_goes_on_in_the_air_waits_for_nobody(crossing, person) -> None:
 
 
 @pytest.mark.parametrize("is_in_air", [True, False])
-@pytest.mark.parametrize("told", ["hold", "expired", "aborted"])
-def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_air(crossing, person, told: str, is_in_air: bool) -> None:
+@pytest.mark.parametrize("reported", ["hold", "expired", "aborted"])
+def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_air(
+    crossing, person, reported: str, is_in_air: bool
+) -> None:
     _, (first, second) = crossing
     start(first, person)
     took_off(first, ago_s=1_000.0)
     UavLink.objects.update_or_create(uav=first.uav, defaults={"is_in_air": is_in_air, "heard_at": timezone.now()})
-    if told == "hold":
+    if reported == "hold":
         hold = command_uav(uav=first.uav, kind=CommandKind.HOLD, actor=person)
         UavCommand.objects.filter(pk=hold.pk).update(state="applied", sent_at=timezone.now(), finished_at=timezone.now())
-    elif told == "expired":
+    elif reported == "expired":
         UavCommand.objects.filter(uav=first.uav, kind=CommandKind.START).update(state="expired", outcome_code="unconfirmed")
     else:
         first.route.has_failed = True
@@ -110,8 +112,8 @@ def test_one_that_is_flown_by_hand_near_the_route_is_waited_for(crossing, person
     UavLink.objects.create(uav=free, is_in_air=place != "on the ground", heard_at=timezone.now())
     if place != "untold":
         position = [UAV_AT.lon + (1.0 if place == "far" else 0.0), UAV_AT.lat]
-        told = {"measured_at": time_text(timezone.now()), "position": position}
-        UavWatch.objects.create(uav=free, organisation_id=free.organisation_id, measured={"position": told})
+        reported = {"measured_at": time_text(timezone.now()), "position": position}
+        UavWatch.objects.create(uav=free, organisation_id=free.organisation_id, measured={"position": reported})
     reasons = reasons_to_wait(uav=first.uav, route=first.route, flight=1, now=timezone.now())
     assert [reason.code for reason in reasons] == (["start_slot"] if place in ("near", "untold") else [])
     assert all("Gull is in the air without a flight of a mission" in reason.message for reason in reasons)

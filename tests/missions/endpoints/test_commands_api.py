@@ -7,7 +7,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from missions.models import Mission, Uav, UavCommand
-from missions.services.commands.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unheard
+from missions.services.commands.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unacknowledged
 from tests.accounts.users import client_of, somebody
 from tests.missions.api import patch, post
 from tests.missions.commands.outbox import a_uav, claim, fence
@@ -225,20 +225,20 @@ def test_what_became_of_a_command_is_said_in_words(client: Client) -> None:
 def test_a_command_that_is_sent_unheard_says_so_until_its_uav_is_heard(client: Client) -> None:
     tern: Uav = a_uav("Tern")
 
-    def told() -> tuple[str, str, bool]:
+    def reported() -> tuple[str, str, bool]:
         (command,) = get(client, f"uavs/{tern.pk}/commands").json()["results"]
         return command["state"], command["outcome_code"], "nothing is heard" in command["outcome"]
 
     post(client, f"uavs/{tern.pk}/commands", {"kind": "return"})
     (command,) = claim(tern)
-    assert note_sent_unheard(command.pk, **fence(command)) and is_wanted(command.pk, **fence(command))
-    assert told() == ("sent", "unheard", True)
+    assert note_sent_unacknowledged(command.pk, **fence(command)) and is_wanted(command.pk, **fence(command))
+    assert reported() == ("sent", "unheard", True)
     note_released(command.pk, **fence(command))
     (command,) = claim(tern)
     note_sent(command.pk, **fence(command))
-    assert told() == ("sent", "", False)
+    assert reported() == ("sent", "", False)
     UavCommand.objects.update(expires_at=command.created_at)
-    assert not is_wanted(command.pk, **fence(command)) and not note_sent_unheard(command.pk, **fence(command))
+    assert not is_wanted(command.pk, **fence(command)) and not note_sent_unacknowledged(command.pk, **fence(command))
 
 
 def test_another_link_is_refused_in_words_while_a_command_waits(client: Client) -> None:

@@ -249,14 +249,14 @@ def test_why_a_target_is_not_reached_names_its_wish(here: World, client: Client)
     body = plan_body({"asset": here.towers[0].pk, "sensor": "Lidar"})
     spare = {"name": "Kite", "position": list(UAV_AT), "sensor": "LIDAR"}
     post(client, "uavs", spare)
-    said = post(client, "plans/why-target", body | {"target": 0}).json()
-    assert (said["reason"], said["sensor"], said["tied_to"]) == ("not_allowed", "Lidar", None)
-    assert [(uav["name"], uav["is_allowed"], uav["is_enough"]) for uav in said["uavs"]] == [("Tern", False, False), ("Kite", True, True)]
+    stated = post(client, "plans/why-target", body | {"target": 0}).json()
+    assert (stated["reason"], stated["sensor"], stated["tied_to"]) == ("not_allowed", "Lidar", None)
+    assert [(uav["name"], uav["is_allowed"], uav["is_enough"]) for uav in stated["uavs"]] == [("Tern", False, False), ("Kite", True, True)]
 
 
 def test_why_a_route_counts_the_way_to_the_base(here: World, client: Client) -> None:
     Base.objects.create(name="North", location="SRID=4326;POINT(10.0205 56.0)")
     body = plan_body(here.towers[0], here.towers[2], uavs=[TERN | {"end_action": "base"}])
     plan = post(client, "plans", body).json()
-    said = post(client, "plans/why-route", body | {"routes": [plan["routes"][0]["targets"]], "uav": 0}).json()
-    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-5)
+    stated = post(client, "plans/why-route", body | {"routes": [plan["routes"][0]["targets"]], "uav": 0}).json()
+    assert stated["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-5)

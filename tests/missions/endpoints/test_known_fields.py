@@ -46,16 +46,16 @@ def test_a_patch_of_an_unknown_field_changes_nothing() -> None:
 def test_of_many_unknown_fields_a_few_are_told() -> None:
     here, client = world(), client_of(somebody())
     many = {f"{'x' * 200}{number}": 1 for number in range(50)}
-    told = details(client, "missions", mission_body(here.towers[1]) | many)
-    assert max(map(len, told)) == 80
-    assert len(told) <= 10
+    reported = details(client, "missions", mission_body(here.towers[1]) | many)
+    assert max(map(len, reported)) == 80
+    assert len(reported) <= 10
 
 
 def test_of_a_long_list_the_nearest_names_are_looked_for_a_few_times_only() -> None:
     here, client = world(), client_of(somebody())
     wrong = [{f"positio{number}": 1 for number in range(10)} for _ in range(300)]
-    told = details(client, "plans", plan_body(here.towers[1]) | {"targets": wrong})
-    meant = [words for words in told.values() if "is position meant" in str(words)]
+    reported = details(client, "plans", plan_body(here.towers[1]) | {"targets": wrong})
+    meant = [words for words in reported.values() if "is position meant" in str(words)]
     assert 1 <= len(meant) <= 10
 
 

@@ -48,10 +48,12 @@ def wrong_clocks(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
             continue
         yield from (f"{uav.name} {fault}" for fault in (*_wrong_flights(uav, route), *_wrong_stops(request, uav, route)))
         clock = clock_of(request, uav, route)
-        told = [arrival_s - route["departs_s"] for arrival_s in route["arrival_s"]] + [route["duration_s"]]
+        reported = [arrival_s - route["departs_s"] for arrival_s in route["arrival_s"]] + [route["duration_s"]]
         own = [*clock.arrival_s, clock.total_s]
-        if len(told) != len(own) or any(abs(mine - other) > CLOCK_SHARE * mine + CLOCK_S for mine, other in zip(own, told, strict=True)):
-            yield f"{uav.name} takes {own[-1]:.0f} s, not {told[-1]:.0f} s"
+        if len(reported) != len(own) or any(
+            abs(mine - other) > CLOCK_SHARE * mine + CLOCK_S for mine, other in zip(own, reported, strict=True)
+        ):
+            yield f"{uav.name} takes {own[-1]:.0f} s, not {reported[-1]:.0f} s"
         yield from (f"{uav.name} {fault}" for fault in _wrong_energy(uav, route, clock))
 
 
@@ -62,7 +64,7 @@ def _wrong_energy(uav: Any, route: dict[str, Any], clock: Clock) -> Iterator[str
     watt_hours = sum(clock.flights_wh)
     if abs(watt_hours - route["energy_wh"]) > ENERGY_SHARE * watt_hours + ENERGY_WH:
         yield f"takes {watt_hours:.2f} Wh, not {route['energy_wh']:.2f} Wh"
-    if any(abs(own - told) > ENERGY_SHARE * own + ENERGY_WH for own, told in zip(clock.used_wh, route["used_wh"], strict=True)):
+    if any(abs(own - reported) > ENERGY_SHARE * own + ENERGY_WH for own, reported in zip(clock.used_wh, route["used_wh"], strict=True)):
         yield "has not used what is told at a waypoint"
     reserve_wh = battery_wh - usable_wh
     give_wh = ENERGY_SHARE * max(clock.flights_wh) + ENERGY_WH

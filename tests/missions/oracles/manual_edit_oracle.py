@@ -102,15 +102,17 @@ class HandJudge:
             if set(refused) != {"uav"}:
                 yield f"a route with stops to charge is refused otherwise: {refused}"
             return
-        for place, said in refused.items():
-            if not self._is_true(asked, number, route, wished, place, said):
-                yield f"falsely refused: {place}: {said}"
+        for place, stated in refused.items():
+            if not self._is_true(asked, number, route, wished, place, stated):
+                yield f"falsely refused: {place}: {stated}"
 
     def _too_low(self, flown: dict[str, Any]) -> list[str]:
         """Over wires: a hand may come by so little short of the clearance as rounding and slopes do."""
         return [fault for fault in self.judge.wires.faults(flown) if float(_SHORT.search(fault)[1]) > SHORT_M]
 
-    def _is_true(self, asked: PlanRequest, number: int, route: dict[str, Any], wished: list[dict[str, Any]], place: str, said: str) -> bool:
+    def _is_true(
+        self, asked: PlanRequest, number: int, route: dict[str, Any], wished: list[dict[str, Any]], place: str, stated: str
+    ) -> bool:
         what, _, rest = place.partition(".")
         if what == "waypoints" and rest:
             point = wished[int(rest.split(".")[0])]
@@ -118,35 +120,35 @@ class HandJudge:
                 return _is_moved(point)
             if rest.endswith("speed_mps"):
                 return _is_no_speed(asked, asked.uavs[number], wished, int(rest.split(".")[0]))
-            if "stands" not in said:
+            if "stands" not in stated:
                 return _is_at_wrong_height(point)
         uav = asked.uavs[number]
         drawn = self._drawn(asked, uav, route, wished)
-        if "stands" in said:
+        if "stands" in stated:
             return self._is_too_low(drawn["waypoints"], int(rest.split(".")[0]), is_leg=what == "legs")
         if what == "legs":
-            return self._is_true_of_leg(asked, drawn, int(rest), said)
-        if "mast or wires" in said:
+            return self._is_true_of_leg(asked, drawn, int(rest), stated)
+        if "mast or wires" in stated:
             return bool(self.judge.wires.faults({"routes": [drawn]}))
-        if "range" in said:
+        if "range" in stated:
             return uav.max_range_m is not None and max(flights_m(drawn["waypoints"])) > 0.99 * uav.max_range_m
         clock = clock_of(asked, uav, drawn)
-        if "wind" in said:
+        if "wind" in stated:
             return clock.total_s > 1e6
-        lacks = _LACKS.search(said)
+        lacks = _LACKS.search(stated)
         if lacks is None or uav.performance.usable_wh is None:
             return False
         own_wh = max(clock.flights_wh) - uav.performance.usable_wh
         return abs(own_wh - float(lacks[1])) < 0.06 * max(clock.flights_wh) + 0.3
 
-    def _is_true_of_leg(self, asked: PlanRequest, drawn: dict[str, Any], leg: int, said: str) -> bool:
+    def _is_true_of_leg(self, asked: PlanRequest, drawn: dict[str, Any], leg: int, stated: str) -> bool:
         """The leg from one wished waypoint to the next; the first and the last with the columns beside them."""
         points = drawn["waypoints"]
         legs = legs_of(drawn, asked.departs_at, drawn["departs_s"] + drawn["duration_s"], _NO_STOPS)
         own = [legs[leg + 1], *(legs[:1] if leg == 0 else []), *(legs[-1:] if leg >= len(points) - 2 else [])]
         if drawn["end_action"] == "hover":
             own = [one if one.times is None else one._replace(times=(one.times[0], one.times[1] + timedelta(hours=4))) for one in own]
-        return any(zone.name in said for _, zone in self.judge.zones.met(own, MORE))
+        return any(zone.name in stated for _, zone in self.judge.zones.met(own, MORE))
 
     def _is_too_low(self, points: list[dict[str, Any]], place: int, *, is_leg: bool) -> bool:
         """Over a wire, a tower or a bridge beside a leg or a waypoint."""

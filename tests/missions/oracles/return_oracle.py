@@ -30,13 +30,13 @@ class ReturnJudge:
         self.seen = 0  # failures that were told, and are true
 
     def faults(self, request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
-        wished, told = request.lost_link, plan["lost_link"]
+        wished, reported = request.lost_link, plan["lost_link"]
         if wished.behaviour == "go_on":
-            if told["failed"]:
+            if reported["failed"]:
                 yield "a UAV that goes on is said to fail to return"
             return
         failed: dict[tuple[int, int], list[dict[str, Any]]] = defaultdict(list)
-        for item in told["failed"]:
+        for item in reported["failed"]:
             failed[item["route"], item["waypoint"]].append(item)
         for number, (uav, route) in enumerate(zip(request.uavs, plan["routes"], strict=True)):
             for place in range(len(route["waypoints"])):
@@ -48,11 +48,11 @@ class ReturnJudge:
         if failed:
             yield f"returns from nowhere: {sorted(failed)}"
 
-    def _wrong(self, request: PlanRequest, uav: Any, route: dict[str, Any], place: int, told: list[dict[str, Any]]) -> Iterator[str]:
+    def _wrong(self, request: PlanRequest, uav: Any, route: dict[str, Any], place: int, reported: list[dict[str, Any]]) -> Iterator[str]:
         point = route["waypoints"][place]
         if point["kind"] == "base":
-            if told:
-                yield f"it stands on the ground, and is said to fail: {told}"
+            if reported:
+                yield f"it stands on the ground, and is said to fail: {reported}"
             return
         here = point["position"]
         havens = [route["waypoints"][0]["position"], *request.lost_link.rally_points]
@@ -60,14 +60,14 @@ class ReturnJudge:
         haven = int(np.argmin(metres))
         if sorted(metres)[:2][-1] < 1.01 * metres[haven] + 1.0 and len(metres) > 1:
             return  # either may be the nearest
-        if any(item["haven"] != haven for item in told):
-            yield f"the nearest haven is {haven}, not {told}"
+        if any(item["haven"] != haven for item in reported):
+            yield f"the nearest haven is {haven}, not {reported}"
             return
         under, _shares = along(here, havens[haven])
         is_known = point["altitude_amsl_m"] is not None and self.hills is not None
         ground_m = self.hills.metres(under) if is_known and self.hills is not None else np.zeros(len(under))
         least_m, most_m = self._levels_m(here, havens[haven], ground_m, point["altitude_agl_m"])
-        troubles = {item["trouble"] for item in told}
+        troubles = {item["trouble"] for item in reported}
         is_too_high = bool(troubles & {"too_high", "obstacle"})
         if least_m - ground_m.min() > MAX_HEIGHT_M + CLEARLY_M and not is_too_high:
             yield f"it would fly {least_m - ground_m.min():.0f} m above ground"
@@ -78,8 +78,8 @@ class ReturnJudge:
             if all(one is None for one in taken) != ("wind" in troubles):
                 yield f"the wind is judged otherwise: {taken}"
             return
-        yield from self._wrong_battery(uav, route, place, told, taken)
-        yield from self._wrong_zones(request, route, place, havens[haven], told, (ground_m, least_m, most_m, is_known), taken)
+        yield from self._wrong_battery(uav, route, place, reported, taken)
+        yield from self._wrong_zones(request, route, place, havens[haven], reported, (ground_m, least_m, most_m, is_known), taken)
 
     def _levels_m(self, here: Any, haven: Any, ground_m: Any, agl_m: float) -> tuple[float, float]:
         """The height above the sea of the way, at least and at most: nobody knows to the metre what stands beside it."""
@@ -119,8 +119,10 @@ class ReturnJudge:
         over_s, over_j = max(across, key=lambda one: one[::-1])
         return list(np.cumsum([stays_s + up_s, over_s, down_s])), (joules + over_j) / 3_600.0
 
-    def _wrong_battery(self, uav: Any, route: dict[str, Any], place: int, told: list[dict[str, Any]], taken: list[Any]) -> Iterator[str]:
-        battery = [item for item in told if item["trouble"] == "battery"]
+    def _wrong_battery(
+        self, uav: Any, route: dict[str, Any], place: int, reported: list[dict[str, Any]], taken: list[Any]
+    ) -> Iterator[str]:
+        battery = [item for item in reported if item["trouble"] == "battery"]
         battery_wh = uav.performance.battery_wh
         if battery_wh is None:
             if battery:
@@ -139,25 +141,32 @@ class ReturnJudge:
             yield f"it lacks {least_wh - spare_wh:.2f} Wh, not {battery[0]['missing_wh']} Wh"
 
     def _wrong_zones(
-        self, request: PlanRequest, route: dict[str, Any], place: int, haven: Any, told: list[dict[str, Any]], over: Any, taken: list[Any]
+        self,
+        request: PlanRequest,
+        route: dict[str, Any],
+        place: int,
+        haven: Any,
+        reported: list[dict[str, Any]],
+        over: Any,
+        taken: list[Any],
     ) -> Iterator[str]:
         ground_m, least_m, most_m, is_known = over
-        said = {item["zone"] for item in told if item["trouble"] == "zone"}
+        stated = {item["zone"] for item in reported if item["trouble"] == "zone"}
         legs = [
             self._legs(request, route, place, haven, ground_m, level_m, is_known, seconds)
             for level_m, (seconds, _wh) in zip((least_m, most_m), taken, strict=True)
         ]
         met = [{zone.name for _, zone in self.zones.met(of_level, LESS)} for of_level in legs]
         surely = met[0] & met[1]
-        if surely - said:
-            yield f"it meets {sorted(surely - said)}"
+        if surely - stated:
+            yield f"it meets {sorted(surely - stated)}"
         wide = [
             one._replace(agl_m=_both(one.agl_m, other.agl_m), amsl_m=one.amsl_m and other.amsl_m and _both(one.amsl_m, other.amsl_m))
             for one, other in zip(*legs, strict=True)
         ]
         perhaps = {zone.name for _, zone in self.zones.met(wide, MORE)}
-        if said - perhaps:
-            yield f"it does not meet {sorted(said - perhaps)}"
+        if stated - perhaps:
+            yield f"it does not meet {sorted(stated - perhaps)}"
 
     def _legs(
         self,

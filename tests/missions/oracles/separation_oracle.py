@@ -31,18 +31,20 @@ def too_near(request: PlanRequest, plan: dict[str, Any]) -> Iterator[str]:
         if route["waypoints"]
     ]
     others = list(_approved(request, max((one.until_s for one in own), default=0.0)))
-    told = {
+    reported = {
         tuple(zip(item["uavs"], item["missions"], strict=True))
         for item in plan["separation"]["unresolved"]
         if item["code"] != "times_not_known"
     }
     for one, other in [*combinations(own, 2), *((one, other) for one in own for other in others)]:
         names = ((one.route["uav"], one.mission), (other.route["uav"], other.mission))
-        is_told = names in told or names[::-1] in told
-        near = _nearest(one, other, (OUTER_M, OUTER_HEIGHT_M, OUTER_S) if is_told else (LATERAL_M, VERTICAL_M, TIME_S), longest=is_told)
-        if near is not None and not is_told:
+        is_reported = names in reported or names[::-1] in reported
+        near = _nearest(
+            one, other, (OUTER_M, OUTER_HEIGHT_M, OUTER_S) if is_reported else (LATERAL_M, VERTICAL_M, TIME_S), longest=is_reported
+        )
+        if near is not None and not is_reported:
             yield f"{names[0]} and {names[1]} pass one place {near[0]:.0f} s apart at {near[1]:.0f} s"
-        if near is None and is_told:
+        if near is None and is_reported:
             yield f"{names[0]} and {names[1]} are said to be too near, and are not"
 
 

@@ -131,10 +131,12 @@ def test_seconds_and_watt_hours_are_counted_anew() -> None:
     plan = make_plan(request=asked)
     [route] = plan["routes"]
     assert faults_of(asked, plan) == []
-    assert faults_of(asked, plan, lambda told: told.update(energy_wh=route["energy_wh"] * 0.97))
-    assert faults_of(asked, plan, lambda told: told.update(arrival_s=[0.98 * arrival_s for arrival_s in route["arrival_s"]]))
-    assert faults_of(asked, plan, lambda told: told["used_wh"].__setitem__(-1, route["used_wh"][-1] * 0.95))
-    assert faults_of(asked, plan, lambda told: told["battery_left_percent"].__setitem__(-1, route["battery_left_percent"][-1] + 0.5))
+    assert faults_of(asked, plan, lambda reported: reported.update(energy_wh=route["energy_wh"] * 0.97))
+    assert faults_of(asked, plan, lambda reported: reported.update(arrival_s=[0.98 * arrival_s for arrival_s in route["arrival_s"]]))
+    assert faults_of(asked, plan, lambda reported: reported["used_wh"].__setitem__(-1, route["used_wh"][-1] * 0.95))
+    assert faults_of(
+        asked, plan, lambda reported: reported["battery_left_percent"].__setitem__(-1, route["battery_left_percent"][-1] + 0.5)
+    )
     small = replace(asked, uavs=(uav(performance=replace(battery, battery_wh=route["energy_wh"] * 1.2)),))
     assert any("below its reserve" in fault for fault in faults_of(small, plan))
 
@@ -224,17 +226,17 @@ def test_uavs_that_pass_one_place_together_are_seen() -> None:
     [route] = plan["routes"]
     both = request(here.towers[5], uavs=(uav(**HOME), uav(name="Gull", **HOME)))
 
-    def beside(later_s: float, **told: Any) -> list[str]:
+    def beside(later_s: float, **reported: Any) -> list[str]:
         late = {"departs_s": later_s, "arrival_s": [arrival_s + later_s for arrival_s in route["arrival_s"]]}
-        together = plan | {"routes": [route, route | {"uav": "Gull"} | late], "separation": plan["separation"] | told}
+        together = plan | {"routes": [route, route | {"uav": "Gull"} | late], "separation": plan["separation"] | reported}
         return [fault for fault in Judge().faults(both, together) if "twice" not in fault]
 
-    said = {"unresolved": [{"code": "too_near", "uavs": ["Tern", "Gull"], "missions": [None, None]}]}
+    stated = {"unresolved": [{"code": "too_near", "uavs": ["Tern", "Gull"], "missions": [None, None]}]}
     assert beside(0.0)
     assert beside(40.0)
     assert beside(2 * route["duration_s"]) == []
-    assert beside(0.0, **said) == []
-    assert "are not" in beside(2 * route["duration_s"], **said)[0]
+    assert beside(0.0, **stated) == []
+    assert "are not" in beside(2 * route["duration_s"], **stated)[0]
 
 
 def test_an_approved_mission_in_the_way_is_seen() -> None:
@@ -283,16 +285,16 @@ def test_what_is_said_of_a_lost_link_is_counted_anew() -> None:
     assert any(item["zone"] == "School" for item in failed)
     assert Judge().faults(asked, plan) == []
 
-    def told(items: list[dict[str, Any]]) -> list[str]:
+    def reported(items: list[dict[str, Any]]) -> list[str]:
         return Judge().faults(asked, plan | {"lost_link": plan["lost_link"] | {"failed": items}})
 
-    assert "it meets ['School']" in told(failed[1:])[0]
-    assert "does not meet ['Moor']" in told([*failed, failed[0] | {"zone": "Moor"}])[0]
+    assert "it meets ['School']" in reported(failed[1:])[0]
+    assert "does not meet ['Moor']" in reported([*failed, failed[0] | {"zone": "Moor"}])[0]
     assert any(
-        "needs no more than" in fault for fault in told([*failed, failed[0] | {"trouble": "battery", "missing_wh": 1.0, "zone": None}])
+        "needs no more than" in fault for fault in reported([*failed, failed[0] | {"trouble": "battery", "missing_wh": 1.0, "zone": None}])
     )
-    assert any("above ground" in fault for fault in told([*failed, failed[0] | {"trouble": "too_high", "over_m": 5.0, "zone": None}]))
-    assert any("from nowhere" in fault for fault in told([*failed, failed[0] | {"waypoint": 999}]))
+    assert any("above ground" in fault for fault in reported([*failed, failed[0] | {"trouble": "too_high", "over_m": 5.0, "zone": None}]))
+    assert any("from nowhere" in fault for fault in reported([*failed, failed[0] | {"waypoint": 999}]))
     on = replace(asked, lost_link=replace(home, behaviour=LostLink.GO_ON))
     assert Judge().faults(on, plan) == ["a UAV that goes on is said to fail to return"]
 
@@ -344,8 +346,8 @@ def test_why_a_change_by_hand_is_refused_is_judged() -> None:
     aside = wished[0] | {"kind": "pass", "position": [10.003, 55.9935], "was": None, "from": [10.003, 55.9935], "put_in": True}
     through = [wished[0], aside, *wished[1:]]
 
-    def is_true(points: list[dict[str, Any]], place: str, said: str) -> bool:
-        return by_hand._is_true(asked, 0, route, points, place, said)
+    def is_true(points: list[dict[str, Any]], place: str, stated: str) -> bool:
+        return by_hand._is_true(asked, 0, route, points, place, stated)
 
     assert is_true(through, "legs.0", "This leg meets Hospital.")
     assert is_true(through, "legs.1", "This leg meets Hospital.")

@@ -68,14 +68,14 @@ def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: 
 @pytest.mark.django_db
 def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_afterwards() -> None:
     here = world()
-    told: list[str] = []
+    reported: list[str] = []
 
     def edition_now() -> Any:
-        told.append("room" if has_room() else "held")
+        reported.append("room" if has_room() else "held")
         return now()
 
     def written(*args: Any, **kwargs: Any) -> Any:
-        told.append("written")
+        reported.append("written")
         return write(*args, **kwargs)
 
     now, write = planner.edition_now, planner.plan_to_json
@@ -84,13 +84,13 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
         with in_turn():  # the caller's, as for a small plan
             make_plan(request=asked(here))
             assert has_room()
-    assert told == ["written", "room"] * 2
+    assert reported == ["written", "room"] * 2
 
 
 @pytest.mark.django_db(transaction=True)
 def test_another_has_the_turn_while_one_waits_for_the_database() -> None:
-    told: list[bool] = []
-    asks = threading.Thread(target=ask_slowly, args=(told,))
+    reported: list[bool] = []
+    asks = threading.Thread(target=ask_slowly, args=(reported,))
     with in_turn():
         asks.start()
         asks.join(0.05)
@@ -98,15 +98,15 @@ def test_another_has_the_turn_while_one_waits_for_the_database() -> None:
     time.sleep(0.3)
     assert (has_room(), asks.is_alive()) == (True, True)  # it had its turn, and the database has its question
     asks.join(60.0)
-    assert told == [True, False]  # and its turn again with the answer
+    assert reported == [True, False]  # and its turn again with the answer
     assert has_room()
 
 
-def ask_slowly(told: list[bool]) -> None:
+def ask_slowly(reported: list[bool]) -> None:
     try:
         with in_turn() as has_turn:
             prepared_rows("SELECT pg_sleep(1.0)::text")
-            told += [has_turn, has_room()]
+            reported += [has_turn, has_room()]
     finally:
         connections.close_all()
 

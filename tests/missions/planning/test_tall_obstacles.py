@@ -244,7 +244,7 @@ def test_a_uav_keeps_to_its_first_targets_where_the_way_on_leads_over_what_is_to
     rebuild()
     beside = TargetRequest(None, LonLat(10.008, 56.0004))
     plan = make_plan(request=request(here.towers[1], here.towers[3], beside))
-    said = {item["target"]: item["message"] for item in plan["unassigned"]}
+    stated = {item["target"]: item["message"] for item in plan["unassigned"]}
     assert plan["routes"][0]["targets"] == [0]
-    assert said[1] == "From its other targets Tern would have to pass a mast or wires that cannot be flown over."
+    assert stated[1] == "From its other targets Tern would have to pass a mast or wires that cannot be flown over."
     assert WireJudge(ground_heights_m).faults(plan) == []

@@ -210,15 +210,15 @@ def test_a_run_beyond_the_range_is_left_out_as_a_whole_and_says_so(here: World) 
 
 def test_with_more_targets_than_are_proven_the_cost_of_the_locks_is_told_too(here: World) -> None:
     points = [TargetRequest(here.line.pk, LonLat(10.0 + 0.0014 * number, 56.0)) for number in range(14)]
-    told: list[PlanProgress] = []
+    reported: list[PlanProgress] = []
     asked = request(*points, uavs=(WEST, EAST), objective=Objective.MAKESPAN, locks=(LockRequest("East", (3, 2)),))
-    plan = make_plan(request=asked, on_progress=told.append)
+    plan = make_plan(request=asked, on_progress=reported.append)
     assert plan["wish"]["cost_s"] >= 0.0
     assert plan["wish"]["left_out"] == 0
     assert plan["lower_bound_m"] is None
     assert 0.0 < plan["lower_bound_s"] <= max(route["duration_s"] for route in plan["routes"])
-    assert [item.share for item in told] == sorted(item.share for item in told)
-    assert {item.message for item in told if item.draw is None} >= {"Working out what the locked parts cost"}
+    assert [item.share for item in reported] == sorted(item.share for item in reported)
+    assert {item.message for item in reported if item.draw is None} >= {"Working out what the locked parts cost"}
 
 
 # --- bound and gap ----------------------------------------------------------------------------------------------------------------

@@ -42,20 +42,20 @@ def why_route(client: Client, body: dict[str, Any], uav: int = 0) -> tuple[dict[
 
 def test_a_target_in_a_zone_names_the_zone(here: World, client: Client) -> None:
     zone = zone_around((10.008, 56.0))
-    said = why_target(client, plan_body(here.towers[2]))
-    assert (said["reason"], said["zones"], said["stretches"]) == ("inside_zone", [{"id": zone.pk, "name": "Airport"}], [])
+    stated = why_target(client, plan_body(here.towers[2]))
+    assert (stated["reason"], stated["zones"], stated["stretches"]) == ("inside_zone", [{"id": zone.pk, "name": "Airport"}], [])
 
 
 def test_a_line_through_a_zone_says_which_parts_can_be_flown_and_these_can(here: World, client: Client) -> None:
     zone_around((10.010, 56.0))
-    said = why_target(client, plan_body(here.line))
-    assert said["reason"] == "inside_zone"
-    west, east = said["stretches"]
+    stated = why_target(client, plan_body(here.line))
+    assert stated["reason"] == "inside_zone"
+    west, east = stated["stretches"]
     assert west[0] == [10.0, 56.0]
     assert west[1][0] < 10.009
     assert east[0][0] > 10.011
     assert east[1] == [10.020, 56.0]
-    for stretch in said["stretches"]:
+    for stretch in stated["stretches"]:
         assert post(client, "plans", plan_body({"asset": here.line.pk, "stretch": stretch})).json()["unassigned"] == []
 
 
@@ -64,9 +64,9 @@ def test_a_target_out_of_range_says_what_each_uav_needs_and_who_of_the_fleet_cou
     post(client, "uavs", {"name": "Wren", "position": list(UAV_AT), "max_range_m": 700.0})
     body = plan_body(here.towers[5]) | {"uavs": [TERN | {"max_range_m": 900.0}], "return_to_start": True}
     assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "beyond_range"
-    said = why_target(client, body)
-    assert said["reason"] == "beyond_range"
-    own, *others = said["uavs"]
+    stated = why_target(client, body)
+    assert stated["reason"] == "beyond_range"
+    own, *others = stated["uavs"]
     assert own["is_in_mission"] and not own["is_enough"]
     for more_m, left_out in ((0.1, 0), (-0.1, 1)):  # on the shortest way, which is tried before it is refused
         just = post(client, "plans", body | {"uavs": [TERN | {"max_range_m": own["needed_m"] + more_m}]}).json()
@@ -94,10 +94,10 @@ def test_a_retired_uav_is_not_offered(here: World, client: Client) -> None:
 
 
 def test_a_place_far_from_everything_says_how_far(here: World, client: Client) -> None:
-    said = why_target(client, plan_body({"position": [10.0, 56.3]}))
-    assert said["reason"] == "too_far_from_network"
-    assert said["network_m"] == pytest.approx(32_200, rel=0.01)
-    assert said["access_limit_m"] == 10_000.0
+    stated = why_target(client, plan_body({"position": [10.0, 56.3]}))
+    assert stated["reason"] == "too_far_from_network"
+    assert stated["network_m"] == pytest.approx(32_200, rel=0.01)
+    assert stated["access_limit_m"] == 10_000.0
 
 
 def test_a_target_that_is_only_left_out_for_the_others_says_so(here: World, client: Client) -> None:
@@ -109,17 +109,17 @@ def test_a_part_of_the_network_behind_a_zone_names_it(here: World, client: Clien
     zone_around((10.15, 56.0), half_deg=0.14, name="Firing range")
     body = plan_body(far)
     assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "no_path"
-    said = why_target(client, body)
-    assert (said["reason"], [zone["name"] for zone in said["zones"]]) == ("no_path", ["Firing range"])
+    stated = why_target(client, body)
+    assert (stated["reason"], [zone["name"] for zone in stated["zones"]]) == ("no_path", ["Firing range"])
 
 
 def test_the_parts_of_a_route_add_up_to_it(here: World, client: Client) -> None:
     body = plan_body(here.towers[1], here.towers[4], return_to_start=True)
-    said, plan = why_route(client, body)
-    assert said["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
-    assert said["straight_m"] + said["on_lines_m"] + said["round_zones_m"] == pytest.approx(said["length_m"], rel=1e-9)
-    assert said["round_zones_m"] == 0.0
-    assert said["zones"] == []
+    stated, plan = why_route(client, body)
+    assert stated["length_m"] == pytest.approx(plan["routes"][0]["length_m"], rel=1e-4)
+    assert stated["straight_m"] + stated["on_lines_m"] + stated["round_zones_m"] == pytest.approx(stated["length_m"], rel=1e-9)
+    assert stated["round_zones_m"] == 0.0
+    assert stated["zones"] == []
 
 
 def test_a_way_round_a_zone_is_counted_and_the_zone_named(here: World, client: Client) -> None:
@@ -167,24 +167,24 @@ def test_a_route_with_no_way_to_a_base_is_not_explained(here: World, client: Cli
 def test_a_place_where_there_is_no_network_at_all_has_no_distance_to_it(here: World, client: Client) -> None:
     Asset.objects.all().delete()
     rebuild()
-    said = why_target(client, plan_body({"position": [10.0, 56.3]}))
-    assert (said["reason"], said["network_m"]) == ("too_far_from_network", None)
+    stated = why_target(client, plan_body({"position": [10.0, 56.3]}))
+    assert (stated["reason"], stated["network_m"]) == ("too_far_from_network", None)
 
 
 def test_another_uav_is_set_against_the_one_that_flies(here: World, client: Client) -> None:
     uavs = [TERN, TERN | {"name": "Kite", "position": [10.019, 55.995]}]
     body = plan_body(here.towers[0], here.towers[1], here.towers[5], uavs=uavs, objective="makespan")
-    said, plan = why_route(client, body)
+    stated, plan = why_route(client, body)
     assert plan["routes"][1]["targets"] == [2]
-    alternative = said["alternative"]
+    alternative = stated["alternative"]
     assert (alternative["uav"], alternative["target"]) == (1, 1)  # the nearer of its two
     assert alternative["other_length_m"] > plan["routes"][1]["length_m"]
     assert not alternative["is_beyond_range"]
 
 
 def test_the_costliest_target_saves_what_it_says(here: World, client: Client) -> None:
-    said, plan = why_route(client, plan_body(here.towers[0], here.towers[5]))
-    heaviest = said["heaviest"]
+    stated, plan = why_route(client, plan_body(here.towers[0], here.towers[5]))
+    heaviest = stated["heaviest"]
     rest = here.towers[0] if heaviest["target"] == 1 else here.towers[5]
     without = post(client, "plans", plan_body(rest)).json()
     assert heaviest["saves_m"] == pytest.approx(plan["total_length_m"] - without["total_length_m"], rel=1e-4)
@@ -239,8 +239,8 @@ def test_a_mast_too_tall_is_told_as_such_and_not_as_a_zone(here: World, client: 
     rebuild()
     body = plan_body(mast, here.towers[3])
     assert post(client, "plans", body).json()["unassigned"][0]["reason"] == "above_height_limit"
-    said = post(client, "plans/why-target", body | {"target": 0}).json()
-    assert (said["reason"], said["zones"]) == ("above_height_limit", [])
+    stated = post(client, "plans/why-target", body | {"target": 0}).json()
+    assert (stated["reason"], stated["zones"]) == ("above_height_limit", [])
 
 
 def test_what_the_shortest_way_reaches_nothing_calls_out_of_range(here: World, client: Client) -> None:
@@ -263,8 +263,8 @@ def test_a_battery_too_small_and_a_wind_too_strong_are_told_as_such(here: World,
     }
     for asked, reason in ((calm, "beyond_energy"), (storm, "wind")):
         (left_out,) = post(client, "plans", asked).json()["unassigned"]
-        said = why_target(client, asked)
-        assert (left_out["reason"], said["reason"], said["message"]) == (reason, reason, left_out["message"])
+        stated = why_target(client, asked)
+        assert (left_out["reason"], stated["reason"], stated["message"]) == (reason, reason, left_out["message"])
 
 
 def test_a_route_on_the_shortest_ways_is_explained_on_these(here: World, client: Client) -> None:
@@ -272,19 +272,19 @@ def test_a_route_on_the_shortest_ways_is_explained_on_these(here: World, client:
     body["uavs"] = [body["uavs"][0] | {"position": list(UAV_AT), "max_range_m": 1_400.0}]
     plan = post(client, "plans", body).json()
     asked = body | {"routes": [route["targets"] for route in plan["routes"]], "uav": 0, "shortest_ways": True}
-    said = post(client, "plans/why-route", asked).json()
-    assert said["length_m"] == pytest.approx(plan["total_length_m"], rel=1e-6)
+    stated = post(client, "plans/why-route", asked).json()
+    assert stated["length_m"] == pytest.approx(plan["total_length_m"], rel=1e-6)
 
 
 def test_a_mission_explains_its_routes_and_what_it_leaves_out(here: World, client: Client) -> None:
     zone_around((10.008, 56.0))
     made = post(client, "missions", mission_body(here.towers[2], here.towers[5], plan=True)).json()
-    said = client.get(f"/api/v1/missions/{made['id']}/explanation").json()
-    assert [(route["uav"], route["fault"]) for route in said["routes"]] == [(0, "")]
-    assert [(target["target"], target["reason"]) for target in said["targets"]] == [(0, "inside_zone")]
-    assert (said["more_routes"], said["more_targets"]) == (0, 0)
+    stated = client.get(f"/api/v1/missions/{made['id']}/explanation").json()
+    assert [(route["uav"], route["fault"]) for route in stated["routes"]] == [(0, "")]
+    assert [(target["target"], target["reason"]) for target in stated["targets"]] == [(0, "inside_zone")]
+    assert (stated["more_routes"], stated["more_targets"]) == (0, 0)
     (route,) = made["plan"]["routes"]
-    explanation = said["routes"][0]["explanation"]
+    explanation = stated["routes"][0]["explanation"]
     assert explanation["zones"] or not explanation["round_zones_m"]
     assert route["explanation"]["straight_m"] == pytest.approx(explanation["straight_m"], abs=1.0)
     assert route["explanation"]["more_m"] == pytest.approx(route["length_m"] - explanation["straight_m"], abs=1.0)

@@ -52,8 +52,8 @@ class Flight:
         uav = self.uavs[place]
         for passed in range(waypoint):
             mark_waypoint_reached(mission_id=self.mission.pk, uav_id=uav.pk, waypoint=passed)
-        told = {"location": Point(lon, lat, srid=4326), "located_at": timezone.now(), **facts}
-        Uav.objects.filter(pk=uav.pk).update(**told)
+        reported = {"location": Point(lon, lat, srid=4326), "located_at": timezone.now(), **facts}
+        Uav.objects.filter(pk=uav.pk).update(**reported)
 
     def offer(self) -> ReplanOffer:
         """Asked for, and worked out."""

@@ -79,15 +79,15 @@ def marks(flight: Flight) -> list[dict[str, Any]]:
 def test_a_mission_that_flies_is_marked_at_once_with_the_leg_that_is_still_flown(flight):
     assert marks(flight) == []
     zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008, name="Air show", with_graph=False)
-    told = {tuple(mark["leg"]) for mark in marks(flight)}
+    reported = {tuple(mark["leg"]) for mark in marks(flight)}
     visits = flight.route(1).waypoints.filter(kind="target").count()
     leg = (f"B{visits - 1}", f"B{visits}")
-    assert leg in told
+    assert leg in reported
     assert all(mark["uav"] == 1 and "Air show touches" in mark["message"] for mark in marks(flight))
     tasks.look_after_offers()
     offer = ReplanOffer.objects.get()
     assert (offer.cause["zone"], offer.cause["zone_name"], offer.cause["uav_name"]) == (zone.pk, "Air show", flight.uavs[1].name)
-    assert tuple(offer.cause["leg"]) in told
+    assert tuple(offer.cause["leg"]) in reported
     page = client_of(flight.author).get("/api/v1/missions").json()["results"]
     assert [mission["is_stale"] for mission in page if mission["id"] == str(flight.mission.pk)] == [True]
 

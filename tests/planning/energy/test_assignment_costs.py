@@ -97,11 +97,11 @@ class World:
     ) -> Timing:
         """Without turns of the course, unless the rules count them."""
         legs = np.array(self.ways.of_route(uav, order, finish.end), dtype=np.int64)
-        told = passed_on(self.ways.travel, legs, self.graph.position)
-        agl_m = np.full(len(told.node), RULES.transit_agl_m)
-        nodes = told.node[told.node != BEND]
-        agl_m[told.node != BEND] = pass_agl_m(node_heights_m(self.graph, nodes), RULES)
-        passed = PassedNodes(told.position, agl_m, np.full(len(agl_m), -1), told.first)
+        reported = passed_on(self.ways.travel, legs, self.graph.position)
+        agl_m = np.full(len(reported.node), RULES.transit_agl_m)
+        nodes = reported.node[reported.node != BEND]
+        agl_m[reported.node != BEND] = pass_agl_m(node_heights_m(self.graph, nodes), RULES)
+        passed = PassedNodes(reported.position, agl_m, np.full(len(agl_m), -1), reported.first)
         targets = [
             TargetPoints(visit, tuple(course), agl_m, Task(TaskKind.HOLD, hold_s), None)
             for visit, (course, agl_m, hold_s) in ((visit, self.visits[visit]) for visit in order)

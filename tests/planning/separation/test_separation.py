@@ -195,9 +195,9 @@ def test_what_waits_leaves_no_shorter_wait():
 def test_a_way_that_is_clear_of_all_others_is_not_touched():
     separation = keep_apart([route("A", *ALONG), route("B", (0, 200), (1_000, 200))], rules=RULES)
     assert (separation.delays_s, separation.layers_m, separation.closest) == ((0.0, 0.0), (0.0, 0.0), None)
-    told = separation_json(separation)
-    assert (told["lateral_m"], told["vertical_m"], told["time_s"]) == (30.0, 15.0, 60.0)
-    assert (told["delays"], told["layers"], told["closest"], told["unresolved"]) == ([0.0, 0.0], [0.0, 0.0], None, [])
+    reported = separation_json(separation)
+    assert (reported["lateral_m"], reported["vertical_m"], reported["time_s"]) == (30.0, 15.0, 60.0)
+    assert (reported["delays"], reported["layers"], reported["closest"], reported["unresolved"]) == ([0.0, 0.0], [0.0, 0.0], None, [])
 
 
 def test_over_the_antimeridian_they_meet_as_anywhere():

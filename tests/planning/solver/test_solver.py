@@ -201,15 +201,15 @@ def test_a_large_plan_keeps_every_range_and_leaves_out_only_what_does_not_fit(ob
 
 def test_a_search_improves_the_plan_and_reports_progress() -> None:
     problem = random_problem(5, uavs=4, targets=40, objective=Objective.MAKESPAN)
-    told: list[Progress] = []
-    searched = solve(problem, on_progress=told.append, search_s=1.5)
+    reported: list[Progress] = []
+    searched = solve(problem, on_progress=reported.append, search_s=1.5)
     assert searched.longest_m <= 1.02 * solve(problem).longest_m
-    shares = [progress.share for progress in told]
+    shares = [progress.share for progress in reported]
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert any(0.3 < share < 1.0 for share in shares)
-    assert told[-1].message.startswith("longest route ")
-    merits = [merit(problem, progress.best_routes) for progress in told if progress.best_routes is not None]
+    assert reported[-1].message.startswith("longest route ")
+    merits = [merit(problem, progress.best_routes) for progress in reported if progress.best_routes is not None]
     assert len(merits) > 3
     assert merits == sorted(merits, reverse=True)
     assert merits[-1] == merit(problem, searched.routes)

@@ -89,8 +89,8 @@ def serial_at(port: int) -> int | None:
 def answer(port: int) -> tuple[int, bytes]:
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=TIMEOUT_S)
     connection.request("GET", "/")
-    told = connection.getresponse()
-    return told.status, told.read()
+    reported = connection.getresponse()
+    return reported.status, reported.read()
 
 
 @pytest.fixture

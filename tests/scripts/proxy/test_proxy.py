@@ -75,9 +75,9 @@ def test_what_programs_tell_of_themselves_has_a_port_of_its_own_where_it_is_want
     monkeypatch.setenv("SPANWISE_METRICS_PORT", "9464")
     text = configuration(Places(tmp_path), tmp_path, 8000)
     assert text.count("listen 127.0.0.1:9464;") == 1
-    told_at = {program.environment.get("SPANWISE_METRICS") for program in web_programs(Places(tmp_path), tmp_path)} - {None}
-    assert len(told_at) == len(TELLING_PROGRAMS)
-    for place in told_at:
+    served_at = {program.environment.get("SPANWISE_METRICS") for program in web_programs(Places(tmp_path), tmp_path)} - {None}
+    assert len(served_at) == len(TELLING_PROGRAMS)
+    for place in served_at:
         assert f"{place}:/" in text
     test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path)
 

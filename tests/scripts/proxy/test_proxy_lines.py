@@ -23,12 +23,12 @@ FAULT = (
 
 def test_a_fault_is_told_without_the_query(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SPANWISE_LOG_FORMAT", raising=False)
-    assert "abc" not in proxy_lines.told(FAULT)
+    assert "abc" not in proxy_lines.reported(FAULT)
     monkeypatch.setenv("SPANWISE_LOG_FORMAT", "json")
-    told = json.loads(proxy_lines.told(FAULT))
-    assert (told["level"], told["logger"]) == ("ERROR", "nginx")
-    assert "/sign-in?..." in told["message"]
-    assert "abc" not in told["message"]
+    reported = json.loads(proxy_lines.reported(FAULT))
+    assert (reported["level"], reported["logger"]) == ("ERROR", "nginx")
+    assert "/sign-in?..." in reported["message"]
+    assert "abc" not in reported["message"]
 
 
 @pytest.mark.parametrize("form", ["json", "line"])
@@ -54,8 +54,8 @@ def test_nginx_writes_requests_and_faults_without_queries(form: str, tmp_path: P
                 break
             except OSError:
                 time.sleep(0.1)
-        told = {"json": '"status": 503', "line": '/sign-in?..." 503'}[form]
-        while told not in (tmp_path / "log").read_text():  # requests are written once a second
+        reported = {"json": '"status": 503', "line": '/sign-in?..." 503'}[form]
+        while reported not in (tmp_path / "log").read_text():  # requests are written once a second
             assert time.monotonic() < end_s
             time.sleep(0.05)
         process.terminate()

@@ -34,12 +34,12 @@ def judged(flight: RouteFlight, route: RouteFile) -> np.ndarray:
 def test_square_of_two_kilometres_is_kept(weather: Weather, most_rms_m: float, most_m: float, seed: int) -> None:
     route = square(500.0)
     flight = fly_route(route, AIRFRAMES["iris"], weather=weather, seed=seed)
-    told, found = flight.as_json(), judged(flight, route)
-    assert told["verdict"] == {"result": "pass", "reasons": []}
+    reported, found = flight.as_json(), judged(flight, route)
+    assert reported["verdict"] == {"result": "pass", "reasons": []}
     assert np.sqrt(np.mean(found**2)) < most_rms_m
     assert found.max() < most_m
-    assert told["cross_track_rms_m"] == pytest.approx(np.sqrt(np.mean(found**2)), abs=0.03)
-    assert told["cross_track_max_m"] == pytest.approx(found.max(), abs=0.1)  # the judge sees some seconds before and after
+    assert reported["cross_track_rms_m"] == pytest.approx(np.sqrt(np.mean(found**2)), abs=0.03)
+    assert reported["cross_track_max_m"] == pytest.approx(found.max(), abs=0.1)  # the judge sees some seconds before and after
     touched_down_at = flight.flown.touched_down_at
     assert touched_down_at is not None
     assert off_m(touched_down_at, HOME) < 1.0
@@ -50,10 +50,10 @@ def test_square_of_two_kilometres_is_kept(weather: Weather, most_rms_m: float, m
 def test_gusts_from_any_side_are_borne(seed: int) -> None:
     route = square(150.0)
     flight = fly_route(route, AIRFRAMES["iris"], weather=wind(8.0, 18.0 * seed, gusts_mps=2.0), seed=seed)
-    told, touched_down_at = flight.as_json(), flight.flown.touched_down_at
-    assert told["verdict"]["result"] == "pass"
-    assert told["cross_track_rms_m"] < 1.0
-    assert told["cross_track_max_m"] < 3.0
+    reported, touched_down_at = flight.as_json(), flight.flown.touched_down_at
+    assert reported["verdict"]["result"] == "pass"
+    assert reported["cross_track_rms_m"] < 1.0
+    assert reported["cross_track_max_m"] < 3.0
     assert touched_down_at is not None
     assert off_m(touched_down_at, HOME) < 1.0
 
@@ -71,9 +71,9 @@ def test_coarser_steps_fly_the_same_square(physics_hz: int) -> None:
 def test_larger_airframe_flies_fast_in_a_gale() -> None:
     route = RouteFile((HOME, place(150.0, 0.0), place(150.0, 150.0)), (30.0, 40.0, 30.0), 10.0)
     flight = fly_route(route, AIRFRAMES["inspector"], weather=wind(12.0, 300.0, gusts_mps=2.0), seed=5)
-    told = flight.as_json()
-    assert told["verdict"]["result"] == "pass"
-    assert told["cross_track_max_m"] < 1.0
+    reported = flight.as_json()
+    assert reported["verdict"]["result"] == "pass"
+    assert reported["cross_track_max_m"] < 1.0
 
 
 def test_same_seed_is_the_same_flight_to_the_last_bit_and_another_seed_is_not() -> None:

@@ -30,7 +30,7 @@ LISTED = re.compile(r"^(\d+) (\d+) (\S+) (\S+) (\S+) p1=(\S+) p2=(\S+) p3=(\S+) 
 
 
 class MavProxy:
-    """`say` gives it a line; `told` waits until it has printed something since the last line."""
+    """`type_line` gives it a line; `reported` waits until it has printed something since the last line."""
 
     def __init__(self, process: "subprocess.Popen[str]") -> None:
         self._process = process
@@ -44,7 +44,7 @@ class MavProxy:
         for line in self._process.stdout:
             self._printed.append(line)
 
-    def say(self, line: str) -> None:
+    def type_line(self, line: str) -> None:
         assert self._process.stdin is not None
         self._mark = len(self._printed)
         self._process.stdin.write(line + "\n")
@@ -53,7 +53,7 @@ class MavProxy:
     def asked(self, line: str, words: str) -> None:
         """Says the line again until it tells so: what the vehicle has told it may not have read yet."""
         for _ in range(10):
-            self.say(line)
+            self.type_line(line)
             with suppress(AssertionError):
                 wait_for(lambda: words in self.since, words, patience_s=2.0)
                 return
@@ -63,7 +63,7 @@ class MavProxy:
     def since(self) -> str:
         return "".join(self._printed[self._mark :])
 
-    def told(self, words: str) -> str:
+    def reported(self, words: str) -> str:
         try:
             wait_for(lambda: words in self.since, words)
         except AssertionError:
@@ -123,46 +123,46 @@ def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
     mission = [HOME, *MISSION] if flavour is Flavour.ARDUPILOT else list(MISSION)
     with flying([launch], speed=SPEED) as fleet, mavproxy(port, tmp_path) as station:
         uav, pilot, held = fleet.uavs[0].uav, fleet.uavs[0].endpoint.pilot, fleet.uavs[0].endpoint.missions.held
-        station.told("Saved")  # its parameters: it has asked for all it wants
+        station.reported("Saved")  # its parameters: it has asked for all it wants
 
         for kind, name, items in (
             (MissionType.MISSION, "wp", mission),
             (MissionType.FENCE, "fence", FENCE),
             (MissionType.RALLY, "rally", RALLY),
         ):
-            station.say(f"{name} load {written(tmp_path / f'{name}.txt', items)}")
-            station.told(f"Got MISSION_ACK: TYPE_{kind.name}: ACCEPTED")
-            station.say(f"{name} list")
-            assert listed(station.told("Saved")) == list(items)
+            station.type_line(f"{name} load {written(tmp_path / f'{name}.txt', items)}")
+            station.reported(f"Got MISSION_ACK: TYPE_{kind.name}: ACCEPTED")
+            station.type_line(f"{name} list")
+            assert listed(station.reported("Saved")) == list(items)
             assert len(held[kind]) == len(items) - (kind is MissionType.MISSION and flavour is Flavour.ARDUPILOT)
-        station.say("fence clear")
-        station.told("Got MISSION_ACK: TYPE_FENCE: ACCEPTED")
+        station.type_line("fence clear")
+        station.reported("Got MISSION_ACK: TYPE_FENCE: ACCEPTED")
         assert held[MissionType.FENCE] == ()
 
         name, value, metres = {Flavour.PX4: ("RTL_RETURN_ALT", "33", 33.0), Flavour.ARDUPILOT: ("RTL_ALT", "3300", 33.0)}[flavour]
-        station.say(f"param set {name} {value}")
+        station.type_line(f"param set {name} {value}")
         wait_for(lambda: uav.settings.return_height_m == metres, "the parameter")
         station.asked(f"param show {name}", f"{float(value):.1f}")
 
-        station.say(f"param set {WAITS[flavour]} 120")  # simulated seconds on the ground: the machine may be busy
+        station.type_line(f"param set {WAITS[flavour]} 120")  # simulated seconds on the ground: the machine may be busy
         wait_for(lambda: uav.settings.disarm_on_ground_s == 120.0, "the parameter")
         if flavour is Flavour.ARDUPILOT:
-            station.say("mode GUIDED")
-            station.told("DO_SET_MODE: ACCEPTED")
+            station.type_line("mode GUIDED")
+            station.reported("DO_SET_MODE: ACCEPTED")
             assert pilot.custom_mode == GUIDED
-            station.say("arm throttle")
-            station.told("ARMED")
-            station.say("takeoff 12")
+            station.type_line("arm throttle")
+            station.reported("ARMED")
+            station.type_line("takeoff 12")
             wait_for(lambda: uav.state.altitude_relative_m > 11.5, "the height of take-off")
-            station.say("mode AUTO")
+            station.type_line("mode AUTO")
         else:  # its own `mode` does not know how PX4 numbers modes
-            station.say("arm throttle")
-            station.told("ARMED")
-            station.say("long MISSION_START 0 0 0 0 0 0 0")
+            station.type_line("arm throttle")
+            station.reported("ARMED")
+            station.type_line("long MISSION_START 0 0 0 0 0 0 0")
             wait_for(lambda: uav.state.altitude_relative_m > 5.0, "the take-off")
-            station.say("long DO_SET_MODE 209 4 3 0 0 0 0")
-            station.told("DO_SET_MODE: ACCEPTED")
+            station.type_line("long DO_SET_MODE 209 4 3 0 0 0 0")
+            station.reported("DO_SET_MODE: ACCEPTED")
             assert uav.state.mode is Mode.HOLD
-            station.say("long DO_SET_MODE 209 4 4 0 0 0 0")
-        station.told("DISARMED")
+            station.type_line("long DO_SET_MODE 209 4 4 0 0 0 0")
+        station.reported("DISARMED")
         assert not uav.state.is_in_air and uav.state.position.lat == pytest.approx(55.4004, abs=2e-5)

@@ -91,11 +91,11 @@ def figures(items: list[RawItem]) -> list[tuple[float, ...]]:
 def test_it_is_found_healthy_and_where_it_stands(station):
     wait_for(station.telemetry.health_all_ok, "health")
     assert station.telemetry.health().is_armable
-    position = wait_for(lambda: (told := station.telemetry.position()) and math.isfinite(told.latitude_deg) and told)
+    position = wait_for(lambda: (reported := station.telemetry.position()) and math.isfinite(reported.latitude_deg) and reported)
     assert (position.latitude_deg, position.longitude_deg) == pytest.approx((AT.lat, AT.lon), abs=1e-6)
     assert position.absolute_altitude_m == pytest.approx(GROUND_M, abs=0.3)
     assert station.telemetry.home().absolute_altitude_m == pytest.approx(GROUND_M, abs=0.01)
-    battery = wait_for(lambda: (told := station.telemetry.battery()) and told.voltage_v > 0 and told)
+    battery = wait_for(lambda: (reported := station.telemetry.battery()) and reported.voltage_v > 0 and reported)
     assert 10 < battery.voltage_v < 13 and battery.remaining_percent == pytest.approx(100, abs=1)
     wait_for(lambda: station.telemetry.gps_info().num_satellites >= 6, "satellites")
     assert not station.telemetry.armed() and not station.telemetry.in_air()
@@ -184,7 +184,7 @@ def test_a_mission_is_flown_paused_resumed_and_ends_at_home(station):
     station.raw.start_mission()
     wait_for(lambda: station.telemetry.position().latitude_deg > AT.lat + 178 * 90e-7, "the last place")
     assert station.telemetry.position().latitude_deg > paused_deg
-    wait_for(lambda: (told := station.raw.mission_progress()) and told.current == told.total, "the end of the mission")
+    wait_for(lambda: (reported := station.raw.mission_progress()) and reported.current == reported.total, "the end of the mission")
     station.action.return_to_launch()
     wait_for(lambda: station.mode() == RETURN, "the return")
     landed(station)

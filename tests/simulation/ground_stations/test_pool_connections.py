@@ -19,14 +19,14 @@ HOST = "127.0.0.1"
 SPEED = 10.0
 
 
-def told(port: int) -> dict[str, str]:
+def reported(port: int) -> dict[str, str]:
     return {example["program"]: example["command"] for example in connection_json(HOST, port)["examples"]}
 
 
 @pytest.mark.long
 def test_mavproxy_connects_and_arms(tmp_path):
     port = free_port()
-    program, *words = shlex.split(told(port)["MAVProxy"])
+    program, *words = shlex.split(reported(port)["MAVProxy"])
     own = [f"--logfile={tmp_path / 'log.tlog'}", f"--state-basedir={tmp_path}"]
     command = [sys.executable, str(Path(sys.executable).with_name(program)), *words, *own]
     pipe, environment = subprocess.PIPE, os.environ | {"HOME": str(tmp_path)}
@@ -38,7 +38,7 @@ def test_mavproxy_connects_and_arms(tmp_path):
     ):
         assert process.stdin is not None
         try:
-            wait_for(lambda: fleet.uavs[0].heard > 3, "MAVProxy", patience_s=60.0)
+            wait_for(lambda: fleet.uavs[0].received_count > 3, "MAVProxy", patience_s=60.0)
             process.stdin.write("arm throttle\n")
             wait_for(lambda: fleet.uavs[0].uav.state.is_armed, "arming", patience_s=60.0)
         finally:
@@ -51,7 +51,7 @@ def test_mavsdk_connects_and_takes_off():
     with flying([Launch(1, AT, listens_at=(HOST, port))], speed=SPEED) as fleet:
         mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
         try:
-            mavsdk.add_any_connection(told(port)["MAVSDK"])
+            mavsdk.add_any_connection(reported(port)["MAVSDK"])
             system = mavsdk.first_autopilot(60.0)
             assert system is not None
             action, telemetry = Action(system), Telemetry(system)

@@ -26,7 +26,7 @@ def test_simulated_time_falls_to_real_time_while_a_station_is_silent_and_goes_on
             for _ in range(4):
                 station.sendto(heartbeat(), uav)
                 time.sleep(0.2)
-            wait_for(lambda: fleet.uavs[0].heard >= 4)
+            wait_for(lambda: fleet.uavs[0].received_count >= 4)
             time.sleep(2.5)
             began_s, began = time.monotonic(), fleet.uavs[0].uav.now_s
             time.sleep(SILENT_S)

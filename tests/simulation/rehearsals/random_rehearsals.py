@@ -92,7 +92,7 @@ def rehearse_mission(mission: Mission, seed: int, sky: str = "calm") -> Rehearse
     ground = planning_read().ground()
     (conditions,) = skies(mission, sky)
     maker = vehicle_maker(plan.stand_ins, conditions, heights_at(ground.edition))
-    flown = fly(plan.routes, maker, turnaround_s=TURNAROUND_S, seed=seed, on_progress=_unheard)
+    flown = fly(plan.routes, maker, turnaround_s=TURNAROUND_S, seed=seed, on_progress=_unacknowledged)
     verdict = judge(flown, surroundings_of(plan, ground), limits_of_settings())
     return Rehearsed(
         verdict,
@@ -101,5 +101,5 @@ def rehearse_mission(mission: Mission, seed: int, sky: str = "calm") -> Rehearse
     )
 
 
-def _unheard(share: float) -> None:
+def _unacknowledged(share: float) -> None:
     """Progress that nobody follows."""

@@ -317,8 +317,8 @@ def test_a_route_that_begins_in_the_air_says_that_its_rehearsal_took_off(mission
     plan = plan_to_fly(loaded(mission))
     begun = replace(plan, routes=tuple(replace(route, route=replace(route.route, begun_by=0)) for route in plan.routes))
     with mock.patch("simulation.services.rehearsals.plan_to_fly", return_value=begun):
-        told = rehearsed(mission, person, "calm")
-    assert told.level == "warnings"
-    (finding,) = told.runs.get().verdict["findings"]
+        reported = rehearsed(mission, person, "calm")
+    assert reported.level == "warnings"
+    (finding,) = reported.runs.get().verdict["findings"]
     assert (finding["level"], finding["code"]) == ("warnings", "begun-in-air")
     assert "took off by itself first" in reason_of(finding, {})

@@ -23,7 +23,7 @@ def over_the_wire(message: Any, system: int, component: int) -> Any:
 
 @dataclass
 class Talk:
-    """`say` returns what comes back to everybody and to this station, `pass_by` what the vehicle says by itself meanwhile."""
+    """`send` returns what comes back to everybody and to this station, `pass_by` what the vehicle says by itself meanwhile."""
 
     flavour: Flavour = Flavour.PX4
     uav: Any = field(default_factory=KinematicUav)
@@ -34,7 +34,7 @@ class Talk:
         self.endpoint = Endpoint(self.uav, flavour=self.flavour, system=SYSTEM, unix_at_zero_s=UNIX_S)
         self.endpoint.tick(self.now_s)
 
-    def say(self, *messages: Any, station: Station | None = None) -> list[Any]:
+    def send(self, *messages: Any, station: Station | None = None) -> list[Any]:
         who = station or self.station
         answers: list[Outgoing] = []
         for message in messages:
@@ -45,17 +45,17 @@ class Talk:
     def pass_by(self, seconds: float, wall_s: float | None = None) -> list[Any]:
         """So many simulated seconds, in as many of the wall unless told otherwise."""
         steps = round(seconds / STEP_S)
-        told = []
+        reported = []
         for _ in range(steps):
             self.uav.step()
             self.now_s += (seconds if wall_s is None else wall_s) / steps
-            told += [over_the_wire(one.message, SYSTEM, 1) for one in self.endpoint.tick(self.now_s)]
-        return told
+            reported += [over_the_wire(one.message, SYSTEM, 1) for one in self.endpoint.tick(self.now_s)]
+        return reported
 
     def command(self, number: int, *values: float) -> int:
         """The result of a COMMAND_LONG; what is not given is NaN, as MAVSDK leaves it."""
         parameters = [*values, *[float("nan")] * (7 - len(values))]
-        answers = self.say(mavlink.MAVLink_command_long_message(*TO, number, 0, *parameters))
+        answers = self.send(mavlink.MAVLink_command_long_message(*TO, number, 0, *parameters))
         (result,) = [answer.result for answer in answers if answer.get_type() == "COMMAND_ACK"]
         return int(result)
 

@@ -61,7 +61,7 @@ def figures(items: tuple[MissionItem, ...]) -> str:
     )
 
 
-def told(vehicle: OnChannel) -> VehicleState:
+def reported(vehicle: OnChannel) -> VehicleState:
     state = VehicleState(SYSTEM)
     for message in vehicle.tick(0.0):
         state.receive(over_the_wire(message, SYSTEM, 1), 0.0)
@@ -73,7 +73,7 @@ def told(vehicle: OnChannel) -> VehicleState:
 @pytest.mark.parametrize("flavour", Flavour)
 def test_a_load_arrives_over_a_bad_link_and_is_read_back(flavour, loss, seed):
     vehicle = OnChannel(flavour)
-    keeper = MissionSync(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, reported(vehicle), ENDS, TransferRules(), known=[OLD])
     outcome = Channel(keeper, vehicle, Link(loss, duplicates=0.1, reordered=0.1), seed).run(until_s=7_200.0)
     assert (outcome.state, outcome.sha256, outcome.mixes) == (SyncState.READY, NEW.content_sha256, ()), outcome
     for kind in MissionType:
@@ -84,7 +84,7 @@ def test_a_load_arrives_over_a_bad_link_and_is_read_back(flavour, loss, seed):
 @pytest.mark.parametrize("flavour", Flavour)
 def test_a_station_that_dies_leaves_each_list_old_or_new(flavour, dies_after):
     vehicle = OnChannel(flavour)
-    keeper = MissionSync(NEW, told(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, reported(vehicle), ENDS, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, Link(0.1), seed=dies_after, ground_dies_after=dies_after)
     channel.run(until_s=7_200.0)
     channel.let_pass(30.0)

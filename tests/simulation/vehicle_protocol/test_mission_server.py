@@ -31,11 +31,11 @@ def item(number, one, kind=MISSION):
 def upload(talk, items, kind=MISSION):
     """What the last message draws."""
     sent = [HOME_ITEM, *items] if talk.flavour is Flavour.ARDUPILOT and kind is MISSION else items
-    answers = talk.say(count(len(sent), kind))
+    answers = talk.send(count(len(sent), kind))
     for number, one in enumerate(sent):
         request = only(answers, REQUEST[talk.flavour])
         assert (request.seq, request.mission_type) == (number, kind)
-        answers = talk.say(item(number, one, kind))
+        answers = talk.send(item(number, one, kind))
     return answers
 
 
@@ -44,9 +44,9 @@ def accepted(answers):
 
 
 def download(talk, kind=MISSION):
-    listed = only(talk.say(mavlink.MAVLink_mission_request_list_message(*TO, kind)), "MISSION_COUNT")
+    listed = only(talk.send(mavlink.MAVLink_mission_request_list_message(*TO, kind)), "MISSION_COUNT")
     requests = (mavlink.MAVLink_mission_request_int_message(*TO, number, kind) for number in range(listed.count))
-    return [only(talk.say(request), "MISSION_ITEM_INT") for request in requests]
+    return [only(talk.send(request), "MISSION_ITEM_INT") for request in requests]
 
 
 def as_read(message):
@@ -87,9 +87,9 @@ def test_fence_and_rally_points_are_kept_beside_the_mission(talk, kind, items):
         (one.command, one.parameters[0], one.longitude_e7, one.latitude_e7) for one in items
     ]
     assert len(talk.uav.items) == 4
-    talk.say(mavlink.MAVLink_mission_clear_all_message(*TO, kind))
+    talk.send(mavlink.MAVLink_mission_clear_all_message(*TO, kind))
     assert download(talk, kind) == [] and len(talk.uav.items) == 4
-    talk.say(mavlink.MAVLink_mission_clear_all_message(*TO, 255))
+    talk.send(mavlink.MAVLink_mission_clear_all_message(*TO, 255))
     assert talk.uav.items == ()
 
 
@@ -109,7 +109,7 @@ def test_a_bad_item_is_named_and_the_list_before_stays_whole(bad, result):
     talk = Talk()
     upload(talk, mission(5))
     before = talk.uav.items
-    answers = talk.say(count(3), item(0, waypoint(1)), item(1, bad), item(2, waypoint(2)))
+    answers = talk.send(count(3), item(0, waypoint(1)), item(1, bad), item(2, waypoint(2)))
     assert result in [answer.type for answer in answers if answer.get_type() == "MISSION_ACK"]
     assert talk.uav.items is before
     assert accepted(upload(talk, mission(6))), "nothing is left open"
@@ -133,79 +133,79 @@ def test_a_fence_whose_polygon_is_cut_is_refused():
 
 def test_out_of_turn_draws_the_request_for_the_right_one_and_again_is_taken_for_heard():
     talk = Talk()
-    talk.say(count(4), item(0, waypoint(0)))
-    assert only(talk.say(item(2, waypoint(2))), "MISSION_REQUEST_INT").seq == 1
-    assert talk.say(item(0, waypoint(0))) == []
-    assert only(talk.say(item(1, waypoint(1))), "MISSION_REQUEST_INT").seq == 2
+    talk.send(count(4), item(0, waypoint(0)))
+    assert only(talk.send(item(2, waypoint(2))), "MISSION_REQUEST_INT").seq == 1
+    assert talk.send(item(0, waypoint(0))) == []
+    assert only(talk.send(item(1, waypoint(1))), "MISSION_REQUEST_INT").seq == 2
 
 
 def test_the_last_item_sent_again_is_accepted_again(talk):
     upload(talk, mission(3))
     last = len(talk.uav.items) - 1 + talk.flavour.first_item
-    assert accepted(talk.say(item(last, waypoint(2))))
-    assert only(talk.say(item(0, waypoint(2))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
+    assert accepted(talk.send(item(last, waypoint(2))))
+    assert only(talk.send(item(0, waypoint(2))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
     assert len(talk.uav.items) == 3
 
 
 def test_a_silent_station_is_asked_again_and_then_told_that_it_is_over():
     talk = Talk()
     upload(talk, mission(3))
-    talk.say(count(5), item(0, waypoint(0)))
-    told = [
+    talk.send(count(5), item(0, waypoint(0)))
+    reported = [
         one
         for one in talk.pass_by(REQUEST_INTERVAL_S * (MAX_REQUESTS + 4))
         if one.get_type().startswith("MISSION_") and hasattr(one, "mission_type")
     ]
-    assert kinds(told) == ["MISSION_REQUEST_INT"] * (MAX_REQUESTS - 1) + ["MISSION_ACK"]
-    assert {one.seq for one in told[:-1]} == {1} and told[-1].type == mavlink.MAV_MISSION_OPERATION_CANCELLED
+    assert kinds(reported) == ["MISSION_REQUEST_INT"] * (MAX_REQUESTS - 1) + ["MISSION_ACK"]
+    assert {one.seq for one in reported[:-1]} == {1} and reported[-1].type == mavlink.MAV_MISSION_OPERATION_CANCELLED
     assert len(talk.uav.items) == 3
-    assert only(talk.say(item(1, waypoint(1))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
+    assert only(talk.send(item(1, waypoint(1))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
 
 
 def test_tries_go_by_the_wall_and_not_by_simulated_time():
     talk = Talk()
-    talk.say(count(5))
-    told = talk.pass_by(20.0, wall_s=2 * REQUEST_INTERVAL_S + 0.01)
-    assert kinds(told).count("MISSION_REQUEST_INT") == 2
+    talk.send(count(5))
+    reported = talk.pass_by(20.0, wall_s=2 * REQUEST_INTERVAL_S + 0.01)
+    assert kinds(reported).count("MISSION_REQUEST_INT") == 2
 
 
 def test_an_announcement_again_begins_anew_and_another_station_is_denied(talk):
     upload(talk, mission(3))
-    talk.say(count(5), item(0, waypoint(0)))
-    assert only(talk.say(count(4)), REQUEST[talk.flavour]).seq == 0
+    talk.send(count(5), item(0, waypoint(0)))
+    assert only(talk.send(count(4)), REQUEST[talk.flavour]).seq == 0
     for message in (count(2), item(0, waypoint(9))):
-        assert only(talk.say(message, station=OTHER), "MISSION_ACK").type == mavlink.MAV_MISSION_DENIED
-    assert only(talk.say(mavlink.MAVLink_mission_clear_all_message(*TO, 0), station=OTHER), "MISSION_ACK").type != 0
+        assert only(talk.send(message, station=OTHER), "MISSION_ACK").type == mavlink.MAV_MISSION_DENIED
+    assert only(talk.send(mavlink.MAVLink_mission_clear_all_message(*TO, 0), station=OTHER), "MISSION_ACK").type != 0
     assert len(talk.uav.items) == 3
 
 
 def test_two_stations_with_the_same_ids_are_told_apart_by_their_links():
     talk = Talk()
-    talk.say(count(2))
+    talk.send(count(2))
     twin = Station(talk.station.system, talk.station.component, 99)
-    assert only(talk.say(item(0, waypoint(0)), station=twin), "MISSION_ACK").type == mavlink.MAV_MISSION_DENIED
+    assert only(talk.send(item(0, waypoint(0)), station=twin), "MISSION_ACK").type == mavlink.MAV_MISSION_DENIED
 
 
 def test_a_station_cancels(talk):
     upload(talk, mission(3))
-    talk.say(count(5), mavlink.MAVLink_mission_ack_message(*TO, mavlink.MAV_MISSION_OPERATION_CANCELLED, MISSION))
+    talk.send(count(5), mavlink.MAVLink_mission_ack_message(*TO, mavlink.MAV_MISSION_OPERATION_CANCELLED, MISSION))
     assert not talk.endpoint.missions.is_uploading and len(talk.uav.items) == 3
 
 
 def test_too_long_a_list_is_refused_at_once_and_none_clears(talk):
     upload(talk, mission(3))
-    assert only(talk.say(count(2_001)), "MISSION_ACK").type == mavlink.MAV_MISSION_NO_SPACE
+    assert only(talk.send(count(2_001)), "MISSION_ACK").type == mavlink.MAV_MISSION_NO_SPACE
     assert len(talk.uav.items) == 3
-    assert accepted(talk.say(count(0)))
+    assert accepted(talk.send(count(0)))
     assert talk.uav.items == ()
 
 
 def test_items_of_32_bit_degrees_are_taken_to_a_metre():
     talk, one = Talk(), waypoint(3)
-    talk.say(count(1))
+    talk.send(count(1))
     degrees = (one.latitude_e7 / 1e7, one.longitude_e7 / 1e7)
     old = mavlink.MAVLink_mission_item_message(*TO, 0, 3, 16, 0, 1, *one.parameters, *degrees, one.altitude_m, MISSION)
-    assert accepted(talk.say(old))
+    assert accepted(talk.send(old))
     (held,) = talk.uav.items
     assert (held.longitude_e7, held.latitude_e7) == (pytest.approx(one.longitude_e7, abs=20), pytest.approx(one.latitude_e7, abs=20))
 
@@ -213,8 +213,8 @@ def test_items_of_32_bit_degrees_are_taken_to_a_metre():
 def test_an_old_request_draws_an_old_item_and_one_beyond_the_end_a_no():
     talk = Talk()
     upload(talk, mission(3))
-    assert kinds(talk.say(mavlink.MAVLink_mission_request_message(*TO, 1, MISSION))) == ["MISSION_ITEM"]
-    answer = only(talk.say(mavlink.MAVLink_mission_request_int_message(*TO, 3, MISSION)), "MISSION_ACK")
+    assert kinds(talk.send(mavlink.MAVLink_mission_request_message(*TO, 1, MISSION))) == ["MISSION_ITEM"]
+    answer = only(talk.send(mavlink.MAVLink_mission_request_int_message(*TO, 3, MISSION)), "MISSION_ACK")
     assert answer.type == mavlink.MAV_MISSION_INVALID_SEQUENCE
 
 
@@ -225,7 +225,7 @@ def test_lists_that_there_are_not_and_changes_in_part_are_unsupported(talk):
         mavlink.MAVLink_mission_clear_all_message(*TO, 9),
         mavlink.MAVLink_mission_write_partial_list_message(*TO, 0, 1, MISSION),
     ):
-        assert only(talk.say(message), "MISSION_ACK").type == mavlink.MAV_MISSION_UNSUPPORTED
+        assert only(talk.send(message), "MISSION_ACK").type == mavlink.MAV_MISSION_UNSUPPORTED
 
 
 def test_ardupilot_is_not_cleared_while_it_flies_its_list():
@@ -233,5 +233,5 @@ def test_ardupilot_is_not_cleared_while_it_flies_its_list():
     upload(talk, mission(4))
     talk.uav.arm()
     assert talk.command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, 3.0) == mavlink.MAV_RESULT_ACCEPTED
-    assert not accepted(talk.say(mavlink.MAVLink_mission_clear_all_message(*TO, MISSION)))
+    assert not accepted(talk.send(mavlink.MAVLink_mission_clear_all_message(*TO, MISSION)))
     assert len(talk.uav.items) == 4

@@ -57,7 +57,7 @@ def test_qgroundcontrol_tells_px4_to_take_off_before_it_arms_it():
 def test_a_take_off_without_a_height_or_below_the_ground_goes_to_the_parameters_height():
     for height_m in (NAN, HOME_AMSL_M - 10):
         talk = flown()
-        talk.say(mavlink.MAVLink_param_set_message(*TO, b"MIS_TAKEOFF_ALT", 7.0, 9))
+        talk.send(mavlink.MAVLink_param_set_message(*TO, b"MIS_TAKEOFF_ALT", 7.0, 9))
         assert talk.command(TAKE_OFF, NAN, NAN, NAN, NAN, NAN, NAN, height_m) == ACCEPTED
         talk.command(ARM, 1)
         talk.pass_by(15.0)
@@ -67,9 +67,9 @@ def test_a_take_off_without_a_height_or_below_the_ground_goes_to_the_parameters_
 def test_each_change_of_mode_and_arming_is_in_a_heartbeat_at_once():
     talk = flown()
     talk.pass_by(0.2)
-    answers = talk.say(mavlink.MAVLink_command_long_message(*TO, ARM, 0, 1, 0, 0, 0, 0, 0, 0))
+    answers = talk.send(mavlink.MAVLink_command_long_message(*TO, ARM, 0, 1, 0, 0, 0, 0, 0, 0))
     assert only(answers, "HEARTBEAT").base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
-    answers = talk.say(mavlink.MAVLink_set_mode_message(7, 1, 4 << 16 | 2 << 24))
+    answers = talk.send(mavlink.MAVLink_set_mode_message(7, 1, 4 << 16 | 2 << 24))
     assert only(answers, "HEARTBEAT").custom_mode == 4 << 16 | 2 << 24 and only(answers, "COMMAND_ACK").result == ACCEPTED
 
 
@@ -85,7 +85,7 @@ def test_it_goes_to_a_place_and_to_a_height(flavour):
     place = LonLat(HOME.lon, HOME.lat + 30 / 111_195)
     there = (round(place.lat * 1e7), round(place.lon * 1e7))
     message = mavlink.MAVLink_command_int_message(*TO, 0, GO_TO, 0, 0, -1, 1, 0, NAN, *there, HOME_AMSL_M + 26.0)
-    assert only(talk.say(message), "COMMAND_ACK").result == ACCEPTED
+    assert only(talk.send(message), "COMMAND_ACK").result == ACCEPTED
     assert talk.uav.state.mode is Mode.GO_TO
     assert talk.mode == (PX4_HOLD if flavour is Flavour.PX4 else (GUIDED, 0))
     talk.pass_by(20.0)
@@ -112,9 +112,9 @@ def test_a_height_above_ground_is_not_taken_for_one_above_the_sea(flavour):
     here = (round(HOME.lat * 1e7), round(HOME.lon * 1e7))
     for number in (GO_TO, TAKE_OFF):
         message = mavlink.MAVLink_command_int_message(*TO, 11, number, 0, 0, -1, 1, 0, NAN, *here, 60.0)
-        assert only(talk.say(message), "COMMAND_ACK").result == DENIED
+        assert only(talk.send(message), "COMMAND_ACK").result == DENIED
     relative = mavlink.MAVLink_command_int_message(*TO, 3, GO_TO, 0, 0, -1, 1, 0, NAN, *here, 24.0)
-    assert only(talk.say(relative), "COMMAND_ACK").result == ACCEPTED
+    assert only(talk.send(relative), "COMMAND_ACK").result == ACCEPTED
     talk.pass_by(8.0)
     assert talk.uav.state.altitude_relative_m == pytest.approx(24.0, abs=0.5)
 
@@ -174,7 +174,7 @@ def test_no_mode_that_needs_a_pilot_is_flown(flavour):
 @pytest.mark.parametrize("flavour", Flavour)
 def test_disarming_in_the_air_takes_the_word_for_it(flavour):
     talk = in_the_air(flavour)
-    answers = talk.say(mavlink.MAVLink_command_long_message(*TO, ARM, 0, 0, NAN, NAN, NAN, NAN, NAN, NAN))
+    answers = talk.send(mavlink.MAVLink_command_long_message(*TO, ARM, 0, 0, NAN, NAN, NAN, NAN, NAN, NAN))
     assert only(answers, "COMMAND_ACK").result == FAILED and "STATUSTEXT" in kinds(answers)
     assert talk.uav.state.is_armed
     assert talk.command(ARM, 0, 21_196) == ACCEPTED
@@ -188,7 +188,7 @@ def test_the_current_item_is_set_as_the_flavour_counts(flavour):
     first = flavour.first_item
     assert talk.command(224, 2 + first) == ACCEPTED and talk.uav.state.current_item == 2
     assert talk.command(224, 5 + first) == DENIED and talk.command(224, -1) == DENIED and talk.command(224) == DENIED
-    assert only(talk.say(mavlink.MAVLink_mission_set_current_message(*TO, 3 + first)), "MISSION_CURRENT").seq == 3 + first
+    assert only(talk.send(mavlink.MAVLink_mission_set_current_message(*TO, 3 + first)), "MISSION_CURRENT").seq == 3 + first
     assert talk.command(224, 0) == ACCEPTED and talk.uav.state.current_item == 0
 
 
@@ -204,7 +204,7 @@ def test_unknown_commands_and_messages_are_refused_at_once_and_known_ones_sent()
     assert talk.command(31_010) == UNSUPPORTED
     for number in (397, 395, 435, 300, 99_999, NAN):
         assert talk.command(512, number) == UNSUPPORTED
-    answers = talk.say(mavlink.MAVLink_command_long_message(*TO, 512, 0, 148, 0, 0, 0, 0, 0, 0))
+    answers = talk.send(mavlink.MAVLink_command_long_message(*TO, 512, 0, 148, 0, 0, 0, 0, 0, 0))
     version = only(answers, "AUTOPILOT_VERSION")
     assert version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT and version.flight_sw_version >> 24 >= 1
     assert not version.capabilities & mavlink.MAV_PROTOCOL_CAPABILITY_FTP
@@ -219,13 +219,13 @@ def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(flavour):
     talk = in_the_air(flavour)
     there = (round((HOME.lat + 60 / 111_195) * 1e7), round(HOME.lon * 1e7))
     point = mavlink.MAVLink_mission_item_int_message(*TO, 0, 3, 5100, 0, 1, 0, 0, 0, 0, *there, 50.0, 2)
-    assert only(talk.say(mavlink.MAVLink_mission_count_message(*TO, 1, 2), point)[-1:], "MISSION_ACK").type == 0
+    assert only(talk.send(mavlink.MAVLink_mission_count_message(*TO, 1, 2), point)[-1:], "MISSION_ACK").type == 0
     place = (round((HOME.lat + 45 / 111_195) * 1e7), round(HOME.lon * 1e7))
-    talk.say(mavlink.MAVLink_command_int_message(*TO, 0, GO_TO, 0, 0, -1, 1, 0, NAN, *place, HOME_AMSL_M + 20.0))
+    talk.send(mavlink.MAVLink_command_int_message(*TO, 0, GO_TO, 0, 0, -1, 1, 0, NAN, *place, HOME_AMSL_M + 20.0))
     talk.pass_by(25.0)
     assert talk.command(20) == ACCEPTED
-    told = [one for one in talk.pass_by(160.0) if one.get_type() == "GLOBAL_POSITION_INT"]
-    assert max(one.relative_alt for one in told) / 1_000 == pytest.approx(80.0 if flavour is Flavour.PX4 else 50.0, abs=1.0)
+    reported = [one for one in talk.pass_by(160.0) if one.get_type() == "GLOBAL_POSITION_INT"]
+    assert max(one.relative_alt for one in reported) / 1_000 == pytest.approx(80.0 if flavour is Flavour.PX4 else 50.0, abs=1.0)
     assert not talk.uav.state.is_in_air
     assert (talk.uav.state.position.lat - HOME.lat) * 111_195 == pytest.approx(60.0, abs=1.0)
 
@@ -237,7 +237,7 @@ def test_ardupilot_flies_no_list_from_the_ground_that_does_not_begin_with_a_take
     talk.endpoint.missions.put(MissionType.MISSION, items)
     talk.command(SET_MODE, 1, GUIDED)
     assert talk.command(ARM, 1) == ACCEPTED
-    answers = talk.say(mavlink.MAVLink_command_long_message(*TO, SET_MODE, 0, 1, AUTO, NAN, NAN, NAN, NAN, NAN))
+    answers = talk.send(mavlink.MAVLink_command_long_message(*TO, SET_MODE, 0, 1, AUTO, NAN, NAN, NAN, NAN, NAN))
     assert only(answers, "COMMAND_ACK").result == FAILED and "Missing Takeoff" in only(answers, "STATUSTEXT").text
     assert talk.command(300) == FAILED
     assert talk.uav.state.mode is Mode.HOLD
@@ -255,13 +255,13 @@ def test_the_fence_is_kept_by_holding_or_as_it_is_set():
     corner = mavlink.MAVLink_mission_item_int_message(
         *TO, 0, 0, 5003, 0, 1, 30.0, 0, 0, 0, round(HOME.lat * 1e7), round(HOME.lon * 1e7), 0, 1
     )
-    talk.say(mavlink.MAVLink_mission_count_message(*TO, 1, 1), corner)
+    talk.send(mavlink.MAVLink_mission_count_message(*TO, 1, 1), corner)
     assert talk.command(GO_TO, -1, 1, NAN, NAN, HOME.lat + 200 / 111_195, HOME.lon, NAN) == ACCEPTED
-    told = talk.pass_by(20.0)
-    assert any("Fence" in one.text for one in told if one.get_type() == "STATUSTEXT")
+    reported = talk.pass_by(20.0)
+    assert any("Fence" in one.text for one in reported if one.get_type() == "STATUSTEXT")
     assert talk.uav.state.mode is Mode.HOLD
     assert 30 < (talk.uav.state.position.lat - HOME.lat) * 111_195 < 50
-    health = [one for one in told if one.get_type() == "SYS_STATUS"][-1].onboard_control_sensors_health
+    health = [one for one in reported if one.get_type() == "SYS_STATUS"][-1].onboard_control_sensors_health
     assert not health & mavlink.MAV_SYS_STATUS_GEOFENCE
     assert talk.command(20) == ACCEPTED, "it may go home"
     talk.pass_by(10.0)

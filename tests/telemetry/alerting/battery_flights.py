@@ -85,7 +85,7 @@ def battery_flight(seed: int) -> Flown:
     for second, moment in enumerate(moments):
         now_s = START_S + moment.state.seconds
         if second % interval_s == 0:
-            newest = Report(now_s, now_s, Measurement(**_told(flight, moment, truth, random)))
+            newest = Report(now_s, now_s, Measurement(**_reported(flight, moment, truth, random)))
         seen = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=newest)
         watch.look(watch.situation(now_s, seen, model=flight.model), (battery.DETECTOR,))
     return Flown(moments, watch, flight.model.reserve_percent)
@@ -128,7 +128,7 @@ def _home_percent(flight: TrueFlight, truth: Battery, state: State, left: float)
     return left - (flies_s * consumption.percent_per_s(air_mps) + sinks_s * consumption.percent_per_s(0.0)) * truth.factor * ages
 
 
-def _told(flight: TrueFlight, moment: Moment, truth: Battery, random: np.random.Generator) -> dict:
+def _reported(flight: TrueFlight, moment: Moment, truth: Battery, random: np.random.Generator) -> dict:
     state = moment.state
     position = flight.position(state.east + random.normal(0, 1.2), state.north + random.normal(0, 1.2))
     return {

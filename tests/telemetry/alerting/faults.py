@@ -23,17 +23,17 @@ ANY_LEVEL = (WARNING, CRITICAL)
 class Fault:
     """`begins_s` is the second of the flight at which it begins; `due` names code, level and the second from which it counts.
 
-    `truth` changes where the UAV is, `told` what its report says (None: there is none), `around` what else is known.
+    `truth` changes where the UAV is, `reported` what its report says (None: there is none), `around` what else is known.
     """
 
     name: str
     begins_s: int
     due: list[tuple[str, tuple[str, ...], float]]
     truth: Callable[[State], State] = lambda state: state
-    told: Callable[[State, dict[str, Any]], dict[str, Any] | None] = lambda _state, values: values
+    reported: Callable[[State, dict[str, Any]], dict[str, Any] | None] = lambda _state, values: values
     around: Callable[[State, WatchedUav], dict[str, Any]] = lambda _state, _uav: {}
     lasts_s: int = 90
-    is_heard: Callable[[State], bool] = lambda _state: True
+    is_received: Callable[[State], bool] = lambda _state: True
     extra: dict[str, Any] = field(default_factory=dict)
 
 
@@ -51,8 +51,8 @@ def _across(flight: TrueFlight, second: int) -> tuple[float, float]:
 def link_lost(flight: TrueFlight, random: np.random.Generator) -> Fault:
     begins = _begin(flight, random)
     return Fault(
-        "link lost", begins, [("link-lost", ANY_LEVEL, begins)], told=lambda state, values: None if state.seconds >= begins else values,
-        is_heard=lambda state: state.seconds < begins,
+        "link lost", begins, [("link-lost", ANY_LEVEL, begins)], reported=lambda state, values: None if state.seconds >= begins else values,
+        is_received=lambda state: state.seconds < begins,
     )  # fmt: skip
 
 
@@ -140,10 +140,10 @@ def battery_drops(flight: TrueFlight, random: np.random.Generator) -> Fault:
     energy = flight.model.energy
     lacks = max(0.0, 100.0 - 1.02 * energy.until_percent[-1] - 17.0) + float(random.uniform(5, 25))
 
-    def told(state: State, values: dict[str, Any]) -> dict[str, Any]:
+    def reported(state: State, values: dict[str, Any]) -> dict[str, Any]:
         return values if state.seconds < begins else values | {"battery_percent": max(values["battery_percent"] - lacks, 0.0)}
 
-    return Fault("battery drops", begins, [("battery-short", ANY_LEVEL, begins)], told=told, lasts_s=40)
+    return Fault("battery drops", begins, [("battery-short", ANY_LEVEL, begins)], reported=reported, lasts_s=40)
 
 
 def battery_drains(flight: TrueFlight, random: np.random.Generator) -> Fault:
@@ -155,12 +155,12 @@ def battery_drains(flight: TrueFlight, random: np.random.Generator) -> Fault:
     lacks = 100.0 - used - factor * rest < 17.0 - 3.0
     due = next((state.seconds for state in flight.states if state.used_percent >= used + 9.0), None)
 
-    def told(state: State, values: dict[str, Any]) -> dict[str, Any]:
+    def reported(state: State, values: dict[str, Any]) -> dict[str, Any]:
         more = max(0.0, (factor - 1.0) * (state.used_percent - used))
         return values | {"battery_percent": max(round(values["battery_percent"] - more), 0.0)}
 
     is_due = lacks and due is not None
-    return Fault("battery drains", begins, [("battery-short", ANY_LEVEL, due)] if is_due else [], told=told, lasts_s=220)
+    return Fault("battery drains", begins, [("battery-short", ANY_LEVEL, due)] if is_due else [], reported=reported, lasts_s=220)
 
 
 def no_progress(flight: TrueFlight, random: np.random.Generator) -> Fault:
@@ -193,7 +193,7 @@ def mode_changed(flight: TrueFlight, random: np.random.Generator) -> Fault:
     order = Order("start", START_S + 5) if random.random() < 0.5 else None
     return Fault(
         f"mode {mode}", begins, [("mode-changed", levels, begins)], truth=truth, around=lambda _state, _uav: {"order": order},
-        told=lambda state, values: values | ({"mode": mode} if state.seconds >= begins else {}), lasts_s=60,
+        reported=lambda state, values: values | ({"mode": mode} if state.seconds >= begins else {}), lasts_s=60,
     )  # fmt: skip
 
 
@@ -206,7 +206,8 @@ def gps_trouble(flight: TrueFlight, random: np.random.Generator) -> Fault:
     }[kind]  # fmt: skip
     levels = (CRITICAL,) if kind.startswith("no") else (WARNING,)
     return Fault(
-        f"gps {kind}", begins, [("gps", levels, begins)], told=lambda state, values: values | (changed if state.seconds >= begins else {}),
+        f"gps {kind}", begins, [("gps", levels, begins)],
+        reported=lambda state, values: values | (changed if state.seconds >= begins else {}),
     )  # fmt: skip
 
 
@@ -233,10 +234,10 @@ def other_mission(flight: TrueFlight, random: np.random.Generator) -> Fault:
             return {"held": approved}
         return {"held": [Held(), replace(approved, is_approved=False), replace(approved, doubt="mission-changed"), approved][kind]}
 
-    def told(state: State, values: dict[str, Any]) -> dict[str, Any]:
+    def reported(state: State, values: dict[str, Any]) -> dict[str, Any]:
         return values | {"mission_item": 14 if kind == 3 and state.seconds >= begins else 3}
 
-    return Fault("other mission", begins, [("other-mission", (CRITICAL,), begins)], around=around, told=told)
+    return Fault("other mission", begins, [("other-mission", (CRITICAL,), begins)], around=around, reported=reported)
 
 
 def wind(flight: TrueFlight, random: np.random.Generator) -> Fault:
@@ -245,13 +246,13 @@ def wind(flight: TrueFlight, random: np.random.Generator) -> Fault:
     wind_mps = limit_mps + float(random.uniform(2.5, 6.0))
     turn = float(random.uniform(0, 6.3))
 
-    def told(state: State, values: dict[str, Any]) -> dict[str, Any]:
+    def reported(state: State, values: dict[str, Any]) -> dict[str, Any]:
         if state.seconds < begins:
             return values
         gust = wind_mps + float(random.normal(0, 0.3))
         return values | {"wind_north_mps": gust * math.cos(turn), "wind_east_mps": gust * math.sin(turn)}
 
-    return Fault("wind", begins, [("weather", ANY_LEVEL, begins)], told=told)
+    return Fault("wind", begins, [("weather", ANY_LEVEL, begins)], reported=reported)
 
 
 FAULTS = (

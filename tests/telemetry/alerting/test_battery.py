@@ -25,7 +25,7 @@ def flight() -> TrueFlight:
     return true_flight(SEED, least_leg_m=700.0)
 
 
-def told(flight: TrueFlight, second: int, left_percent: float, mode: str = "MISSION", *, moves: bool = True) -> Measurement:
+def reported(flight: TrueFlight, second: int, left_percent: float, mode: str = "MISSION", *, moves: bool = True) -> Measurement:
     state = flight.states[second]
     position = flight.position(state.east, state.north)
     east, north = flight.conditions.wind_at(60.0)
@@ -58,7 +58,7 @@ def test_the_climb_to_the_height_of_its_return_counts_in_the_way_home(flight):
 
     def home(**link) -> dict:
         watch = Watch()
-        found(flight, told(flight, second, 60.0), watch, link=LinkFacts(**link))
+        found(flight, reported(flight, second, 60.0), watch, link=LinkFacts(**link))
         return watch.memory.battery
 
     level = home()
@@ -79,7 +79,7 @@ def test_a_hold_is_no_drain_of_distance(flight):
         is_held = 5 <= after_s < 125
         now = second + min(after_s, 5) + max(after_s - 125, 0)
         left = left - per_s if is_held else 100.0 - flight.states[now].used_percent - per_s * (120 if after_s >= 125 else 0)
-        measured = told(flight, now, float(round(left)), "LOITER" if is_held else "MISSION", moves=not is_held)
+        measured = reported(flight, now, float(round(left)), "LOITER" if is_held else "MISSION", moves=not is_held)
         finding = found(flight, measured, watch, after_s)
         levels.append(finding.level if finding else None)
     assert CRITICAL not in levels
@@ -89,35 +89,35 @@ def test_a_hold_is_no_drain_of_distance(flight):
 def test_below_its_reserve_is_critical_whatever_it_does(left_percent, level, flight):
     second = flight.cruising(20)[-1]  # near its end
     for mode in ("MISSION", "LOITER", "RTL"):
-        finding = found(flight, told(flight, second, left_percent, mode))
+        finding = found(flight, reported(flight, second, left_percent, mode))
         assert (finding and finding.level) == level
     assert level is None or finding.values == {"uav": "Tern", "percent": f"{left_percent:.0f}", "reserve": "20"}
 
 
 def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(flight):
-    measured = told(flight, far_from_home(flight), 60.0, "LOITER", moves=False)
+    measured = reported(flight, far_from_home(flight), 60.0, "LOITER", moves=False)
     watch = Watch()
     assert found(flight, measured, watch) is None
     home_percent = watch.memory.battery["home_percent"]
     assert home_percent > 5.0
-    finding = found(flight, told(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
+    finding = found(flight, reported(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
     assert (finding.level, finding.message, proposed(finding)) == (WARNING, battery.TURN_BACK, [("return", 7)])
 
 
 def home_percent_of(flight: TrueFlight, second: int) -> float:
     watch = Watch()
-    found(flight, told(flight, second, 60.0, "LOITER", moves=False), watch)
+    found(flight, reported(flight, second, 60.0, "LOITER", moves=False), watch)
     return watch.memory.battery["home_percent"]
 
 
 def advised(finding: Finding) -> str | None:
-    said = finding.details.get(ADVICE)
-    return said and said["message"] % said["values"]
+    status_texts = finding.details.get(ADVICE)
+    return status_texts and status_texts["message"] % status_texts["values"]
 
 
 def test_below_its_reserve_a_return_that_reaches_home_is_proposed_with_what_is_left_there(flight):
     second = next(second for second in flight.cruising(20) if 8.0 < home_percent_of(flight, second) < 13.5)
-    finding = found(flight, told(flight, second, 19.0, "LOITER", moves=False))
+    finding = found(flight, reported(flight, second, 19.0, "LOITER", moves=False))
     lands = round(19.0 - home_percent_of(flight, second))
     assert proposed(finding) == [("return", 7)]
     assert advised(finding) == f"A return lands with about {lands} % of the battery, below the reserve of 20 %."
@@ -125,7 +125,7 @@ def test_below_its_reserve_a_return_that_reaches_home_is_proposed_with_what_is_l
 
 def test_a_return_that_leaves_hardly_any_stands_beside_a_landing_here(flight):
     second = far_from_home(flight)
-    finding = found(flight, told(flight, second, home_percent_of(flight, second) + 2.4, "LOITER", moves=False))
+    finding = found(flight, reported(flight, second, home_percent_of(flight, second) + 2.4, "LOITER", moves=False))
     assert (finding.level, proposed(finding)) == (CRITICAL, [("return", 7), ("land", 7)])
     assert advised(finding) == "A return lands with about 2 % of the battery only: land here if the ground allows it."
 
@@ -133,7 +133,7 @@ def test_a_return_that_leaves_hardly_any_stands_beside_a_landing_here(flight):
 def test_where_home_is_out_of_reach_the_alert_says_why_return_is_missing(flight):
     second = far_from_home(flight)
     home = home_percent_of(flight, second)
-    finding = found(flight, told(flight, second, home - 1.0, "LOITER", moves=False))
+    finding = found(flight, reported(flight, second, home - 1.0, "LOITER", moves=False))
     assert proposed(finding) == [("land", 7)]
     assert advised(finding) == f"Return is not offered: it takes about {home:.0f} % of the battery, and {home - 1.0:.0f} % is left."
 
@@ -143,7 +143,7 @@ def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed(flight
     state, home = flight.states[second], home_percent_of(flight, second)
     near = flight.position(state.east + 60.0, state.north)
     with_landing = TrueFlight(**{**vars(flight), "model": _with_rally(flight, near)})
-    finding = found(with_landing, told(flight, second, home + 2.0, "LOITER", moves=False))
+    finding = found(with_landing, reported(flight, second, home + 2.0, "LOITER", moves=False))
     assert proposed(finding) == [("return", 7)]
     assert advised(finding).startswith("A return leads to the landing place 60 m away and lands there with about")
 
@@ -157,25 +157,25 @@ def _with_rally(flight: TrueFlight, point: LonLat):
 def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone_and_the_alert_says_since_when(mode, kind, flight):
     watch, second = Watch(), flight.cruising(20)[-1]
     link = LinkFacts(battery_state="critical")
-    found(flight, told(flight, second, 15.0), watch, link=link)
-    finding = found(flight, told(flight, second, 15.0, mode), watch, 3.0, link=link)
+    found(flight, reported(flight, second, 15.0), watch, link=link)
+    finding = found(flight, reported(flight, second, 15.0, mode), watch, 3.0, link=link)
     assert (finding.level, proposed(finding)) == (CRITICAL, [])
     since = datetime.fromtimestamp(START_S + 3.0, UTC).isoformat()
     assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": False}
-    finding = found(flight, told(flight, second, 15.0, mode), watch, 9.0, link=link, order=Order("return", START_S))
+    finding = found(flight, reported(flight, second, 15.0, mode), watch, 9.0, link=link, order=Order("return", START_S))
     assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": True}
 
 
 def test_a_return_that_is_too_short_of_battery_to_reach_home_can_be_cut_by_a_landing(flight):
     second = far_from_home(flight)
     home = home_percent_of(flight, second)
-    returning = told(flight, second, home - 2.0, "RTL")
+    returning = reported(flight, second, home - 2.0, "RTL")
     finding = found(flight, returning)
     assert (proposed(finding), finding.details[OWN_ACT]["since"]) == ([("land", 7)], None)
     assert advised(finding).startswith("Its battery does not last for the return")
-    finding = found(flight, told(flight, second, home + 2.0, "RTL"))
+    finding = found(flight, reported(flight, second, home + 2.0, "RTL"))
     assert (proposed(finding), advised(finding)) == ([("land", 7)], "It lands with about 2 % of the battery (reserve 20 %).")
-    assert proposed(found(flight, told(flight, second, home + 12.0, "RTL"))) == [], "it gets home"
+    assert proposed(found(flight, reported(flight, second, home + 12.0, "RTL"))) == [], "it gets home"
 
 
 def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():
@@ -186,13 +186,13 @@ def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_rep
 
 def test_pages_are_told_minutes_to_the_reserve_and_home(flight):
     watch = Watch()
-    found(flight, told(flight, far_from_home(flight), 60.0), watch)
+    found(flight, reported(flight, far_from_home(flight), 60.0), watch)
     assert watch.memory.battery["level"] == "" and watch.memory.battery["reserve_in_s"] > 60 < watch.memory.battery["home_s"]
 
 
 def test_a_hold_lasts_as_long_as_more_is_left_than_the_way_home_and_the_reserve_take(flight):
     watch, second = Watch(), far_from_home(flight)
-    found(flight, told(flight, second, 80.0), watch)
+    found(flight, reported(flight, second, 80.0), watch)
     battery_now = watch.memory.battery
     spare = 80.0 - battery_now["reserve_percent"] - battery_now["home_percent"]
     wind_mps = math.hypot(*flight.conditions.wind_at(60.0))
@@ -204,7 +204,7 @@ def test_pages_are_told_what_is_left_at_landing_by_the_way_that_it_flies_now(fli
     lands = {}
     for mode in ("AUTO", "RTL", "LOITER"):
         watch = Watch()
-        found(flight, told(flight, second, left, mode), watch)
+        found(flight, reported(flight, second, left, mode), watch)
         lands[mode] = watch.memory.battery["lands_percent"]
     rest = flight.model.energy.rest_at(watch.memory.place, flight.model.energy.used_at(watch.memory.place, 1.0))
     assert lands["AUTO"] == pytest.approx(left - rest, abs=1.0)
@@ -217,7 +217,7 @@ def test_a_hold_that_drains_more_than_planned_lasts_less(flight):
     per_s, left = flight.model.consumption.percent_per_s(math.hypot(*flight.conditions.wind_at(60.0))), 95.0
     planned_s = None
     for after_s in range(0, 120):
-        found(flight, told(flight, second, left, "LOITER", moves=False), watch, float(after_s))
+        found(flight, reported(flight, second, left, "LOITER", moves=False), watch, float(after_s))
         planned_s = planned_s or watch.memory.battery["hold_s"]
         left -= 2.0 * per_s
     as_planned_s = planned_s - 120.0 * 2.0
@@ -226,5 +226,5 @@ def test_a_hold_that_drains_more_than_planned_lasts_less(flight):
 
 def test_one_with_nothing_to_spare_cannot_hold(flight):
     watch = Watch()
-    found(flight, told(flight, far_from_home(flight), 21.0), watch)
+    found(flight, reported(flight, far_from_home(flight), 21.0), watch)
     assert watch.memory.battery["hold_s"] == 0

@@ -14,7 +14,7 @@ from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
 from tests.telemetry.alerting.faults import LIMITS
-from tests.telemetry.alerting.test_meetings import at, flown_with_another, told, ways
+from tests.telemetry.alerting.test_meetings import at, flown_with_another, reported, ways
 from tests.telemetry.alerting.truth import MISSION, START_S
 from tests.telemetry.alerting.watch import Watch
 
@@ -32,13 +32,13 @@ def finding_of(first, second):
 @pytest.mark.parametrize("apart_m", [3.0, 7.0, 12.0])
 def test_the_distance_of_now_is_reported_and_its_uncertainty_beside_it(apart_m):
     """Bounds of 4 m each: the distance at the worst of both would be 0 m."""
-    found = finding_of(told(at(0.0, 0.0), LEVEL_M), told(at(apart_m, 0.0), LEVEL_M + 2.0))
+    found = finding_of(reported(at(0.0, 0.0), LEVEL_M), reported(at(apart_m, 0.0), LEVEL_M + 2.0))
     assert (found.values["metres"], found.values["height"], found.values["bound"]) == (apart_m, 2, 6)
     assert found.details["distance_m"] == pytest.approx(apart_m, abs=0.2)
 
 
 def test_one_that_comes_up_from_behind_is_to_be_held():
-    found = finding_of(told(at(0.0, 0.0), LEVEL_M, north_mps=9.0), told(at(0.0, 60.0), LEVEL_M, north_mps=3.0))
+    found = finding_of(reported(at(0.0, 0.0), LEVEL_M, north_mps=9.0), reported(at(0.0, 60.0), LEVEL_M, north_mps=3.0))
     assert (found.values["hold"], found.values["why"], found.values["speed"]) == ("UAV 1", Why.BEHIND, 6)
     assert acts_of(CODE, 1, found.details) == [{"kind": "hold", "uav": 1}]
 
@@ -66,8 +66,8 @@ def test_the_rules_of_the_air_name_which_to_hold(first, second, is_first, why):
 
 def early_by_s(seed: int) -> float:
     watches, meets = flown_with_another(seed, passes_m=float(np.random.default_rng(seed).uniform(-6, 6)))
-    told_s = watches[0].reached(CODE, (WARNING, CRITICAL))
-    return -math.inf if told_s is None else START_S + meets - told_s
+    reported_s = watches[0].reached(CODE, (WARNING, CRITICAL))
+    return -math.inf if reported_s is None else START_S + meets - reported_s
 
 
 def test_crossing_pairs_are_alerted_at_least_12_s_before():
@@ -90,7 +90,7 @@ def test_the_reported_distance_is_the_true_one_within_2_m():
             seen = []
             for number, (tracker, move, phase_s) in enumerate(zip(trackers, moves, phases_s, strict=True)):
                 moment = second - phase_s
-                measured = told(at(*move(moment)), LEVEL_M)
+                measured = reported(at(*move(moment)), LEVEL_M)
                 velocity = (np.array(move(moment + 0.5)) - np.array(move(moment - 0.5))).tolist()
                 measured = replace(measured, velocity_east_mps=velocity[0], velocity_north_mps=velocity[1])
                 report = Report(START_S + moment, START_S + moment + 0.05, measured)

@@ -39,7 +39,7 @@ def flown_fast(flight: TrueFlight, seed: int, *, clock_rate: float) -> Watch:
 def flown(flight: TrueFlight, seed: int, fault: Fault | None, *, interval_s: int) -> Watch:
     watch, instruments = Watch(), Instruments(flight, seed)
     uav = WatchedUav(1, 1, "Tern", MISSION, MISSION)
-    heard_s, newest = None, None
+    last_message_s, newest = None, None
     begins, ends = (0, len(flight.states)) if fault is None else (max(fault.begins_s - BEFORE_S, 0), fault.begins_s + fault.lasts_s)
     for second in range(begins, ends):
         state = flight.states[min(second, len(flight.states) - 1)]
@@ -47,12 +47,12 @@ def flown(flight: TrueFlight, seed: int, fault: Fault | None, *, interval_s: int
         now_s = START_S + state.seconds
         values = instruments.values(state)
         if (second + seed) % interval_s == 0:
-            told = fault.told(state, values) if fault else values
-            if told is not None:
-                newest = Report(now_s, now_s, Measurement(**told))
-        heard_s = now_s if fault is None or fault.is_heard(state) else heard_s
+            reported = fault.reported(state, values) if fault else values
+            if reported is not None:
+                newest = Report(now_s, now_s, Measurement(**reported))
+        last_message_s = now_s if fault is None or fault.is_received(state) else last_message_s
         seen = WatchedUav(uav.uav_id, 1, uav.name, MISSION, MISSION, newest=newest)
-        around = {"model": flight.model, "link": LinkFacts(heard_s if interval_s < 5 else None)}
+        around = {"model": flight.model, "link": LinkFacts(last_message_s if interval_s < 5 else None)}
         watch.look(watch.situation(now_s, seen, **{**around, **(fault.around(state, seen) if fault else {})}))
     return watch
 

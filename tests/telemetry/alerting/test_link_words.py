@@ -20,7 +20,7 @@ def model() -> FlightModel:
     return true_flight(3, least_leg_m=700.0).model
 
 
-def said(model: FlightModel | None, mode: str, planned: LostLinkPlan | None = None, autopilot: str = "") -> str:
+def status_texts(model: FlightModel | None, mode: str, planned: LostLinkPlan | None = None, autopilot: str = "") -> str:
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, Measurement(mode=mode, is_in_air=True)))
     model = model and replace(model, lost_link=planned)
     (finding,) = link.detect(Watch().situation(START_S + 40.0, uav, model=model, link=LinkFacts(autopilot=autopilot)))
@@ -37,16 +37,16 @@ def said(model: FlightModel | None, mode: str, planned: LostLinkPlan | None = No
     ],
 )
 def test_a_silent_uav_in_its_mission_does_what_was_planned_unless_its_failsafe_does_otherwise(planned, words, model):
-    assert said(model, "AUTO", planned) == f"{words} A failsafe set on the UAV comes first."
-    assert "FS_GCS_ENABLE" in said(model, "AUTO", planned, "ardupilot")
-    assert "NAV_DLL_ACT" in said(model, "AUTO", planned, "px4")
+    assert status_texts(model, "AUTO", planned) == f"{words} A failsafe set on the UAV comes first."
+    assert "FS_GCS_ENABLE" in status_texts(model, "AUTO", planned, "ardupilot")
+    assert "NAV_DLL_ACT" in status_texts(model, "AUTO", planned, "px4")
 
 
 @pytest.mark.parametrize(("mode", "begin"), [("RTL", "It was returning"), ("LAND", "It was landing"), ("LOITER", "It was holding")])
 def test_a_silent_uav_that_did_not_fly_its_mission_goes_on_as_it_was_last_heard(mode, begin, model):
-    assert said(model, mode, LostLinkPlan(LostLink.GO_ON)).startswith(begin)
+    assert status_texts(model, mode, LostLinkPlan(LostLink.GO_ON)).startswith(begin)
 
 
 def test_what_is_not_known_of_a_silent_uav_is_said_so(model):
-    assert said(model, "AUTO") == said(None, "AUTO") == "What it does by itself is not known."
-    assert said(model, "STABILIZE") == "It was under other control when last heard (mode STABILIZE): ask the pilot."
+    assert status_texts(model, "AUTO") == status_texts(None, "AUTO") == "What it does by itself is not known."
+    assert status_texts(model, "STABILIZE") == "It was under other control when last heard (mode STABILIZE): ask the pilot."

@@ -45,10 +45,10 @@ def flown_with_another(seed: int, *, passes_m: float, above_m: float = 0.0) -> t
     return watches, meets
 
 
-def look(flight: TrueFlight, watches: list[Watch], told: list[dict], second: int) -> None:
+def look(flight: TrueFlight, watches: list[Watch], reported: list[dict], second: int) -> None:
     now_s = START_S + second
     situations = []
-    for number, (watch, values) in enumerate(zip(watches, told, strict=True)):
+    for number, (watch, values) in enumerate(zip(watches, reported, strict=True)):
         report = Report(now_s, now_s, Measurement(**values))
         uav = WatchedUav(number, 1, "Tern" if number == 0 else "Kite", MISSION, MISSION, newest=report, estimate=estimate(report))
         situations.append(watch.situation(now_s, uav, **({"model": flight.model} if number == 0 else {})))
@@ -60,10 +60,11 @@ def look(flight: TrueFlight, watches: list[Watch], told: list[dict], second: int
 
 
 def estimate(report: Report) -> Estimate:
-    told = report.measurement
+    reported = report.measurement
     return Estimate(
-        at_s=report.measured_s, position=LonLat(told.longitude_deg, told.latitude_deg), altitude_relative_m=told.altitude_relative_m,
-        altitude_amsl_m=told.altitude_amsl_m, speed_mps=10.0, heading_deg=0.0, bound=Ellipse(4.0, 3.0, 0.0), bound_height_m=2.0,
+        at_s=report.measured_s, position=LonLat(reported.longitude_deg, reported.latitude_deg),
+        altitude_relative_m=reported.altitude_relative_m, altitude_amsl_m=reported.altitude_amsl_m,
+        speed_mps=10.0, heading_deg=0.0, bound=Ellipse(4.0, 3.0, 0.0), bound_height_m=2.0,
         bound_speed_mps=1.0, report_s=report.measured_s, is_measured=True, is_lost=False,
     )  # fmt: skip
 
@@ -130,9 +131,9 @@ def test_pairs_far_away_from_each_other_are_found_among_many():
 def test_in_a_crowd_each_is_told_of_those_that_come_nearest():
     crowd = [a_uav(key, lat_m=float(key)) for key in range(40)]
     met = meetings(crowd, 20.0)
-    told = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
-    assert len(told) <= 40 * MAX_MET
-    assert {(key, key + 1) for key in range(39)} <= told
+    reported = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
+    assert len(reported) <= 40 * MAX_MET
+    assert {(key, key + 1) for key in range(39)} <= reported
 
 
 LEG_M, CRUISE_MPS, LEVEL_M = 300.0, 10.0, 30.0
@@ -156,7 +157,7 @@ def at(east: float, north: float) -> LonLat:
     return LonLat(*FRAME.to_degrees(np.array([[east, north]]))[0].tolist())
 
 
-def told(position: LonLat, height_m: float, *, north_mps: float = 0.0, climb_mps: float = 0.0) -> Measurement:
+def reported(position: LonLat, height_m: float, *, north_mps: float = 0.0, climb_mps: float = 0.0) -> Measurement:
     return Measurement(
         longitude_deg=position.lon, latitude_deg=position.lat, altitude_relative_m=height_m, altitude_amsl_m=height_m + 100.0,
         velocity_north_mps=north_mps, velocity_east_mps=0.0, velocity_down_mps=-climb_mps, is_armed=True, is_in_air=True, mode="AUTO",
@@ -173,32 +174,32 @@ def ways(key: int, measured: Measurement, line: RouteLine | None) -> list[Moving
 
 def test_one_that_takes_off_is_seen_to_meet_another_on_its_leg_before_it_moves_there():
     """It stands 20 m high at the begin of its leg, at rest but for its climb; after 4 s of that and 8 s of its leg it is at the other."""
-    climbing = ways(1, told(at(0.0, 0.0), 20.0, climb_mps=2.5), a_line())
-    crossing = ways(2, told(at(80.0, -60.0), LEVEL_M, north_mps=5.0), None)
+    climbing = ways(1, reported(at(0.0, 0.0), 20.0, climb_mps=2.5), a_line())
+    crossing = ways(2, reported(at(80.0, -60.0), LEVEL_M, north_mps=5.0), None)
     nearest = meetings([*climbing, *crossing], LIMITS.converging_s)[1][0]
     assert (nearest.in_s, nearest.lateral_m, nearest.height_m) == (pytest.approx(12.0, abs=1.0), pytest.approx(0.0, abs=3.0), 0.0)
 
 
 def test_one_that_takes_off_under_the_others_way_is_seen_to_come_up_to_it():
-    climbing = ways(1, told(at(0.0, 0.0), 2.0, climb_mps=2.5), a_line())
-    above = ways(2, told(at(-110.0, 0.0), LEVEL_M), a_line(from_east_m=-200.0, arrives_s=0.0))
+    climbing = ways(1, reported(at(0.0, 0.0), 2.0, climb_mps=2.5), a_line())
+    above = ways(2, reported(at(-110.0, 0.0), LEVEL_M), a_line(from_east_m=-200.0, arrives_s=0.0))
     nearest = meetings([*climbing, *above], LIMITS.converging_s)[1][0]
     assert (nearest.in_s, nearest.lateral_m) == (pytest.approx(11.0, abs=2.0), pytest.approx(0.0, abs=3.0)) and nearest.height_m < 8.0
 
 
 def test_simulated_twins_are_in_no_other_uavs_way():
-    near = [ways(1, told(at(0.0, 0.0), 29.0), None)[0], ways(2, told(at(5.0, 3.0), 29.0), None)[0]]
+    near = [ways(1, reported(at(0.0, 0.0), 29.0), None)[0], ways(2, reported(at(5.0, 3.0), 29.0), None)[0]]
     assert meetings(near, LIMITS.converging_s)[1]
     assert not meetings([near[0], replace(near[1], is_twin=True)], LIMITS.converging_s)[1]
     assert meetings([replace(one, is_twin=True) for one in near], LIMITS.converging_s)[1]
 
 
 def test_a_pair_with_several_ways_has_one_alert():
-    both = [*ways(1, told(at(0.0, 0.0), 29.0, climb_mps=1.0), a_line()), *ways(2, told(at(5.0, 3.0), 29.0), a_line())]
+    both = [*ways(1, reported(at(0.0, 0.0), 29.0, climb_mps=1.0), a_line()), *ways(2, reported(at(5.0, 3.0), 29.0), a_line())]
     assert len(both) == 4
     met = tuple(meetings(both, LIMITS.converging_s)[1])
     assert len(met) > 1
-    report = Report(START_S, START_S, told(at(0.0, 0.0), 29.0))
+    report = Report(START_S, START_S, reported(at(0.0, 0.0), 29.0))
     uav = WatchedUav(1, 1, "UAV 1", MISSION, MISSION, newest=report)
     found = DETECTOR.detect(Watch().situation(START_S, uav, meetings=met))
     assert [(finding.subject, finding.level) for finding in found] == [("2", CRITICAL)]
@@ -206,5 +207,5 @@ def test_a_pair_with_several_ways_has_one_alert():
 
 def test_one_that_lands_is_not_taken_to_stay_at_the_end_of_its_route():
     line = a_line()
-    landing = ways(1, told(at(LEG_M, 0.0), 6.0, climb_mps=-1.0), line)
+    landing = ways(1, reported(at(LEG_M, 0.0), 6.0, climb_mps=-1.0), line)
     assert len(landing) == 1

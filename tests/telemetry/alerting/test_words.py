@@ -12,10 +12,10 @@ def test_every_template_is_named_for_the_catalogues():
         *(detector.detect.__globals__ for detector in DETECTORS),
         *(vars(module) for module in (alerts, command_alerts, mission_alerts, uav_outbox)),
     ]
-    said = {value for names in modules for value in names.values() if isinstance(value, str) and "%(uav)s" in value}
-    assert said == set(TEMPLATES)
+    status_texts = {value for names in modules for value in names.values() if isinstance(value, str) and "%(uav)s" in value}
+    assert status_texts == set(TEMPLATES)
 
 
 def test_every_advice_is_named_for_the_catalogues():
-    said = {value for name, value in vars(advice).items() if name.isupper() and isinstance(value, str) and " " in value}
-    assert said == set(ADVICES)
+    status_texts = {value for name, value in vars(advice).items() if name.isupper() and isinstance(value, str) and " " in value}
+    assert status_texts == set(ADVICES)

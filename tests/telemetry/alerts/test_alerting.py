@@ -38,14 +38,14 @@ def approval(uav) -> Approval:
 def seen(uav: Uav, approval: Approval, reported_s: float = 0.0, **values) -> WatchedUav:
     """Above the take-off of its route."""
     first = approval.document["routes"][0]["route"]["waypoints"][0]
-    told = {"longitude_deg": first["position"][0], "latitude_deg": first["position"][1], "waypoint_sequence": 0}
-    told |= {"altitude_relative_m": first["altitude_relative_m"], "is_armed": True, "is_in_air": True}
-    measurement = Measurement(**{**told, **values})
+    reported = {"longitude_deg": first["position"][0], "latitude_deg": first["position"][1], "waypoint_sequence": 0}
+    reported |= {"altitude_relative_m": first["altitude_relative_m"], "is_armed": True, "is_in_air": True}
+    measurement = Measurement(**{**reported, **values})
     report = Report(at(reported_s).timestamp(), at(reported_s).timestamp(), measurement)
     return WatchedUav(uav.pk, uav.organisation_id, uav.name, approval.mission_id, approval.pk, newest=report)
 
 
-def heard(uav: Uav, seconds: float) -> None:
+def received(uav: Uav, seconds: float) -> None:
     UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": at(seconds)})
 
 
@@ -53,7 +53,7 @@ def watching(uav: Uav, approval: Approval) -> Memories:
     """Reports came each second until second 0."""
     memories = Memories()
     for second in range(-3, 1):
-        heard(uav, second)
+        received(uav, second)
         look(watched=[seen(uav, approval, second)], now=at(second), memories=memories)
     return memories
 
@@ -65,7 +65,7 @@ def test_a_uav_that_is_silent_is_late_then_lost_by_one_alert_and_heard_again_it_
         look(watched=[seen(uav, approval)], now=at(second), memories=memories)
         levels.append(Alert.objects.filter(closed_at=None).values_list("level", flat=True).first())
     assert [levels.index("warning"), levels.index("critical")] == [5, 20]
-    heard(uav, 30)
+    received(uav, 30)
     for second in range(30, 35):
         look(watched=[seen(uav, approval, 30)], now=at(second), memories=memories)
     alert = Alert.objects.get(code="link-lost")
@@ -86,7 +86,7 @@ def test_a_watch_that_takes_over_opens_nothing_twice_and_closes_what_is_over(uav
     look(watched=[seen(uav, approval)], now=at(26), memories=Memories())
     alert = Alert.objects.get()
     assert (alert.closed_at, alert.revision) == (None, 1)
-    heard(uav, 27)
+    received(uav, 27)
     memories = Memories()
     for second in range(27, 31):
         look(watched=[seen(uav, approval, 27)], now=at(second), memories=memories)
@@ -118,11 +118,11 @@ def test_a_mission_that_has_ended_ends_its_alerts(state, uav, approval):
 
 
 def in_flight(second: float, uav: Uav, approval: Approval, memories: Memories, **values) -> None:
-    heard(uav, second)
+    received(uav, second)
     look(watched=[seen(uav, approval, second, **values)], now=at(second), memories=memories)
 
 
-def told_to_land(uav: Uav, approval: Approval, second: float) -> None:
+def ordered_to_land(uav: Uav, approval: Approval, second: float) -> None:
     command = queue_command(uav=uav, kind=CommandKind.LAND, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
     UavCommand.objects.filter(pk=command.pk).update(state="applied", created_at=at(second), finished_at=at(second))
 
@@ -310,7 +310,7 @@ def test_what_can_go_on_or_is_reported_by_others_is_no_end_of_a_flight(why, uav,
         if why == "home early and carried away":
             in_flight(1, uav, approval, memories, **away | {"longitude_deg": place.longitude_deg})
         elif why == "told to land":
-            told_to_land(uav, approval, 0)
+            ordered_to_land(uav, approval, 0)
         else:
             Uav.objects.update(link="http")
         for second in range(2, 8):
@@ -350,7 +350,7 @@ def test_the_worst_that_an_alert_has_said_is_kept(uav, approval):
 def test_a_uav_that_was_told_to_hold_on_the_ground_has_not_crashed(uav, approval):
     place = seen(uav, approval).newest.measurement
     away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}
-    heard(uav, 0)
+    received(uav, 0)
     UavLink.objects.update(is_in_air=False)
     command = queue_command(uav=uav, kind=CommandKind.HOLD, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
     UavCommand.objects.filter(pk=command.pk).update(state="applied", finished_at=at(0))
@@ -362,25 +362,25 @@ def test_a_uav_that_was_told_to_hold_on_the_ground_has_not_crashed(uav, approval
 def test_a_uav_that_was_told_to_land_or_has_not_started_is_not_missed(uav, approval):
     place = seen(uav, approval).newest.measurement
     away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}
-    heard(uav, 0)
+    received(uav, 0)
     UavLink.objects.update(is_in_air=False)
     for second in range(1, 6):
         in_flight(second, uav, approval, Memories(), **away)
     memories = watching(uav, approval)
-    told_to_land(uav, approval, 0)
+    ordered_to_land(uav, approval, 0)
     for second in range(1, 6):
         in_flight(second, uav, approval, memories, **away)
     assert open_ones() == []
 
 
-@pytest.mark.parametrize("tells_speed", [True, False])
-def test_one_that_falls_is_told_though_it_was_told_to_land(tells_speed, uav, approval):
+@pytest.mark.parametrize("reports_speed", [True, False])
+def test_one_that_falls_is_told_though_it_was_told_to_land(reports_speed, uav, approval):
     memories = watching(uav, approval)
     place = seen(uav, approval).newest.measurement
     away = {"longitude_deg": place.longitude_deg + 0.01}
-    told_to_land(uav, approval, 1)
+    ordered_to_land(uav, approval, 1)
     for second, height_m in enumerate([60.0, 45.0, 25.0, 4.0], start=1):
-        in_flight(second, uav, approval, memories, altitude_relative_m=height_m, velocity_down_mps=15.0 if tells_speed else None, **away)
+        in_flight(second, uav, approval, memories, altitude_relative_m=height_m, velocity_down_mps=15.0 if reports_speed else None, **away)
     UavLink.objects.update(is_in_air=False, is_armed=False)
     for second in range(5, 9):
         in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
@@ -396,7 +396,7 @@ def test_one_that_was_down_before_it_was_told_to_land_is_told(uav, approval):
     fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
     UavLink.objects.update(is_in_air=False, is_armed=False)
     in_flight(1, uav, approval, memories, **fallen)
-    told_to_land(uav, approval, 4)
+    ordered_to_land(uav, approval, 4)
     for second in range(5, 10):
         in_flight(second, uav, approval, memories, **fallen)
     assert open_ones() == [("down-off-plan", "critical")]
@@ -406,7 +406,7 @@ def test_a_landing_that_was_asked_for_is_none(uav, approval):
     memories = watching(uav, approval)
     place = seen(uav, approval).newest.measurement
     away = {"longitude_deg": place.longitude_deg + 0.01}
-    told_to_land(uav, approval, 1)
+    ordered_to_land(uav, approval, 1)
     for second, height_m in enumerate([10.0, 6.0, 3.0, 1.0], start=1):
         in_flight(second, uav, approval, memories, altitude_relative_m=height_m, velocity_down_mps=4.0, **away)
     UavLink.objects.update(is_in_air=False, is_armed=False)

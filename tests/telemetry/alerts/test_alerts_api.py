@@ -11,7 +11,7 @@ from missions.models import Uav, UavType
 from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alert_words import TEMPLATES, alert_words
 from telemetry.selectors.alerts import waiting_to_be_seen
-from telemetry.services.alerts.alerts import close_alert, open_alert, tell_of_second_sender
+from telemetry.services.alerts.alerts import close_alert, open_alert, raise_second_sender
 from tests.accounts.users import client_of, somebody
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at
@@ -134,10 +134,10 @@ def _sevens(template: str) -> dict[str, str]:
 
 
 def test_two_senders_are_told_and_over(uav):
-    tell_of_second_sender(uav_id=uav.pk, believed="udp a", other="udp b")
+    raise_second_sender(uav_id=uav.pk, believed="udp a", other="udp b")
     alert = Alert.objects.get()
     assert alert_words(alert.message, alert.values) == "Two senders say that they are Tern: udp a, which is believed, and udp b."
-    tell_of_second_sender(uav_id=uav.pk)
+    raise_second_sender(uav_id=uav.pk)
     assert Alert.objects.get().close_reason == "cleared"
     assert not close_alert(uav=uav, code="second-sender")
 

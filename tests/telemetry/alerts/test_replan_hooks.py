@@ -45,7 +45,7 @@ def lose_the_link(flight: Flight, seconds: int = 31) -> None:
     suggest_for_findings([(flight.mission.pk, flight.uavs[0].pk, finding)])
 
 
-def hear_it_again(flight: Flight, reason: str = CLEARED) -> None:
+def receive_again(flight: Flight, reason: str = CLEARED) -> None:
     withdraw_for_closed([(flight.mission.pk, flight.uavs[0].pk, Closed("link-lost", "", reason))])
 
 
@@ -63,7 +63,7 @@ def test_an_offer_is_withdrawn_when_its_uav_is_heard_again_and_its_plan_is_put_a
     offer = worked_out(ReplanOffer.objects.get(), create_job(organisation=flight.mission.organisation, created_by=None, task=REPLAN,
         parameters={"offer": str(ReplanOffer.objects.get().pk)}, message=""))  # fmt: skip
     assert offer.state == OfferState.OPEN, offer.outcome
-    hear_it_again(flight)
+    receive_again(flight)
     offer.refresh_from_db()
     assert (offer.state, offer.outcome) == (OfferState.OUTDATED, "Its reason has ended: Tern continues its mission.")
     assert Mission.objects.get(pk=offer.continuation_id).deleted_at is not None
@@ -75,7 +75,7 @@ def test_an_offer_is_withdrawn_when_its_uav_is_heard_again_and_its_plan_is_put_a
 @pytest.mark.django_db
 def test_an_offer_that_is_being_worked_out_is_withdrawn_too(flight):
     lose_the_link(flight)
-    hear_it_again(flight)
+    receive_again(flight)
     assert ReplanOffer.objects.get().state == OfferState.OUTDATED
 
 
@@ -84,7 +84,7 @@ def test_an_offer_that_is_being_worked_out_is_withdrawn_too(flight):
 def test_an_offer_stays_while_its_reason_lasts(why, flight):
     lose_the_link(flight)
     if why == "landed":
-        hear_it_again(flight, LANDED)
+        receive_again(flight, LANDED)
     elif why == "another UAV":
         withdraw_for_closed([(flight.mission.pk, flight.uavs[1].pk, Closed("link-lost", "", CLEARED))])
     else:
@@ -92,5 +92,5 @@ def test_an_offer_stays_while_its_reason_lasts(why, flight):
             uav=flight.uavs[0], level=AlertLevel.CRITICAL, code="mode-changed", message="%(uav)s", values={"uav": "Tern"},
             mission=flight.mission, details={"mode": "RTL"},
         )  # fmt: skip
-        hear_it_again(flight)
+        receive_again(flight)
     assert ReplanOffer.objects.get().state == OfferState.COMPUTING

@@ -12,7 +12,7 @@ from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
-from tests.telemetry.estimation.heard import reports_of
+from tests.telemetry.estimation.received import reports_of
 from tests.telemetry.estimation.routes import drawn_route, knowledge_for, route_on_line
 from tests.telemetry.estimation.truth import STEP_S, Truth, fly
 
@@ -70,10 +70,10 @@ def score(truth: Truth, knowledge: Knowledge, reports: Sequence[Report]) -> Scor
 
 def _compare(found: Score, truth: Truth, second: float, estimate: Estimate, newest: Report, now_s: float) -> None:
     real = truth.at(second)
-    told, age_s = newest.measurement, now_s - newest.measured_s
-    lon, lat = told.longitude_deg, told.latitude_deg
+    reported, age_s = newest.measurement, now_s - newest.measured_s
+    lon, lat = reported.longitude_deg, reported.latitude_deg
     here, held = truth.frame.to_metres(np.array([estimate.position, (lon, lat)]))
-    straight = held + age_s * np.array([told.velocity_east_mps, told.velocity_north_mps])
+    straight = held + age_s * np.array([reported.velocity_east_mps, reported.velocity_north_mps])
     off = real[:2] - here
     found.error_m.append(float(np.hypot(*off)))
     found.held_m.append(float(np.hypot(*(real[:2] - held))))

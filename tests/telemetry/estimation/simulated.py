@@ -15,7 +15,7 @@ from pymavlink.dialects.v20 import common as mavlink
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight, FrozenRoute
-from mavlink.autopilot_type import Flavour as HeardFlavour
+from mavlink.autopilot_type import Flavour as ReceivedAutopilotType
 from mavlink.autopilot_type import mode_name
 from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
@@ -28,7 +28,7 @@ from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.mode_numbers import Flavour, usual_number
 from telemetry.estimation.knowledge import Knowledge
 from tests.simulation.rehearsals.planned_flights import planned_timing, usable_wh
-from tests.telemetry.estimation.heard import reports_of
+from tests.telemetry.estimation.received import reports_of
 from tests.telemetry.estimation.routes import drawn_route, route_on_line
 from tests.telemetry.estimation.scoring import BEGUN_S, INTERVALS_S, Score, score
 from tests.telemetry.estimation.truth import MAX_DURATION_S, STEP_S, Events, Truth
@@ -115,12 +115,12 @@ class _Operator:
         self._log = _Log()
         self._starts_s = chance.uniform(2.0, 12.0)
         length_s = planned_timing(case.route, case.airframe.code, case.knowledge.conditions).total_s
-        said = chance.random()
-        self._pauses_s = chance.uniform(0.1, 0.9) * length_s if said < events.paused else math.inf
+        stated = chance.random()
+        self._pauses_s = chance.uniform(0.1, 0.9) * length_s if stated < events.paused else math.inf
         self._goes_on_s = self._pauses_s + chance.uniform(15.0, 90.0)
-        called = events.paused <= said < events.paused + events.returned + events.landed
+        called = events.paused <= stated < events.paused + events.returned + events.landed
         self._called_s = chance.uniform(0.1, 0.9) * length_s if called else math.inf
-        self._is_return = said < events.paused + events.returned
+        self._is_return = stated < events.paused + events.returned
 
     def fly(self) -> Truth:
         uav = self._uav
@@ -179,7 +179,7 @@ class _Operator:
         seconds = np.arange(0.0, columns[-1, 0], STEP_S)
         rows = np.column_stack([seconds, *(np.interp(seconds, columns[:, 0], column) for column in columns[:, 1:].T)])
         place = np.minimum(np.searchsorted(columns[:, 0], seconds), len(columns) - 1).tolist()
-        names = {mode: mode_name(HeardFlavour(self._case.flavour), usual_number(self._case.flavour, mode)) for mode in Mode}
+        names = {mode: mode_name(ReceivedAutopilotType(self._case.flavour), usual_number(self._case.flavour, mode)) for mode in Mode}
         return Truth(
             self._frame,
             rows,

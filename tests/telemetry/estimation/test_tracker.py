@@ -63,9 +63,9 @@ def knowledge() -> Knowledge:
 
 
 def report(
-    second: float, east_m: float, north_m: float, *, late_s: float = 0.1, v: tuple[float, float] = (SPEED_MPS, 0.0), **told: Any
+    second: float, east_m: float, north_m: float, *, late_s: float = 0.1, v: tuple[float, float] = (SPEED_MPS, 0.0), **reported: Any
 ) -> Report:
-    values = {"mode": "MISSION", "is_armed": True, "is_in_air": True, "altitude_relative_m": 60.0, "altitude_amsl_m": 72.0} | told
+    values = {"mode": "MISSION", "is_armed": True, "is_in_air": True, "altitude_relative_m": 60.0, "altitude_amsl_m": 72.0} | reported
     lon, lat = place(east_m, north_m)
     east_mps, north_mps = v
     measurement = Measurement(lon, lat, velocity_east_mps=east_mps, velocity_north_mps=north_mps, velocity_down_mps=0.0, **values)
@@ -227,10 +227,10 @@ def test_without_gps_the_waypoint_that_it_flies_to_tells_where_it_is(knowledge):
     tracker = tracked(knowledge, eastwards(range(45)))
     before = at(tracker, 73.5)
     tracker.take(Report(T0 + 73.0, T0 + 73.1, moving))
-    told = at(tracker, 73.5)
-    assert (before.waypoint_sequence, told.waypoint_sequence) == (2, 3)
-    assert metres(told)[1] > metres(before)[1] + 5.0
-    assert not told.is_measured
+    reported = at(tracker, 73.5)
+    assert (before.waypoint_sequence, reported.waypoint_sequence) == (2, 3)
+    assert metres(reported)[1] > metres(before)[1] + 5.0
+    assert not reported.is_measured
 
 
 def test_without_gps_a_change_of_mode_is_believed(knowledge):
@@ -266,8 +266,8 @@ def test_one_that_lands_sinks_to_the_ground_and_no_deeper(knowledge):
 
 
 def test_one_on_the_ground_stands_there(knowledge):
-    told = report(0.0, 1.0, 2.0, v=(0.0, 0.0), altitude_relative_m=0.0, is_in_air=False, is_armed=False)
-    estimate = at(tracked(knowledge, [told]), 120.0)
+    reported = report(0.0, 1.0, 2.0, v=(0.0, 0.0), altitude_relative_m=0.0, is_in_air=False, is_armed=False)
+    estimate = at(tracked(knowledge, [reported]), 120.0)
     assert metres(estimate) == pytest.approx((1.0, 2.0), abs=0.5)
     assert estimate.bound.along_m < 10.0
 
@@ -341,9 +341,9 @@ def test_what_is_known_can_be_had_again_from_the_newest_reports(knowledge):
 
 
 def test_json_names_what_pages_read(knowledge):
-    told = estimate_to_json(at(tracked(knowledge, eastwards(range(30))), 33.0))
-    assert told["at"] == "2025-11-24T16:00:33.000Z"
-    assert told["report_at"] == "2025-11-24T16:00:29.000Z"
-    assert set(told["bound"]) == {"along_m", "across_m", "bearing_deg", "height_m", "speed_mps"}
-    assert [arrival["target"] for arrival in told["arrivals"]] == [7, 4]
-    assert told["is_measured"] is False
+    reported = estimate_to_json(at(tracked(knowledge, eastwards(range(30))), 33.0))
+    assert reported["at"] == "2025-11-24T16:00:33.000Z"
+    assert reported["report_at"] == "2025-11-24T16:00:29.000Z"
+    assert set(reported["bound"]) == {"along_m", "across_m", "bearing_deg", "height_m", "speed_mps"}
+    assert [arrival["target"] for arrival in reported["arrivals"]] == [7, 4]
+    assert reported["is_measured"] is False

@@ -130,12 +130,12 @@ class _Pilot:
         self.places = frame.to_metres(np.array([waypoint.position for waypoint in flight.waypoints]))
         self.ground_s = chance.uniform(0.0, 12.0)
         length_s = self._about_s()
-        said = chance.random()
-        self.pause_at = chance.uniform(0.1, 0.9) * length_s if said < events.paused else math.inf
+        stated = chance.random()
+        self.pause_at = chance.uniform(0.1, 0.9) * length_s if stated < events.paused else math.inf
         self.pause_s = chance.uniform(15.0, 90.0)
-        called = events.paused <= said < events.paused + events.returned + events.landed
+        called = events.paused <= stated < events.paused + events.returned + events.landed
         self.call_at = chance.uniform(0.1, 0.9) * length_s if called else math.inf
-        self.is_return = said < events.paused + events.returned
+        self.is_return = stated < events.paused + events.returned
         self.rows: list[tuple[float, ...]] = []
         self.modes: list[str] = []
         self.air: list[bool] = []

@@ -57,11 +57,11 @@ KML_ORDER = {
 def logged(number: int = 0, *, position: tuple[float, float] | None = (10.0, 56.0), stream: str = "boot", **values: Value) -> LoggedRecord:
     """One a second."""
     measured_at = START + timedelta(seconds=number)
-    told: list[Value] = [None] * len(PLACES)
+    reported: list[Value] = [None] * len(PLACES)
     for name, value in ({"is_from_future": False, "is_late": False, "mode": ""} | values).items():
-        told[PLACES[name]] = value
+        reported[PLACES[name]] = value
     received_at, stored_at = measured_at + timedelta(seconds=1), measured_at + timedelta(seconds=2)
-    return LoggedRecord(number, 1, "Kite", None, stream, number, measured_at, received_at, stored_at, position, tuple(told))
+    return LoggedRecord(number, 1, "Kite", None, stream, number, measured_at, received_at, stored_at, position, tuple(reported))
 
 
 def text(kind: str, *records: LoggedRecord) -> str:
@@ -219,11 +219,11 @@ def test_geojson_and_csv_lose_nothing_where_pieces_meet(number: int) -> None:
 @pytest.mark.parametrize("number", [10_000, pytest.param(100_000, marks=pytest.mark.long)])
 @pytest.mark.parametrize("kind", KINDS)
 def test_many_records_take_no_more_memory_than_a_few(kind: str, number: int) -> None:
-    told = logged(0, **FULL)
+    reported = logged(0, **FULL)
 
     def peak_bytes(count: int) -> int:
         tracemalloc.start()
-        written = sum(len(piece) for piece in KINDS[kind](replace(told, sequence=place) for place in range(count)))
+        written = sum(len(piece) for piece in KINDS[kind](replace(reported, sequence=place) for place in range(count)))
         peak = tracemalloc.get_traced_memory()[1]
         tracemalloc.stop()
         assert written > count * 100
@@ -257,7 +257,7 @@ def test_no_file_has_digits_below_the_resolution_of_a_sensor(kind: str) -> None:
 
 
 def test_values_keep_what_their_sensor_can_tell() -> None:
-    told = rounded(
+    reported = rounded(
         logged(altitude_amsl_m=123.456, velocity_down_mps=-1.234, heading_deg=359.96, battery_v=22.246, mode="AUTO", satellites=11)
     )
     wanted = {
@@ -268,7 +268,7 @@ def test_values_keep_what_their_sensor_can_tell() -> None:
         "mode": "AUTO",
         "satellites": 11,
     }
-    assert {name: told.value(name) for name in wanted} == wanted
+    assert {name: reported.value(name) for name in wanted} == wanted
 
 
 def test_one_record_a_second_is_left_of_ten() -> None:

@@ -26,9 +26,9 @@ class Flyer:
     height_m: float | None = None  # above home; None: as station.position has it
     loss: float = 0.0
     seed: int = 1
-    heard: list[Any] = field(default_factory=list)
+    received: list[Any] = field(default_factory=list)
     is_silent: bool = False
-    is_unheard: bool = False  # it hears, and nothing that it says arrives
+    is_unacknowledged: bool = False  # it hears, and nothing that it says arrives
     booted_s: float = field(default_factory=time.monotonic)
 
     def __enter__(self) -> "Flyer":
@@ -51,7 +51,7 @@ class Flyer:
         with self._lock:
             self._link.socket.connect(("127.0.0.1", port))
 
-    def say(self, *messages: Any) -> None:
+    def report(self, *messages: Any) -> None:
         """Besides what it says by itself."""
         self._send(list(messages))
 
@@ -60,7 +60,7 @@ class Flyer:
         while not self._ends.wait(LOOP_S):
             now_s = time.monotonic()
             for message in self._received():
-                self.heard.append(message)
+                self.received.append(message)
                 self._send(self.vehicle.receive(message, now_s))
             self._send(self.vehicle.tick(now_s))
             if now_s >= next_position_s:
@@ -69,11 +69,11 @@ class Flyer:
 
     def _reports(self, now_s: float) -> list[Any]:
         boot_ms = int((now_s - self.booted_s) * 1000)
-        told = position(boot_ms, lon=self.at[0], lat=self.at[1])
-        told.alt = round(self.altitude_amsl_m * 1000)
-        told.relative_alt = told.relative_alt if self.height_m is None else round(self.height_m * 1000)
-        home = mavlink.MAVLink_home_position_message(told.lat, told.lon, told.alt, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
-        return [told, home]
+        reported = position(boot_ms, lon=self.at[0], lat=self.at[1])
+        reported.alt = round(self.altitude_amsl_m * 1000)
+        reported.relative_alt = reported.relative_alt if self.height_m is None else round(self.height_m * 1000)
+        home = mavlink.MAVLink_home_position_message(reported.lat, reported.lon, reported.alt, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
+        return [reported, home]
 
     def _received(self) -> list[Any]:
         with self._lock:
@@ -85,7 +85,7 @@ class Flyer:
 
     def _send(self, messages: list[Any]) -> None:
         for message in messages:
-            if self.is_silent or self.is_unheard or self._chance.random() < self.loss:
+            if self.is_silent or self.is_unacknowledged or self._chance.random() < self.loss:
                 continue
             with self._lock:
                 try:

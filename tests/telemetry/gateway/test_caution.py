@@ -77,7 +77,7 @@ def a_desk(database: Database, *sessions, lease_s: float = 10.0) -> Dispatcher:
     return desk
 
 
-def heard(*messages) -> VehicleState:
+def received(*messages) -> VehicleState:
     state, frames = VehicleState(7), mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
     for message in messages:
         state.receive(mavlink.MAVLink(None).parse_char(message.pack(frames)), time.monotonic())
@@ -87,7 +87,7 @@ def heard(*messages) -> VehicleState:
 def test_nothing_is_sent_on_a_lease_that_may_be_over(settings):
     settings.VEHICLE_COMMAND_RULES = CommandRules(timeout_s=0.05)
     sent = []
-    state = heard(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3))
+    state = received(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3))
     session = SimpleNamespace(
         state=state, listeners=[], is_held=True, commanded_s=None, uav=SimpleNamespace(system=7, name="Tern", uav_id=1),
         send=lambda messages: sent.extend(time.monotonic() for _ in messages), unsettled_until_s=lambda _: None,
@@ -125,7 +125,7 @@ def test_nothing_is_set_in_motion_while_it_is_loaded(kind, loading):
 
 
 def test_an_abort_is_claimed_however_many_uploads_there_are():
-    session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True, may_hear=lambda _: True)
+    session = SimpleNamespace(uav=SimpleNamespace(uav_id=1), is_served=lambda *_: True, may_receive=lambda _: True)
     uploads = [a_command(CommandKind.UPLOAD_MISSION, number) for number in range(MAX_UPLOADS)]
     database = Database(renew_claims=lambda: {upload.pk: 1 for upload in uploads}, claim_commands=list)
     desk = a_desk(database, session)
@@ -168,7 +168,7 @@ def test_what_was_given_back_and_claimed_anew_is_carried_on():
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, position, home, home_m, code):
     state = VehicleState(
-        7, flavour=Flavour.PX4, landed_state=landed, landed_at_s=0.0, heard_at_s=0.0, position=position, altitude_amsl_m=100.0,
+        7, flavour=Flavour.PX4, landed_state=landed, landed_at_s=0.0, received_at_s=0.0, position=position, altitude_amsl_m=100.0,
         altitude_relative_m=30.0, position_at_s=0.0, home=home, home_amsl_m=home_m, home_at_s=0.0, mission_item=1, mission_item_at_s=0.0,
     )  # fmt: skip
     found = reason_not_to(Task(order=order, aboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
@@ -199,7 +199,7 @@ def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, po
 def test_a_uav_in_the_air_goes_on_only_from_the_leg_that_was_approved(order, facts, code):
     """After a hold it may have been flown elsewhere by hand, or be on its way back: from there the way was looked at by nobody."""
     usual = {
-        "flavour": Flavour.PX4, "custom_mode": 0, "landed_state": IN_AIR, "landed_at_s": 0.0, "heard_at_s": 0.0,
+        "flavour": Flavour.PX4, "custom_mode": 0, "landed_state": IN_AIR, "landed_at_s": 0.0, "received_at_s": 0.0,
         "position": LonLat(10.01, 56.0), "altitude_relative_m": 50.0, "position_at_s": 0.0, "home": HERE, "home_amsl_m": 100.0,
         "home_at_s": 0.0, "mission_item": 1, "mission_item_at_s": 0.0,
     }  # fmt: skip
@@ -222,7 +222,7 @@ def test_when_a_vehicle_was_heard_is_told_by_the_databases_clock(monkeypatch, tm
     session = Session(KnownUav(uav.pk, uav.organisation_id, uav.name, 7, True, None, None), deque(), link_id=1)
     (lease,) = take_leases(uav_ids=[uav.pk], holder="one/1", lease_s=10.0)
     session.serve(lease, time.monotonic() + 8.0)
-    session.belief.heard_s = hour_ago_s - 1.0
+    session.belief.last_message_s = hour_ago_s - 1.0
     save_links(states=[session.link_state()], holder="one/1")
     (ago_s,) = UavLink.objects.annotate(ago=Now() - F("heard_at")).values_list("ago", flat=True)
     assert 1.0 <= ago_s.total_seconds() < 4.0
@@ -284,21 +284,23 @@ def test_a_clock_that_was_set_back_makes_nobody_wait_for_it():
     first, other = (SimpleNamespace(name=name, send=lambda _: None) for name in ("first", "other"))
     writer, now_s = FrameWriter(7, 1), time.time()
 
-    def hear(peer, at_s: float) -> None:
+    def feed(peer, at_s: float) -> None:
         for frame in frames_of_datagram(writer.frame_of(mavlink.MAVLink_heartbeat_message(2, 3, 1, 0, 3, 3), 0.0), Counter()):
             session.receive(frame, peer, at_s)
 
-    hear(first, now_s)
+    feed(first, now_s)
     assert session.is_served(now_s, 5.0)
     hour_ago_s = now_s - 3_600.0
     assert not session.is_served(hour_ago_s, 5.0), "nobody knows how long ago it was heard"
-    hear(other, hour_ago_s)
+    feed(other, hour_ago_s)
     assert session.peer is other and not session.losses, "the first one may have been silent for long"
 
 
 @pytest.mark.django_db
-@pytest.mark.parametrize(("facts", "told"), [({"is_in_air": True}, [Flown(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])])
-def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, told):
+@pytest.mark.parametrize(
+    ("facts", "reported"), [({"is_in_air": True}, [Flown(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])]
+)
+def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, reported):
     uav = unsigned_uav(7)
     UavLink.objects.create(uav=uav, mode="AUTO", is_armed=True, **facts)
     (lease,) = take_leases(uav_ids=[uav.pk], holder="one/2", lease_s=10.0)
@@ -309,7 +311,7 @@ def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, t
     for message in (mavlink.MAVLink_mission_current_message(7), landed, mavlink.MAVLink_heartbeat_message(2, 3, 1, 3, 3, 3), landed):
         for frame in frames_of_datagram(writer.frame_of(message, 0.0), Counter()):
             session.receive(frame, peer, time.time())
-    assert session.flown == told
+    assert session.flown == reported
 
 
 def test_a_vehicle_that_comes_back_must_say_how_it_is_before_anything_is_sent(monkeypatch):

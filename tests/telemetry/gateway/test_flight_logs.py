@@ -85,7 +85,7 @@ def test_a_log_that_a_dead_gateway_left_open_is_closed_by_the_next(tmp_path):
 def test_a_vehicle_that_arms_and_disarms_all_the_time_keeps_to_one_file(tmp_path):
     flights = Flights(Options(udp=[], tcp=[], name="test", log_dir=tmp_path))
     uav, state = SimpleNamespace(uav_id=1, system=7, name="Tern"), SimpleNamespace(is_armed=True)
-    session = SimpleNamespace(uav=uav, state=state, log=None, heard_s=1_000.0)
+    session = SimpleNamespace(uav=uav, state=state, log=None, last_message_s=1_000.0)
     for number in range(200):
         state.is_armed = number % 2 == 0
         flights.watch(session, 1_000.0 + number / 100)

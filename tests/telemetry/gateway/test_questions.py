@@ -23,7 +23,7 @@ def asked(messages: list) -> tuple[set[int], list[int]]:
     return intervals, [m.start_stop for m in messages if m.get_type() == "REQUEST_DATA_STREAM"]
 
 
-def hear(questions: Questions, now_s: float, *numbers: int) -> None:
+def feed(questions: Questions, now_s: float, *numbers: int) -> None:
     for number in numbers:
         questions.receive(mavlink.mavlink_map[number](*[0] * len(mavlink.mavlink_map[number].fieldnames)), now_s)
 
@@ -36,7 +36,7 @@ def test_an_ardupilot_is_asked_for_intervals_and_its_streams_are_stopped_once_no
     questions = Questions()
     assert asked(questions.due(copter(), 100.0, has_position=False)) == (WANTED, [])
     for second in range(1, 300):
-        hear(questions, 100.0 + second, *WANTED)
+        feed(questions, 100.0 + second, *WANTED)
         messages = questions.due(copter(), 100.0 + second, has_position=True)
         assert asked(messages) == ((WANTED, [0]) if second == LISTENS_S else (set(), []))
         if second == LISTENS_S:
@@ -47,9 +47,9 @@ def test_an_ardupilot_is_asked_for_intervals_and_its_streams_are_stopped_once_no
 def test_streams_of_a_second_ground_station_are_stopped_once_it_is_gone_and_not_before() -> None:
     questions, stopped_s = Questions(), []
     for second in range(400):
-        hear(questions, float(second), *WANTED)
+        feed(questions, float(second), *WANTED)
         if 3 <= second < 200 and second % 4 == 0:
-            questions.hear_station(float(second))
+            questions.note_station(float(second))
         _intervals, streams = asked(questions.due(copter(), float(second), has_position=second > 0))
         stopped_s += [second] if streams else []
     assert stopped_s == [196 + STATION_GONE_S]
@@ -59,7 +59,7 @@ def test_a_message_that_does_not_come_is_asked_for_again_by_itself_ever_more_rar
     questions, times = Questions(), []
     questions.due(copter(), 0.0, has_position=False)
     for second in range(1, 200):
-        hear(questions, float(second), *(WANTED - {BATTERY}))
+        feed(questions, float(second), *(WANTED - {BATTERY}))
         intervals, streams = asked(questions.due(copter(), float(second), has_position=True))
         if streams:  # all are asked for again as the streams are stopped
             continue

@@ -46,9 +46,9 @@ def test_what_a_signed_link_refuses(uav_and_key, tmp_path, caplog):
         wait_for(lambda: TelemetryRecord.objects.count() == 11)
     assert losses(uav) == {"replayed": 11 + 1, "unsigned": 2, "wrong-signature": 3, "too-old": 4, "from-the-future": 5}
     assert not TelemetryRecord.objects.filter(sequence=9_000).exists()
-    told = caplog.text + repr(gateway.sessions)
+    reported = caplog.text + repr(gateway.sessions)
     for form in (key.hex(), repr(key), key.decode("latin-1"), str(list(key))):
-        assert form not in told
+        assert form not in reported
 
 
 def test_no_other_gateway_and_no_restart_accepts_a_replay(uav_and_key, tmp_path):
@@ -63,10 +63,10 @@ def test_no_other_gateway_and_no_restart_accepts_a_replay(uav_and_key, tmp_path)
         vehicle.send_raw(*frames)
         vehicle.send(position(2_000))
         wait_for(lambda: TelemetryRecord.objects.count() == 6)
-        heard = wait_for(vehicle.received)
+        received = wait_for(vehicle.received)
     assert losses(uav)["replayed"] == len(frames)
     assert UavLink.objects.get(uav=uav).signing["sent"] > sent
-    assert heard and link.writer.key == key
+    assert received and link.writer.key == key
 
 
 def test_a_vehicle_whose_clock_is_late_is_told_the_time(uav_and_key, tmp_path):

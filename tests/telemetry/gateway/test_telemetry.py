@@ -57,18 +57,18 @@ def test_a_link_is_described(tmp_path):
 def test_a_vehicle_hears_a_ground_station_that_asks_for_messages(tmp_path):
     unsigned_uav()
     with gateway_at_work(tmp_path) as gateway, Link(port_of(gateway)) as vehicle:
-        heard = []
+        received = []
 
         def asked() -> bool:
             vehicle.send(heartbeat())
-            heard.extend(vehicle.received())
-            names = {message.get_type() for message in heard}
+            received.extend(vehicle.received())
+            names = {message.get_type() for message in received}
             return {"HEARTBEAT", "REQUEST_DATA_STREAM", "COMMAND_LONG"} <= names
 
         wait_for(asked)
-    (beat, *_) = [message for message in heard if message.get_type() == "HEARTBEAT"]
+    (beat, *_) = [message for message in received if message.get_type() == "HEARTBEAT"]
     assert (beat.type, beat.autopilot, beat.get_srcSystem()) == (mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 255)
-    commands = {(message.command, message.param1) for message in heard if message.get_type() == "COMMAND_LONG"}
+    commands = {(message.command, message.param1) for message in received if message.get_type() == "COMMAND_LONG"}
     assert {(511, 33), (512, 148), (512, 242)} <= commands
 
 

@@ -45,14 +45,14 @@ def carry(uav_ids: Sequence[int], link: Link, holder: str, chance: random.Random
                 _bring(command, radio, link, chance)
             if not claimed:
                 radio.settimeout(IDLE_S)
-                _heard(radio, None)
+                _received(radio, None)
 
 
 def _bring(command: object, radio: socket.socket, link: Link, chance: random.Random) -> None:
     from missions.services.commands.commands import note_acknowledged, note_applied, note_released, note_sent  # noqa: PLC0415
 
     fence = {"attempt": command.attempts, "holder": command.holder}
-    told = {"command": str(command.pk), "uav": command.uav_id, "axis": command.axis, "sequence": command.sequence, "kind": command.kind}
+    reported = {"command": str(command.pk), "uav": command.uav_id, "axis": command.axis, "sequence": command.sequence, "kind": command.kind}
     radio.settimeout(ACK_WAIT_S)
     for number in range(TRIES):
         if number == 0 and not note_sent(command.pk, **fence):
@@ -60,8 +60,8 @@ def _bring(command: object, radio: socket.socket, link: Link, chance: random.Ran
         if number % 5 == 4 and not _is_held(command):
             return
         if chance.random() >= link.loss:
-            radio.send(json.dumps(told).encode())
-        if _heard(radio, told["command"]):
+            radio.send(json.dumps(reported).encode())
+        if _received(radio, reported["command"]):
             if note_acknowledged(command.pk, **fence):
                 note_applied(command.pk, **fence)
             return
@@ -74,7 +74,7 @@ def _is_held(command: object) -> bool:
     return UavCommand.objects.filter(pk=command.pk, attempts=command.attempts, holder=command.holder, state__in=OPEN_COMMANDS).exists()
 
 
-def _heard(radio: socket.socket, command: str | None) -> bool:
+def _received(radio: socket.socket, command: str | None) -> bool:
     """Whether the acknowledgement of this command came in time; late ones of others are passed over."""
     try:
         while True:
@@ -116,9 +116,9 @@ def nursery(slots: Sequence[Sequence[int]], link: Link) -> Iterator[Nursery]:
     address = f"postgres://{facts['USER']}{password}@{quote(facts['HOST'], safe='')}{port}/{facts['NAME']}"
     root = Path(__file__).resolve().parents[3]
     environment = os.environ | {"DATABASE_URL": address, "DJANGO_SETTINGS_MODULE": "config.settings", "PYTHONPATH": str(root)}
-    told = json.dumps([list(slot) for slot in slots]), str(link.port), str(link.loss)
+    reported = json.dumps([list(slot) for slot in slots]), str(link.port), str(link.loss)
     process = subprocess.Popen(  # noqa: S603
-        [sys.executable, "-m", "tests.telemetry.links.command_carriers", *told],
+        [sys.executable, "-m", "tests.telemetry.links.command_carriers", *reported],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment, cwd=root,
     )  # fmt: skip
     try:

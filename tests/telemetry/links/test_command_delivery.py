@@ -44,10 +44,10 @@ class Vehicles:
             data, sender = self._ear.recvfrom(1_000)
             if data == b"over":
                 return
-            told = json.loads(data)
-            self.applied.append((told["uav"], told["axis"], told["sequence"], told["command"]))
+            reported = json.loads(data)
+            self.applied.append((reported["uav"], reported["axis"], reported["sequence"], reported["command"]))
             if self._chance.random() >= LOSS:
-                self._ear.sendto(told["command"].encode(), sender)
+                self._ear.sendto(reported["command"].encode(), sender)
 
 
 @contextmanager
@@ -115,41 +115,41 @@ def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(
     for kind in backlog:
         give(kind)
     kill_at = [count * (number + 1) // (KILLS + 2) for number in range(KILLS)]
-    with vehicles(seed=7) as (heard, link), nursery(slots, link) as carriers:
+    with vehicles(seed=7) as (received, link), nursery(slots, link) as carriers:
         for slot in range(SLOTS):
             carriers.start(slot)
         for number, kind in enumerate(later):
-            wait_until(lambda number=number: len(heard.applied) >= number or all_have_ended(), DEADLINE_S)  # as fast as they are carried
+            wait_until(lambda number=number: len(received.applied) >= number or all_have_ended(), DEADLINE_S)  # as fast as they are carried
             give(kind)
-            if kill_at and len(heard.applied) >= kill_at[0]:
+            if kill_at and len(received.applied) >= kill_at[0]:
                 carriers.kill(number % SLOTS)
                 kill_at.pop(0)
         while kill_at:
             wait_until(
-                lambda: len(heard.applied) >= kill_at[0] or not UavCommand.objects.filter(state__in=OPEN_COMMANDS).exists(), DEADLINE_S
+                lambda: len(received.applied) >= kill_at[0] or not UavCommand.objects.filter(state__in=OPEN_COMMANDS).exists(), DEADLINE_S
             )
             carriers.kill(len(kill_at) % SLOTS)
             kill_at.pop(0)
         wait_until(all_have_ended, DEADLINE_S)
 
     assert UavCommand.objects.count() == count
-    none_is_lost(heard)
-    nothing_is_applied_out_of_order(heard)
-    every_step_is_told()
+    none_is_lost(received)
+    nothing_is_applied_out_of_order(received)
+    every_step_is_reported()
     top, lowest = (wait_p99_s(priority) for priority in (CommandPriority.SAFETY, CommandPriority.PARAMETER))
     states = defaultdict(int)
     for state in UavCommand.objects.values_list("state", flat=True):
         states[str(state)] += 1
     record_property("figure", f"{count:,} commands: p99 {top:.2f} s and {lowest:.2f} s, {top / lowest:.1%}")
     with capsys.disabled():
-        print(f"\n{count} commands, {KILLS} kills, {LOSS:.0%} loss each way: {dict(states)}; {len(heard.applied)} datagrams heard;")
+        print(f"\n{count} commands, {KILLS} kills, {LOSS:.0%} loss each way: {dict(states)}; {len(received.applied)} datagrams heard;")
         print(f"p99 from given to applied: top {top:.2f} s, lowest {lowest:.2f} s: {top / lowest:.1%}")
     assert top <= 0.1 * lowest
 
 
-def none_is_lost(heard: Vehicles) -> None:
+def none_is_lost(received: Vehicles) -> None:
     """Each was applied, or a later one took its place; what was applied was heard by its vehicle."""
-    known = {command for *_rest, command in heard.applied}
+    known = {command for *_rest, command in received.applied}
     for command in UavCommand.objects.all():
         if command.state == CommandState.APPLIED:
             assert str(command.pk) in known
@@ -163,15 +163,15 @@ def none_is_lost(heard: Vehicles) -> None:
         assert last.state == CommandState.APPLIED or overtaken
 
 
-def nothing_is_applied_out_of_order(heard: Vehicles) -> None:
+def nothing_is_applied_out_of_order(received: Vehicles) -> None:
     by_axis: dict[tuple[int, str], list[int]] = defaultdict(list)
-    for uav, axis, sequence, _command in heard.applied:
+    for uav, axis, sequence, _command in received.applied:
         by_axis[uav, axis].append(sequence)
     for sequences in by_axis.values():
         assert sequences == sorted(sequences)
 
 
-def every_step_is_told() -> None:
+def every_step_is_reported() -> None:
     for command in UavCommand.objects.prefetch_related("events"):
         states = [event.state for event in command.events.all()]
         assert states[0] == CommandState.QUEUED

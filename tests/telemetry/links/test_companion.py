@@ -263,16 +263,16 @@ def test_a_server_that_never_answers_is_given_up_after_the_timeout() -> None:
 
 
 @pytest.mark.parametrize(
-    "said", [b"", b'HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{"a"', b"not http at all\r\n\r\n", b"HTTP/1.1 200 OK\r\n\r\n<html>"]
+    "stated", [b"", b'HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{"a"', b"not http at all\r\n\r\n", b"HTTP/1.1 200 OK\r\n\r\n<html>"]
 )
-def test_an_answer_that_cannot_be_read_is_none(said: bytes) -> None:
+def test_an_answer_that_cannot_be_read_is_none(stated: bytes) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer() -> None:
             connection, _ = server.accept()
             with connection:
                 connection.recv(4_096)
-                connection.sendall(said)
+                connection.sendall(stated)
 
         thread = threading.Thread(target=answer)
         thread.start()

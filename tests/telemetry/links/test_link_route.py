@@ -84,16 +84,16 @@ def test_a_uav_gets_its_route_as_it_was_approved_with_the_outline_of_the_bridge(
     assert (route["mission"], route["mission_name"], route["approval"]) == (str(mission.pk), mission.name, str(approval.pk))
     assert (route["content"]["flight"], route["flights"]) == (1, 1)
     stored = list(mission.routes.get().waypoints.order_by("sequence"))
-    told = route["content"]["waypoints"]
-    assert [waypoint["position"] for waypoint in told] == [list(waypoint.position.coords) for waypoint in stored]
-    for waypoint, row in zip(told, stored, strict=True):
+    reported = route["content"]["waypoints"]
+    assert [waypoint["position"] for waypoint in reported] == [list(waypoint.position.coords) for waypoint in stored]
+    for waypoint, row in zip(reported, stored, strict=True):
         assert (waypoint["altitude_agl_m"], waypoint["altitude_relative_m"]) == (row.altitude_agl_m, row.altitude_relative_m)
         assert waypoint["altitude_amsl_m"] == row.altitude_amsl_m
     (target,) = route["targets"]
     assert (target["place"], target["kind"], target["label"]) == (0, "bridge", mission.targets.get().label)
     assert target["geometry"]["type"] in {"Polygon", "MultiPolygon", "LineString"}
     assert target["geometry"] == json.loads(here.bridge.geometry.json)
-    assert [waypoint["target"] for waypoint in told if waypoint["target"] is not None] == [0]
+    assert [waypoint["target"] for waypoint in reported if waypoint["target"] is not None] == [0]
     assert canonical_sha256(route["content"]) == route["content_sha256"]
     assert [command["kind"] for command in given["commands"]] == ["upload-mission"]
     assert UavCommand.objects.get().state == CommandState.SENT
@@ -140,8 +140,8 @@ def test_an_upload_is_applied_only_by_the_content_that_was_approved(here: World,
     dispatched(person, [kite.uav], [here.towers[2]])
     route = kite.get("route").json()["route"]
     assert acknowledge(kite, route["command"], "acknowledged")["state"] == "acknowledged"
-    told = acknowledge(kite, route["command"], "applied", content_sha256=route["content_sha256"])
-    assert (told["noted"], told["state"]) == (True, "applied")
+    reported = acknowledge(kite, route["command"], "applied", content_sha256=route["content_sha256"])
+    assert (reported["noted"], reported["state"]) == (True, "applied")
     kite.uav.connection.refresh_from_db()
     held = kite.uav.connection
     assert (held.loaded_sha256, str(held.loaded_approval), held.loaded_flight) == (route["content_sha256"], route["approval"], 1)
@@ -153,8 +153,8 @@ def test_an_upload_is_applied_only_by_the_content_that_was_approved(here: World,
 def test_a_uav_that_holds_something_else_is_not_ready(here: World, person: User, kite: UavClient, content: str | None) -> None:
     dispatched(person, [kite.uav], [here.towers[2]])
     route = kite.get("route").json()["route"]
-    told = acknowledge(kite, route["command"], "applied", content_sha256=content)
-    assert told["state"] == "failed"
+    reported = acknowledge(kite, route["command"], "applied", content_sha256=content)
+    assert reported["state"] == "failed"
     command = UavCommand.objects.get()
     assert (command.state, command.outcome_code) == (CommandState.FAILED, "other-content")
     assert kite.uav.connection.loaded_sha256 == ""
@@ -192,8 +192,8 @@ def test_the_most_urgent_command_comes_first_and_a_later_one_takes_its_place(kit
     abort = give(kite, CommandKind.ABORT)
     waiting = kite.get("route").json()["commands"]
     assert [command["id"] for command in waiting] == [str(abort.pk)]
-    told = acknowledge(kite, pause.pk, "applied")
-    assert (told["noted"], told["state"]) == (False, "expired")
+    reported = acknowledge(kite, pause.pk, "applied")
+    assert (reported["noted"], reported["state"]) == (False, "expired")
 
 
 def test_a_command_that_is_too_old_is_not_given(kite: UavClient) -> None:

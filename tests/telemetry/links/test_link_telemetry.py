@@ -26,17 +26,17 @@ def faults(kite: UavClient, **values: Any) -> list[str]:
 
 
 def test_every_value_is_stored_as_it_was_sent(kite: UavClient) -> None:
-    told = {
+    reported = {
         "altitude_amsl_m": 100.5, "altitude_relative_m": 30.5, "altitude_agl_m": 29.5, "velocity_north_mps": 1.5, "velocity_east_mps": -2.5,
         "velocity_down_mps": 0.5, "airspeed_mps": 4.5, "roll_deg": -5.5, "pitch_deg": 6.5, "heading_deg": 7.5, "battery_percent": 80.5,
         "battery_v": 12.5, "battery_a": 9.5, "mode": "Mission", "is_armed": True, "is_in_air": False, "link_quality_percent": 99.5,
         "gps_fix": 3, "satellites": 14, "hdop": 0.75, "wind_north_mps": 1.25, "wind_east_mps": -3.25, "waypoint_sequence": 4,
     }  # fmt: skip
     measured_at = timezone.now() - timedelta(seconds=3)
-    answer = kite.report(report(7, measured_at=measured_at.isoformat(), **told))
+    answer = kite.report(report(7, measured_at=measured_at.isoformat(), **reported))
     assert (answer.status_code, answer.json()) == (200, {"stored": 1, "known": 0, "from_future": 0, "late": 0, "refused": []})
     row = TelemetryRecord.objects.get()
-    assert {name: getattr(row, name) for name in told} == told
+    assert {name: getattr(row, name) for name in reported} == reported
     assert (row.sequence, row.stream.key, row.stream.link, row.uav) == (7, "boot-1", LinkKind.HTTP, kite.uav)
     assert row.measured_at == measured_at < row.received_at <= row.stored_at
     assert row.position.coords == (10.001, 55.995)

@@ -130,8 +130,14 @@ def test_others_neither_see_nor_settle_them(role: Role) -> None:
 
 
 def test_a_uav_that_was_never_heard_says_so(client: Client) -> None:
-    told = client.get(f"/api/v1/uavs/{a_uav('Kite').pk}/connection").json()
-    assert (told["link"], told["heard_at"], told["heard_by"], told["mode"], told["is_in_air"]) == ("mavlink", None, None, "", None)
+    reported = client.get(f"/api/v1/uavs/{a_uav('Kite').pk}/connection").json()
+    assert (reported["link"], reported["heard_at"], reported["heard_by"], reported["mode"], reported["is_in_air"]) == (
+        "mavlink",
+        None,
+        None,
+        "",
+        None,
+    )
 
 
 def test_a_companions_newest_report_says_how_the_uav_does(client: Client) -> None:
@@ -139,10 +145,10 @@ def test_a_companions_newest_report_says_how_the_uav_does(client: Client) -> Non
     kite.report(report(2, mode="Mission", is_armed=True, is_in_air=True, battery_percent=64.0, waypoint_sequence=3))
     kite.report(report(1, mode="Standby", is_in_air=False, measured_at=seconds_ago(600)))
     kite.report(report(3, mode="Nonsense", measured_at=seconds_ago(-86_400)))
-    told = client.get(f"/api/v1/uavs/{kite.uav.pk}/connection").json()
-    assert (told["link"], told["heard_by"], told["mode"], told["is_in_air"]) == ("http", "http", "Mission", True)
-    assert (told["battery_percent"], told["waypoint_sequence"]) == (64.0, 3)
-    assert told["heard_at"] <= told["server_time"]
+    reported = client.get(f"/api/v1/uavs/{kite.uav.pk}/connection").json()
+    assert (reported["link"], reported["heard_by"], reported["mode"], reported["is_in_air"]) == ("http", "http", "Mission", True)
+    assert (reported["battery_percent"], reported["waypoint_sequence"]) == (64.0, 3)
+    assert reported["heard_at"] <= reported["server_time"]
 
 
 def test_the_door_by_which_a_uav_was_heard_is_told(client: Client) -> None:

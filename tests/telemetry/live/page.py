@@ -31,12 +31,12 @@ class Page:
     sequence: int = 0
 
     def take(self) -> dict[str, Any]:
-        message = self.hear()
+        message = self.receive()
         if message["type"] != "still-there":
-            self.say({"type": "have", "sequence": message["sequence"]})
+            self.report({"type": "have", "sequence": message["sequence"]})
         return message
 
-    def hear(self) -> dict[str, Any]:
+    def receive(self) -> dict[str, Any]:
         """Takes in a message that it does not confirm. Raises HungUp."""
         frame = self.socket.recv_frame()
         if frame.opcode == ABNF.OPCODE_CLOSE:
@@ -66,6 +66,6 @@ class Page:
         self.socket.settimeout(TIMEOUT_S)
         return found
 
-    def say(self, word: object) -> None:
+    def report(self, value: object) -> None:
         with suppress(BrokenPipeError, ConnectionResetError):  # hung up meanwhile: with which code it has yet to hear
-            self.socket.send(json.dumps(word))
+            self.socket.send(json.dumps(value))

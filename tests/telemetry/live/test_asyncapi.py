@@ -36,7 +36,7 @@ def follow(here: Door, path: str, user: User) -> WebSocket:
     return here.open(path, token=token, origin=None)
 
 
-def hear(live: WebSocket, document: Any, name: str) -> Any:
+def receive(live: WebSocket, document: Any, name: str) -> Any:
     """Return the next message but heartbeats, which has to be the one that the document names so."""
     while (message := json.loads(live.recv()))["type"] == "still-there" != name:
         validate(message, document["components"]["schemas"]["still-there"], openapi_document())
@@ -74,14 +74,14 @@ def test_every_websocket_is_in_the_document(document: Any) -> None:
 
 def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(here: Door, document: Any) -> None:
     uav, live = a_flying_uav(), follow(here, "/ws/live", somebody())
-    assert hear(live, document, "snapshot")["live"]["uavs"]
+    assert receive(live, document, "snapshot")["live"]["uavs"]
     live.send('{"type": "have", "sequence": 1}')
     store_records([record(uav, 2, longitude_deg=10.5)])
-    changed = hear(live, document, "changes")
-    assert [told["id"] for told in changed["uavs"]] == [uav.pk]
+    changed = receive(live, document, "changes")
+    assert [reported["id"] for reported in changed["uavs"]] == [uav.pk]
     live.send(json.dumps({"type": "have", "sequence": changed["sequence"]}))
     live.send('{"type": "again"}')
-    assert hear(live, document, "snapshot")["sequence"] > changed["sequence"]
+    assert receive(live, document, "snapshot")["sequence"] > changed["sequence"]
 
 
 def test_what_the_document_does_not_name_hangs_up(here: Door) -> None:
@@ -96,19 +96,19 @@ def test_a_job_is_told_as_the_document_says(here: Door, document: Any) -> None:
     started = start_job(job_id=job.pk)
     assert started is not None
     live = follow(here, f"/ws/jobs/{job.pk}", user)
-    assert hear(live, document, "job")["job"]["state"] == "running"
+    assert receive(live, document, "job")["job"]["state"] == "running"
     finish_job(job=started, result={"routes": []}, message="Planned")
-    assert hear(live, document, "job")["job"]["state"] == "done"
+    assert receive(live, document, "job")["job"]["state"] == "done"
 
 
 @pytest.mark.long
 def test_a_follower_by_the_document_stays_and_one_that_confirms_nothing_is_hung_up_on(here: Door, document: Any) -> None:
     uav, user = a_flying_uav(), somebody()
     live, mute = follow(here, "/ws/live", user), follow(here, "/ws/live", user)
-    live.send(json.dumps({"type": "have", "sequence": hear(live, document, "snapshot")["sequence"]}))
+    live.send(json.dumps({"type": "have", "sequence": receive(live, document, "snapshot")["sequence"]}))
     store_records([record(uav, 2, longitude_deg=10.5)])
-    live.send(json.dumps({"type": "have", "sequence": hear(live, document, "changes")["sequence"]}))
+    live.send(json.dumps({"type": "have", "sequence": receive(live, document, "changes")["sequence"]}))
     began_s = time.monotonic()
     while time.monotonic() - began_s < 75:
-        hear(live, document, "still-there")
+        receive(live, document, "still-there")
     assert close_code(mute) == 1013

@@ -99,14 +99,14 @@ def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None
     class Told:
         def __init__(self, farewell: Farewell) -> None:
             self.farewell = farewell
-            self.told: list[tuple[int, float]] = []
+            self.reported: list[tuple[int, float]] = []
             farewell.expect(self)
 
         def hang_up(self, code: int) -> None:
-            self.told.append((code, asyncio.get_running_loop().time()))
+            self.reported.append((code, asyncio.get_running_loop().time()))
             self.farewell.forget(self)
 
-    async def all_told() -> tuple[list[Told], int]:
+    async def all_reported() -> tuple[list[Told], int]:
         loop, left = asyncio.get_running_loop(), asyncio.Event()
         loop.add_signal_handler(signal.SIGINT, left.set)
         farewell = Farewell(loop, spread_s=0.2)
@@ -118,8 +118,8 @@ def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None
         loop.remove_signal_handler(signal.SIGINT)
         return sockets, len(farewell._sockets)
 
-    sockets, still_there = asyncio.run(all_told())
+    sockets, still_there = asyncio.run(all_reported())
     assert still_there == 0
-    assert [[code for code, _ in one.told] for one in sockets] == [[RESTARTS]] * 20
-    moments_s = [at_s for one in sockets for _, at_s in one.told]
+    assert [[code for code, _ in one.reported] for one in sockets] == [[RESTARTS]] * 20
+    moments_s = [at_s for one in sockets for _, at_s in one.reported]
     assert max(moments_s) - min(moments_s) > 0.05

@@ -164,8 +164,8 @@ class Browser(Worker):
         """What the page shows of this UAV, as long as it is told."""
         page = self.page
         shown = page.shows["uavs"].get(uav.pk) if page is not None else None
-        told = shown[half] if shown is not None else None
-        return datetime.fromisoformat(told[moment]) if told else datetime.min.replace(tzinfo=UTC)
+        reported = shown[half] if shown is not None else None
+        return datetime.fromisoformat(reported[moment]) if reported else datetime.min.replace(tzinfo=UTC)
 
 
 def flying(tmp_path: Path) -> tuple[Uav, Uav]:

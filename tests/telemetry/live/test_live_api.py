@@ -53,9 +53,9 @@ def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
     assert [len(live[kind]) for kind in KINDS] == [1, 1, 1, 1, 1]
     described = LiveAnswerSerializer(answer.json()).data
     assert {kind: set(entries[0]) for kind, entries in described["live"].items()} == {kind: set(live[kind][0]) for kind in KINDS}
-    told = live["uavs"][0]
-    assert (told["mission"], told["place"], told["link"]["loaded"]["flight"]) == (str(mission.pk), 0, 1)
-    assert (told["measured"]["battery_percent"], told["measured"]["mode"], told["measured"]["hdop"]) == (80.0, "AUTO", None)
+    reported = live["uavs"][0]
+    assert (reported["mission"], reported["place"], reported["link"]["loaded"]["flight"]) == (str(mission.pk), 0, 1)
+    assert (reported["measured"]["battery_percent"], reported["measured"]["mode"], reported["measured"]["hdop"]) == (80.0, "AUTO", None)
     [target] = live["missions"][0]["targets"]
     assert (target["state"], target["uav"], live["missions"][0]["counts"]) == ("complete", 0, {"complete": 1, "all": 1})
     assert target["state_at"] is not None
@@ -71,9 +71,9 @@ def test_a_report_is_late_when_alerts_call_it_late(tmp_path: Path) -> None:
     Uav.objects.filter(pk=tern.pk).update(link=LinkKind.HTTP)
     store_records([record(kite, 1), record(tern, 1)])
     UavWatch.objects.filter(uav=kite).update(estimated={"report_interval_s": 4.0})
-    told = {uav["name"]: uav["rhythm"] for uav in shown(user)["uavs"]}
-    assert told["Kite"] == {"interval_s": 4.0, "late_after_s": 10.0, "silent_after_s": 12.0}
-    assert told["Tern"] == {"interval_s": 10.0, "late_after_s": 25.0, "silent_after_s": 30.0}, "it was heard once, over HTTP"
+    reported = {uav["name"]: uav["rhythm"] for uav in shown(user)["uavs"]}
+    assert reported["Kite"] == {"interval_s": 4.0, "late_after_s": 10.0, "silent_after_s": 12.0}
+    assert reported["Tern"] == {"interval_s": 10.0, "late_after_s": 25.0, "silent_after_s": 30.0}, "it was heard once, over HTTP"
     Mission.objects.filter(pk=mission.pk).update(alert_limits={"link_late_s": 15.0, "link_lost_s": 60.0})
     assert {uav["name"]: uav["rhythm"]["late_after_s"] for uav in shown(user)["uavs"]} == {"Kite": 15.0, "Tern": 25.0}
 
@@ -84,13 +84,13 @@ def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
         Mission.objects.create(name=name, ended_at=now - ended_ago)
     Mission.objects.create(name="deleted", ended_at=now, deleted_at=now)
     Mission.objects.create(name="a draft")
-    heard, silent = a_uav("heard"), a_uav("silent")
-    UavLink.objects.create(uav=heard, heard_at=now - timedelta(hours=23))
+    received, silent = a_uav("heard"), a_uav("silent")
+    UavLink.objects.create(uav=received, heard_at=now - timedelta(hours=23))
     UavLink.objects.create(uav=silent, heard_at=now - timedelta(hours=25))
     for code, closed_ago in {"closed": timedelta(minutes=59), "long closed": timedelta(minutes=61)}.items():
         facts = {"opened_at": now - timedelta(hours=3), "closed_at": now - closed_ago}
-        Alert.objects.create(uav=heard, level=AlertLevel.ADVISORY, code=code, message=code, **facts)
-    done, old = give(heard, CommandKind.HOLD), give(silent, CommandKind.HOLD)
+        Alert.objects.create(uav=received, level=AlertLevel.ADVISORY, code=code, message=code, **facts)
+    done, old = give(received, CommandKind.HOLD), give(silent, CommandKind.HOLD)
     UavCommand.objects.filter(pk=done.pk).update(state="applied", finished_at=now - timedelta(minutes=9))
     UavCommand.objects.filter(pk=old.pk).update(state="applied", finished_at=now - timedelta(minutes=11))
     live = shown(user)

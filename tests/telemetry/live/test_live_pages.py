@@ -20,6 +20,6 @@ def test_a_page_is_told_everything_and_then_what_changes(here: Door) -> None:
     assert (first["type"], first["sequence"]) == ("snapshot", 1)
     assert page.shows["uavs"][uav.pk]["measured"]["battery_percent"] == 80.0
     store_records([record(uav, 2, longitude_deg=10.5)])
-    told = page.take_until(lambda page: page.sequence == 2 and page.shows["uavs"][uav.pk]["measured"])
-    assert (told["position"], told["battery_percent"]) == ([10.5, 55.0], 80.0)
-    assert told["measured_at_of"]["battery"] < told["measured_at_of"]["position"] == told["measured_at"]
+    reported = page.take_until(lambda page: page.sequence == 2 and page.shows["uavs"][uav.pk]["measured"])
+    assert (reported["position"], reported["battery_percent"]) == ([10.5, 55.0], 80.0)
+    assert reported["measured_at_of"]["battery"] < reported["measured_at_of"]["position"] == reported["measured_at"]

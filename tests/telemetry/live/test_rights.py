@@ -161,10 +161,10 @@ def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Door)
         pytest.param('{"type":"again","and":1}', id="more than it may say"),
     ],
 )
-def test_whoever_says_what_no_page_says_is_hung_up_on(here: Door, word: str | bytes) -> None:
+def test_whoever_says_what_no_page_says_is_hung_up_on(here: Door, message: str | bytes) -> None:
     page = Page(here.open("/ws/live", user=somebody()))
     page.take()
-    (page.socket.send if isinstance(word, str) else page.socket.send_binary)(word)
+    (page.socket.send if isinstance(message, str) else page.socket.send_binary)(message)
     assert close_code(page.socket) == 4400
 
 

@@ -58,21 +58,21 @@ def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_al
     uavs = [a_uav("Tern"), a_uav("Gull")]
     store_records([record(uav, 1) for uav in uavs])
     quick, slow = Page(here.open("/ws/live", user=somebody())), Page(here.open("/ws/live", user=somebody()))
-    quick.take(), slow.hear()
+    quick.take(), slow.receive()
     for second in range(2, LAST + 1):
         store_records([record(uav, second, longitude_deg=10.0 + second / 100) for uav in uavs])
         quick.take_until(lambda page, second=second: page.shows["uavs"][uavs[1].pk]["measured"]["position"][0] == 10.0 + second / 100)
-    slow.hear()
+    slow.receive()
     assert slow.sequence == 2
     assert slow.shows["uavs"][uavs[0].pk]["measured"]["position"][0] < 10.0 + LAST / 100
-    slow.say({"type": "have", "sequence": 1})
-    slow.hear()
+    slow.report({"type": "have", "sequence": 1})
+    slow.receive()
     assert slow.sequence == 3
     assert slow.shows == quick.shows
-    slow.say({"type": "have", "sequence": 3})
+    slow.report({"type": "have", "sequence": 3})
     slow.socket.settimeout(1.5)
     with pytest.raises(Exception, match="timed out"):
-        slow.hear()
+        slow.receive()
 
 
 @pytest.mark.django_db(transaction=True)
@@ -84,7 +84,7 @@ def test_a_page_that_asks_again_is_whole_again(here: Door) -> None:
     store_records([record(uav, 2, longitude_deg=10.5)])
     lost = json.loads(page.socket.recv())  # between here and there
     assert lost["type"] == "changes"
-    page.say({"type": "again"})
+    page.report({"type": "again"})
     answer = page.take()
     assert (answer["type"], answer["sequence"]) == ("snapshot", 3)
     assert page.shows["uavs"][uav.pk]["measured"]["position"] == [10.5, 55.0]

@@ -102,8 +102,8 @@ def along_with_a_gap() -> list[tuple[int, tuple[float, float], int]]:
     found = []
     for second in [*range(21), *range(100, 151)]:
         along_m = 10.0 * second
-        told = 1 if second <= 110 else 3
-        found.append((second, (along_m, 0.0) if along_m <= 600.0 else (600.0, along_m - 600.0), told))
+        reported = 1 if second <= 110 else 3
+        found.append((second, (along_m, 0.0) if along_m <= 600.0 else (600.0, along_m - 600.0), reported))
     return found
 
 

@@ -45,18 +45,18 @@ def test_a_flown_mission_is_told_by_leg_and_target(client: Client, mission: Miss
     over = fly(approval, tern, began())
     end(mission, tern)
     open_alert(uav=tern, level=AlertLevel.WARNING, code="link-lost", message="no report for 12 s", mission=mission)
-    told = record_of(client, mission)
-    assert told["mission"]["state"] == MissionState.COMPLETED
-    assert told["mission"]["approval"]["content_sha256"] == approval.content_sha256
-    summary = told["summary"]
+    reported = record_of(client, mission)
+    assert reported["mission"]["state"] == MissionState.COMPLETED
+    assert reported["mission"]["approval"]["content_sha256"] == approval.content_sha256
+    summary = reported["summary"]
     assert summary["targets"] == {"pending": 0, "in-progress": 0, "complete": 3, "skipped": 0, "failed": 0, "all": 3}
     assert summary["alerts"] == {"critical": 0, "warning": 1, "advisory": 0}
     assert summary["across_rms_m"] < 1.0 and summary["height_rms_m"] < 1.0
     assert summary["flown"]["length_m"] == pytest.approx(summary["planned"]["length_m"], rel=0.02)
-    (route,) = told["routes"]
+    (route,) = reported["routes"]
     assert len(route["legs"]) == len(route["waypoints"]) - 1 and all(leg["reports"] for leg in route["legs"] if leg["length_m"] > 1.0)
     assert datetime.fromisoformat(route["flown"]["ended_at"]) == pytest.approx(over, abs=timedelta(seconds=1))
-    for target in told["targets"]:
+    for target in reported["targets"]:
         assert target["state"] == TargetState.COMPLETE and target["closest_m"] < 15.0 and target["reached_at"] is not None
 
 
@@ -73,23 +73,23 @@ def test_the_record_says_how_good_the_estimates_were_and_they_can_be_thinned_out
         )
         for number, record in enumerate(records)
     )  # fmt: skip
-    told = record_of(client, mission)["summary"]["estimates"]
-    assert (told["compared"], told["untold"], told["share_inside"]) == (40, 0, 0.75)
-    assert told["largest_m"] == pytest.approx(111.0, abs=2.0) and told["rms_m"] == pytest.approx(55.7, abs=1.5)
+    reported = record_of(client, mission)["summary"]["estimates"]
+    assert (reported["compared"], reported["untold"], reported["share_inside"]) == (40, 0, 0.75)
+    assert reported["largest_m"] == pytest.approx(111.0, abs=2.0) and reported["rms_m"] == pytest.approx(55.7, abs=1.5)
     thinned = client.get(f"/api/v1/missions/{mission.pk}/estimates?most=10").json()
     assert 4 <= len(thinned["features"]) <= 11 and thinned["every_s"] > 3.0
     assert len(client.get(f"/api/v1/missions/{mission.pk}/estimates?most=100").json()["features"]) == 40
 
 
 def test_a_mission_that_has_not_flown_has_a_record_without_figures(client: Client, mission: Mission) -> None:
-    told = record_of(client, mission)
-    assert told["summary"]["across_rms_m"] is None and told["summary"]["flown"]["length_m"] == 0.0
-    assert {target["closest_m"] for target in told["targets"]} == {None}
+    reported = record_of(client, mission)
+    assert reported["summary"]["across_rms_m"] is None and reported["summary"]["flown"]["length_m"] == 0.0
+    assert {target["closest_m"] for target in reported["targets"]} == {None}
 
 
 def test_a_draft_has_a_record_that_says_so(client: Client) -> None:
-    told = record_of(client, Mission.objects.create(name="Draft"))
-    assert told["mission"]["approval"] is None and told["routes"] == []
+    reported = record_of(client, Mission.objects.create(name="Draft"))
+    assert reported["mission"]["approval"] is None and reported["routes"] == []
 
 
 @pytest.mark.parametrize(("state", "is_named"), [(OfferState.ACCEPTED, True), (OfferState.DECLINED, False)])
@@ -191,16 +191,16 @@ def test_results_say_when_a_target_was_reached_and_how_long_it_was_held(
     assert {(row["reached_at"], row["held_s"]) for row in results_by_place(client).values()} == {(None, None)}
     before = timezone.now()
     TargetChecks().check([tern.pk])
-    told = results_by_place(client)
+    reported = results_by_place(client)
     on_record = record_of(client, mission)["targets"]
-    assert [(told[row["place"]]["reached_at"], told[row["place"]]["held_s"]) for row in on_record] == [
+    assert [(reported[row["place"]]["reached_at"], reported[row["place"]]["held_s"]) for row in on_record] == [
         (row["reached_at"], row["held_s"]) for row in on_record
     ]
-    times = sorted(row["reached_at"] for row in told.values())
+    times = sorted(row["reached_at"] for row in reported.values())
     assert None not in times
     assert len(results_by_place(client, reached_from=times[1])) == len(times) - 1
     assert len(results_by_place(client, reached_before=times[1])) == 1
-    assert set(results_by_place(client, changed_since=before.isoformat())) == set(told), "a visit that is stored later is a change"
+    assert set(results_by_place(client, changed_since=before.isoformat())) == set(reported), "a visit that is stored later is a change"
     stored_at = set(mission.targets.values_list("visit_stored_at", flat=True))
     TargetChecks().check([tern.pk])
     assert set(mission.targets.values_list("visit_stored_at", flat=True)) == stored_at, "the same again is no change"

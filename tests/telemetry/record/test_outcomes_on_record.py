@@ -20,8 +20,8 @@ pytestmark = pytest.mark.django_db
 EARLIER = timedelta(minutes=30)
 
 
-def in_order_of_the_route(told: dict[str, Any]) -> list[dict[str, Any]]:
-    return sorted(told["targets"], key=lambda target: target["waypoint_sequence"])
+def in_order_of_the_route(reported: dict[str, Any]) -> list[dict[str, Any]]:
+    return sorted(reported["targets"], key=lambda target: target["waypoint_sequence"])
 
 
 def ends_after(mission: Mission, approval: Approval, tern: Uav, target: int) -> datetime:
@@ -45,15 +45,15 @@ def test_a_crash_is_why_the_targets_after_it_were_not_inspected(
     down = open_alert(uav=tern, level=AlertLevel.CRITICAL, code="down-off-plan", message="down", mission=mission, details=details)
     type(down).objects.filter(pk=down.pk).update(opened_at=over + timedelta(seconds=2))
     abort_mission(mission=mission, actor=person, why="Tern is down")
-    told = record_of(client, mission)
-    first, *rest = in_order_of_the_route(told)
+    reported = record_of(client, mission)
+    first, *rest = in_order_of_the_route(reported)
     assert (first["result"], first["reason"]) == ("inspected", None)
     for target in rest:
         assert (target["result"], target["reason"]["code"]) == ("not-inspected", "crashed-cause")
         assert target["reason"]["message"] == "Tern crashed, motor" and target["closest_m"] != 0.0
         assert datetime.fromisoformat(target["reason"]["at"]) == over
-    assert told["summary"]["results"] == {"inspected": 1, "not-confirmed": 0, "not-inspected": 2, "open": 0, "all": 3}
-    assert [(one["kind"], one["message"], one["position"]) for one in told["incidents"]] == [
+    assert reported["summary"]["results"] == {"inspected": 1, "not-confirmed": 0, "not-inspected": 2, "open": 0, "all": 3}
+    assert [(one["kind"], one["message"], one["position"]) for one in reported["incidents"]] == [
         ("crashed", "Tern crashed, motor", [10.01, 56.0]),
         ("aborted", f"mission aborted by {person.username}: Tern is down", None),
     ]
@@ -91,9 +91,9 @@ def test_a_failsafe_a_battery_and_a_lost_link_are_named(
     alert = open_alert(uav=tern, level=AlertLevel.CRITICAL, code=code, message="…", mission=mission, details=details)
     type(alert).objects.filter(pk=alert.pk).update(opened_at=over)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.FAILED)
-    told = record_of(client, mission)
-    assert [target["reason"]["message"] for target in told["targets"] if target["reason"]] == [words]
-    (incident,) = told["incidents"]
+    reported = record_of(client, mission)
+    assert [target["reason"]["message"] for target in reported["targets"] if target["reason"]] == [words]
+    (incident,) = reported["incidents"]
     assert incident["message"] == words and incident["position"] is not None
 
 
@@ -102,9 +102,9 @@ def test_what_a_person_told_a_uav_is_why(client: Client, mission: Mission, appro
     command = queue_command(uav=tern, kind=CommandKind.RETURN, actor=person, why="rain", mission=mission, approval=approval)
     type(command).objects.filter(pk=command.pk).update(state="applied", sent_at=over)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ABORTED)
-    told = record_of(client, mission)
+    reported = record_of(client, mission)
     words = f"{person.username} told Tern to return: rain"
-    assert [target["reason"]["message"] for target in told["targets"] if target["reason"]] == [words]
+    assert [target["reason"]["message"] for target in reported["targets"] if target["reason"]] == [words]
 
 
 def test_a_target_that_no_route_reaches_has_the_planners_reason(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
@@ -115,14 +115,14 @@ def test_a_target_that_no_route_reaches_has_the_planners_reason(client: Client, 
     approval.save(update_fields=["document"])
     mission.targets.filter(pk=left_out.pk).update(unassigned_message="It stands inside Varneck Airfield.")
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.COMPLETED)
-    told = next(target for target in record_of(client, mission)["targets"] if target["place"] == left_out.sequence)
-    assert (told["result"], told["reason"]["message"]) == ("not-inspected", "It stands inside Varneck Airfield")
+    reported = next(target for target in record_of(client, mission)["targets"] if target["place"] == left_out.sequence)
+    assert (reported["result"], reported["reason"]["message"]) == ("not-inspected", "It stands inside Varneck Airfield")
 
 
 def test_while_a_mission_is_under_way_its_targets_are_open(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
     ends_after(mission, approval, tern, 0)
-    told = record_of(client, mission)
-    assert [target["result"] for target in in_order_of_the_route(told)] == ["inspected", "open", "open"]
+    reported = record_of(client, mission)
+    assert [target["result"] for target in in_order_of_the_route(reported)] == ["inspected", "open", "open"]
 
 
 def test_complete_is_not_confirmed_where_no_report_is_near(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
@@ -154,9 +154,9 @@ def test_times_of_a_simulation_are_compared_by_its_own_clock(client: Client, mis
     for row in TelemetryRecord.objects.filter(mission=mission):
         row.measured_at = began + (row.measured_at - began) / 2
         row.save(update_fields=["measured_at"])
-    told = record_of(client, mission)
-    assert told["summary"]["clock_rate"] == pytest.approx(2.0, rel=0.01)
-    assert told["summary"]["flown"]["duration_s"] == pytest.approx(real["summary"]["flown"]["duration_s"], rel=0.01)
-    for one, other in zip(told["targets"], real["targets"], strict=True):
+    reported = record_of(client, mission)
+    assert reported["summary"]["clock_rate"] == pytest.approx(2.0, rel=0.01)
+    assert reported["summary"]["flown"]["duration_s"] == pytest.approx(real["summary"]["flown"]["duration_s"], rel=0.01)
+    for one, other in zip(reported["targets"], real["targets"], strict=True):
         assert one["reached_after_s"] == pytest.approx(other["reached_after_s"], abs=2.0)
         assert one["planned_after_s"] is None or one["planned_after_s"] > 0.0

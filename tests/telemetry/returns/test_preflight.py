@@ -22,7 +22,7 @@ from tests.missions.api import post
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, fleet
 from tests.missions.worlds import world, zone_around
-from tests.telemetry.records import heard
+from tests.telemetry.records import received
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -57,7 +57,7 @@ def states(found: Preflight, uav: Uav) -> dict[str, CheckState]:
 def test_acts_follow_each_other_until_nothing_is_left_to_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, *uavs = two
     assert checks(mission).next_act == NextAct.CONNECT
-    heard(*uavs)
+    received(*uavs)
     assert checks(mission).next_act == NextAct.UPLOAD
     dispatch_mission(mission=mission, actor=person)
     assert checks(mission).next_act == NextAct.WAIT
@@ -74,7 +74,7 @@ def test_acts_follow_each_other_until_nothing_is_left_to_start(two: tuple[Missio
 
 def test_one_that_nobody_hears_holds_up_no_others_upload(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, tern, kite = two
-    heard(tern)
+    received(tern)
     assert checks(mission).next_act == NextAct.UPLOAD
     dispatch_mission(mission=mission, actor=person)
     carry(tern)
@@ -85,7 +85,7 @@ def test_one_that_nobody_hears_holds_up_no_others_upload(two: tuple[Mission, Uav
 
 def test_one_that_is_not_connected_holds_up_no_others_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, tern, kite = two
-    heard(tern)
+    received(tern)
     dispatch_mission(mission=mission, actor=person)
     carry(tern)
     found = checks(mission)
@@ -101,10 +101,10 @@ def test_one_that_is_not_connected_holds_up_no_others_start(two: tuple[Mission, 
 
 def test_the_service_checks_again_those_that_it_is_to_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     dispatch_mission(mission=mission, actor=person)
     carry(tern, kite)
-    heard(kite, gps_fix=1, stream="boot-2")  # since the page was read
+    received(kite, gps_fix=1, stream="boot-2")  # since the page was read
     answer = begins(person, mission, tern, kite)
     assert answer.status_code == 409, answer.content
     assert "Kite: It has no position yet." in answer.content.decode()
@@ -113,7 +113,7 @@ def test_the_service_checks_again_those_that_it_is_to_start(two: tuple[Mission, 
 
 def test_a_uav_of_another_mission_is_not_started_with_these(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     dispatch_mission(mission=mission, actor=person)
     carry(tern, kite)
     [other] = fleet("Crow")
@@ -132,14 +132,14 @@ def test_a_simulated_uav_is_not_to_be_switched_on(two: tuple[Mission, Uav, Uav])
 
 def test_a_uav_that_was_heard_long_ago_is_not_connected(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     assert states(preflight_of(mission, now=timezone.now() + timedelta(minutes=5)), tern)["link"] == CheckState.FAILED
 
 
 def test_a_uav_in_another_place_without_a_fix_or_with_too_little_battery_is_not_started(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
-    heard(tern, longitude_deg=10.1)
-    heard(kite, gps_fix=1)
+    received(tern, longitude_deg=10.1)
+    received(kite, gps_fix=1)
     assert states(checks(mission), tern)["position"] == CheckState.FAILED
     assert states(checks(mission), kite)["position"] == CheckState.FAILED
 
@@ -147,8 +147,8 @@ def test_a_uav_in_another_place_without_a_fix_or_with_too_little_battery_is_not_
 def test_a_battery_that_would_land_below_its_reserve_blocks(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
     mission.routes.update(battery_percent=60.0)
-    heard(tern, battery_percent=59.0)
-    heard(kite, battery_percent=61.0)
+    received(tern, battery_percent=59.0)
+    received(kite, battery_percent=61.0)
     assert states(checks(mission), tern)["battery"] == CheckState.FAILED
     assert states(checks(mission), kite)["battery"] == CheckState.OK
 
@@ -164,7 +164,7 @@ def test_what_is_not_told_is_unknown_and_no_state(two: tuple[Mission, Uav, Uav])
 
 def test_a_home_position_away_from_the_planned_take_off_is_warned_of(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     start = tern.mission_uavs.get().start
     UavLink.objects.filter(uav=tern).update(home=start)
     UavLink.objects.filter(uav=kite).update(home=start)  # which takes off 250 m from there
@@ -194,7 +194,7 @@ def test_the_fence_is_active_off_or_not_known(
     zone_around((10.010, 56.02), 0.001)
     mission, _approval = approved(person, [tern], [towers[0], towers[5]])
     note_own_return(uav_id=tern.pk, autopilot=autopilot, parameters=parameters)
-    heard(tern)
+    received(tern)
     [fence_check] = [check for check in checks(mission).uavs[0].checks if check.code == "fence"]
     assert fence_check.state == state
     assert words in fence_check.message
@@ -204,15 +204,15 @@ def test_the_fence_is_active_off_or_not_known(
 
 def test_wind_is_compared_where_it_is_reported(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
-    heard(tern, wind_east_mps=9.0, wind_north_mps=0.0)
-    heard(kite)
+    received(tern, wind_east_mps=9.0, wind_north_mps=0.0)
+    received(kite)
     found = checks(mission)
     assert (states(found, tern)["wind"], states(found, kite)["wind"]) == (CheckState.WARNING, CheckState.UNKNOWN)
 
 
 def test_an_upload_that_failed_and_one_in_doubt_are_told(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     dispatch_mission(mission=mission, actor=person)
     [command] = claim(tern)
     assert note_failed(command.pk, "mission-refused", "Item 3 is refused.", **fence(command))
@@ -227,7 +227,7 @@ def test_an_upload_that_failed_and_one_in_doubt_are_told(two: tuple[Mission, Uav
 
 def test_a_zone_that_came_since_blocks(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     zone_around((10.018, 56.0), 0.001)
     found = checks(mission)
     against = [*found.checks, *(check for row in found.uavs for check in row.checks)]
@@ -254,7 +254,7 @@ def test_a_uav_that_is_down_off_its_plan_is_not_started_until_a_person_has_said_
     two: tuple[Mission, Uav, Uav], person: User
 ) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     dispatch_mission(mission=mission, actor=person)
     carry(tern, kite)
     alert = open_alert(uav=tern, level=AlertLevel.CRITICAL, code="down-off-plan", message="down")
@@ -273,7 +273,7 @@ def test_a_uav_that_is_down_off_its_plan_is_not_started_until_a_person_has_said_
 
 def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], django_assert_max_num_queries: Any) -> None:
     mission, tern, kite = two
-    heard(tern, kite)
+    received(tern, kite)
     checks(mission)
     loaded = mission_of_organisation(mission.organisation, mission.pk)
     with django_assert_max_num_queries(8):  # approval, starts under way, routes with UAVs, crashes, ground, and an upload of each UAV
@@ -282,7 +282,7 @@ def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], d
 
 def test_the_pilots_own_check_is_kept_with_the_starts(two: tuple[Mission, Uav, Uav], person: User) -> None:
     mission, *uavs = two
-    heard(*uavs)
+    received(*uavs)
     dispatch_mission(mission=mission, actor=person)
     carry(*uavs)
     answer = post(client_of(person), f"missions/{mission.pk}/planned-starts", {"pilot_checked": True})

@@ -38,25 +38,27 @@ def read(uav: Uav, **parameters: float) -> None:
     note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters)
 
 
-def flies(uav: Uav, position: tuple[float, float] | None, *, age_s: float = 0.0, home: Any = HOME, mode: str = "AUTO", **told: Any) -> None:
+def flies(
+    uav: Uav, position: tuple[float, float] | None, *, age_s: float = 0.0, home: Any = HOME, mode: str = "AUTO", **reported: Any
+) -> None:
     """As its last report has it, so many seconds ago."""
     at = (timezone.now() - timedelta(seconds=age_s)).isoformat()
     groups = {
         "report": {"measured_at": at, "received_at": at},
-        "height": {"measured_at": at, "altitude_relative_m": told.get("height_m", 30.0)},
+        "height": {"measured_at": at, "altitude_relative_m": reported.get("height_m", 30.0)},
         "speed": {"measured_at": at, "speed_mps": 8.0},
         "state": {"measured_at": at, "mode": mode, "is_armed": True, "is_in_air": True},
     }
     if position is not None:
         groups["position"] = {"measured_at": at, "position": list(position)}
-    if "battery_percent" in told:
-        groups["battery"] = {"measured_at": at, "battery_percent": told["battery_percent"]}
+    if "battery_percent" in reported:
+        groups["battery"] = {"measured_at": at, "battery_percent": reported["battery_percent"]}
     UavWatch.objects.update_or_create(
-        uav=uav, defaults={"organisation_id": uav.organisation_id, "measured": groups, "estimated": told.get("estimated")}
+        uav=uav, defaults={"organisation_id": uav.organisation_id, "measured": groups, "estimated": reported.get("estimated")}
     )
     link = {
         "heard_at": timezone.now(),
-        "is_in_air": told.get("is_in_air", True),
+        "is_in_air": reported.get("is_in_air", True),
         "mode": mode,
         "home": Point(*home, srid=4326),
         "home_amsl_m": 100.0,
@@ -74,7 +76,7 @@ def estimated(position: tuple[float, float], *, report_age_s: float = 30.0, boun
     } | more  # fmt: skip
 
 
-def told(user: User, *uavs: Uav) -> list[dict[str, Any]]:
+def reported(user: User, *uavs: Uav) -> list[dict[str, Any]]:
     response = client_of(user).get("/api/v1/returns?" + "&".join(f"uav={uav.pk}" for uav in uavs))
     assert response.status_code == 200, response.content
     return list(response.json()["results"])
@@ -96,7 +98,7 @@ def test_a_clear_way_home_is_told_with_whence_it_was_looked_at(user, uav):
     world()
     read(uav)
     flies(uav, EAST)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert (found["state"], found["warnings"], found["is_clear"], found["safest"]) == ("clear", [], True, STRAIGHT)
     assert found["present"]["position"] == list(EAST) and found["present"]["is_measured"]
     assert found["distance_m"] == pytest.approx(749, abs=5) and found["level_m"] == 30.0
@@ -108,12 +110,12 @@ def test_wires_are_in_the_way_from_beyond_them_and_not_from_this_side(user, uav)
     rebuild()
     read(uav)
     flies(uav, EAST)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert (found["state"], found["is_clear"]) == ("in_the_way", False)
     assert found["warnings"][0].startswith("From where it is now, the return path is below safe clearance over towers or conductors")
     assert found["safe_height_m"] == 75.0
     flies(uav, (10.004, 55.995))
-    assert told(user, uav)[0]["state"] == "clear"
+    assert reported(user, uav)[0]["state"] == "clear"
 
 
 def test_zones_count_that_apply_while_it_flies_home(user, uav):
@@ -121,13 +123,13 @@ def test_zones_count_that_apply_while_it_flies_home(user, uav):
     zone = zone_around((10.007, 55.995), 0.0007, name="Fire brigade")
     read(uav)
     flies(uav, EAST)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert "the return path crosses Fire brigade" in found["warnings"][0]
     begins = timezone.now() + timedelta(hours=6)
     period = {"startDateTime": f"{begins:%Y-%m-%dT%H:%M:%SZ}", "endDateTime": f"{begins:%Y-%m-%dT%H:59:59Z}", "schedule": []}
     NoFlyZone.objects.filter(pk=zone.pk).update(schedule=[period])
     rebuild()
-    assert told(user, uav)[0]["state"] == "clear"
+    assert reported(user, uav)[0]["state"] == "clear"
 
 
 def test_an_estimated_place_is_told_as_such_and_all_within_its_bound_is_looked_at(user, uav):
@@ -135,23 +137,23 @@ def test_an_estimated_place_is_told_as_such_and_all_within_its_bound_is_looked_a
     zone_around((10.007, 55.9962), 0.0007, name="Fire brigade")
     read(uav)
     flies(uav, EAST, age_s=30.0, estimated=estimated(EAST))
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert found["state"] == "clear"
     assert (found["present"]["is_measured"], found["present"]["uncertainty_m"]) == (False, 20.0)
     assert found["present"]["age_s"] == pytest.approx(30.0, abs=2.0)
     flies(uav, EAST, age_s=30.0, estimated=estimated(EAST, bound_m=200.0))
-    assert told(user, uav)[0]["state"] == "in_the_way"
+    assert reported(user, uav)[0]["state"] == "in_the_way"
 
 
 def test_a_place_that_nobody_knows_is_not_checked_from(user, uav):
     world()
     read(uav)
     flies(uav, None)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert (found["state"], found["present"], found["is_clear"]) == ("unknown", None, False)
     assert "Position of Tern too uncertain" in found["warnings"][0]
     flies(uav, EAST, age_s=300.0)
-    assert told(user, uav)[0]["state"] == "unknown"
+    assert reported(user, uav)[0]["state"] == "unknown"
 
 
 def test_of_a_lost_uav_its_whole_route_is_looked_at(user, uav):
@@ -161,7 +163,7 @@ def test_of_a_lost_uav_its_whole_route_is_looked_at(user, uav):
     Mission.objects.filter(pk=mission.pk).update(state="active")
     read(uav)
     flies(uav, None)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert (found["state"], found["mission"], found["place"]) == ("in_the_way", str(mission.pk), 0)
     assert "crosses Fire brigade" in found["warnings"][1]
 
@@ -170,23 +172,23 @@ def test_the_battery_at_landing_is_told_against_the_reserve(user, uav):
     world()
     read(uav)
     flies(uav, EAST, battery_percent=60.0, estimated=estimated(EAST, battery=forecast()))
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert found["battery"]["landing_percent"] == 50.0 and found["battery"]["unknown"] == "" and found["is_clear"]
     flies(uav, EAST, battery_percent=25.0, estimated=estimated(EAST, battery=forecast(left_percent=25.0, hold_s=0)))
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert found["warnings"] == ["It would land with about 15 % of its battery, below the reserve of 20 %."]
     assert not found["is_clear"]
     flies(uav, EAST, battery_percent=8.0, estimated=estimated(EAST, battery=forecast(left_percent=8.0, hold_s=0)))
-    assert "is not enough for the return, which needs about 10 %" in told(user, uav)[0]["warnings"][0]
+    assert "is not enough for the return, which needs about 10 %" in reported(user, uav)[0]["warnings"][0]
 
 
 def test_an_unknown_battery_is_told_with_the_reason(user, uav):
     world()
     read(uav)
     flies(uav, EAST)
-    assert told(user, uav)[0]["battery"]["unknown"] == "Tern reports no battery percentage."
+    assert reported(user, uav)[0]["battery"]["unknown"] == "Tern reports no battery percentage."
     flies(uav, EAST, battery_percent=60.0)
-    battery = told(user, uav)[0]["battery"]
+    battery = reported(user, uav)[0]["battery"]
     assert battery["left_percent"] == 60.0 and "is calculated during a mission with telemetry only" in battery["unknown"]
 
 
@@ -196,7 +198,7 @@ def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_heights(user
     for one, position in ((tern, EAST), (kite, (10.013, 55.9965))):
         read(one)
         flies(one, position)
-    first, second = told(user, tern, kite)
+    first, second = reported(user, tern, kite)
     assert [met["name"] for met in first["met"]] == ["Kite"] and [met["name"] for met in second["met"]] == ["Tern"]
     assert first["met"][0]["is_returning"] and not first["is_clear"]
     assert first["warnings"][0].startswith("Returning now, it comes within")
@@ -204,7 +206,7 @@ def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_heights(user
     assert safest[0] == STRAIGHT
     own_m, set_m = first["level_m"], safest[1]["height_m"]
     assert set_m >= own_m + 15.0 and (safest[1]["wait_s"], safest[1]["along_route"]) == (0.0, False)
-    assert told(user, tern)[0]["met"] == [], "Kite flies on"
+    assert reported(user, tern)[0]["met"] == [], "Kite flies on"
 
 
 def test_the_one_with_the_least_battery_to_spare_goes_first(user):
@@ -213,7 +215,7 @@ def test_the_one_with_the_least_battery_to_spare_goes_first(user):
     for one, position, left in ((tern, EAST, 60.0), (kite, (10.013, 55.9965), 40.0)):
         read(one)
         flies(one, position, battery_percent=left, estimated=estimated(position, battery=forecast(left_percent=left)))
-    safest = {found["name"]: found["safest"] for found in told(user, tern, kite)}
+    safest = {found["name"]: found["safest"] for found in reported(user, tern, kite)}
     assert safest["Kite"] == STRAIGHT and safest["Tern"]["height_m"] >= 45.0
 
 
@@ -224,19 +226,19 @@ def test_one_that_hovers_in_the_way_is_met_and_one_higher_up_or_on_the_ground_is
         read(one)
     flies(tern, EAST)
     flies(kite, (10.007, 55.995), mode="LOITER")
-    (found,) = told(user, tern)
+    (found,) = reported(user, tern)
     assert [met["name"] for met in found["met"]] == ["Kite"] and found["safest"]["height_m"] >= 45.0
     flies(kite, (10.007, 55.995), mode="LOITER", height_m=70.0)
-    assert told(user, tern)[0]["met"] == []
+    assert reported(user, tern)[0]["met"] == []
     flies(kite, (10.007, 55.995), mode="LOITER", is_in_air=False)
-    assert told(user, tern)[0]["met"] == []
+    assert reported(user, tern)[0]["met"] == []
 
 
 def test_one_on_the_ground_has_no_way_home(user, uav):
     world()
     read(uav)
     flies(uav, HOME, is_in_air=False)
-    (found,) = told(user, uav)
+    (found,) = reported(user, uav)
     assert (found["state"], found["warnings"]) == ("not_checked", ["It is on the ground."])
 
 

@@ -45,7 +45,7 @@ class Firmware:
     speed: float = 5.0
     instance: int = 0
     parameters: dict[str, float] = field(default_factory=dict)
-    said: list[str] = field(default_factory=list)  # its STATUSTEXTs
+    stated: list[str] = field(default_factory=list)  # its STATUSTEXTs
     newest: dict[str, Any] = field(default_factory=dict)  # messages by their names
 
     def __enter__(self) -> "Firmware":
@@ -116,7 +116,7 @@ class Firmware:
         name = message.get_type()
         self.newest[name] = message
         if name == "STATUSTEXT":
-            self.said.append(message.text)
+            self.stated.append(message.text)
         elif name.startswith("MISSION_") or name == "PARAM_VALUE":
             self._answers.append(message)
 
@@ -139,12 +139,14 @@ class Firmware:
                     if answer.get_type() == name and all(getattr(answer, key) == value for key, value in values.items()):
                         return answer
                 time.sleep(LOOP_S / 2)
-        raise AssertionError(f"no {name} from vehicle {self.system}: {self.said[-5:]}; {(self.folder / 'firmware.log').read_text()[-400:]}")
+        raise AssertionError(
+            f"no {name} from vehicle {self.system}: {self.stated[-5:]}; {(self.folder / 'firmware.log').read_text()[-400:]}"
+        )
 
     def set(self, name: str, value: float) -> None:
         message = mavlink.MAVLink_param_set_message(self.system, 1, name.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32)
-        told = self.asked(message, "PARAM_VALUE", param_id=name)
-        assert abs(told.param_value - value) < 1e-3, told
+        reported = self.asked(message, "PARAM_VALUE", param_id=name)
+        assert abs(reported.param_value - value) < 1e-3, reported
 
     def held(self, kind: MissionType) -> list[HeldItem]:
         """A list as it is read by the second link."""
@@ -179,20 +181,20 @@ class Firmware:
     @property
     def height_m(self) -> float:
         """Above its home."""
-        told = self.newest.get("GLOBAL_POSITION_INT")
-        return 0.0 if told is None else told.relative_alt / 1000.0
+        reported = self.newest.get("GLOBAL_POSITION_INT")
+        return 0.0 if reported is None else reported.relative_alt / 1000.0
 
     @property
     def place(self) -> tuple[float, float]:
         """Longitude and latitude, as it tells them."""
-        told = self.newest.get("GLOBAL_POSITION_INT")
-        return self.at if told is None else (told.lon / 1e7, told.lat / 1e7)
+        reported = self.newest.get("GLOBAL_POSITION_INT")
+        return self.at if reported is None else (reported.lon / 1e7, reported.lat / 1e7)
 
     @property
     def is_ready(self) -> bool:
         """It may be armed in GUIDED, unless something else is wrong."""
-        told = self.newest.get("EKF_STATUS_REPORT")
-        return told is not None and bool(told.flags & ABSOLUTE_POSITION) and "HOME_POSITION" in self.newest
+        reported = self.newest.get("EKF_STATUS_REPORT")
+        return reported is not None and bool(reported.flags & ABSOLUTE_POSITION) and "HOME_POSITION" in self.newest
 
 
 def _item(system: int, number: int, item: MissionItem) -> Any:

@@ -33,7 +33,7 @@ from tests.telemetry.watch.program import watch_program
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 LOOK_S = 0.05
 CROSSING_PACE, MEETING_PACE = 4.0, 2.0
-TOLD_BEFORE_S = 12.0  # of the 20 s that the alert looks ahead; the watch looks each second, which is 2 s of the UAVs
+REPORTED_BEFORE_S = 12.0  # of the 20 s that the alert looks ahead; the watch looks each second, which is 2 s of the UAVs
 PASSED_S = 8.0
 APART_DEG = 0.004  # of longitude, as the plan has them
 
@@ -130,15 +130,15 @@ def test_two_missions_begun_together_that_meet_are_told_in_time(uavs, region, ne
     with two_ready(missions, new_vehicle, tmp_path, speed=MEETING_PACE) as vehicles, watch_program(tmp_path, name="watch"):
         for uav, mission in zip(uavs, missions, strict=True):
             start(uav, mission)
-        began_s, told_s, nearest_s, nearest_m = time.monotonic(), None, 0.0, math.inf
-        while told_s is None or time.monotonic() < nearest_s + PASSED_S:
+        began_s, reported_s, nearest_s, nearest_m = time.monotonic(), None, 0.0, math.inf
+        while reported_s is None or time.monotonic() < nearest_s + PASSED_S:
             assert time.monotonic() < began_s + FLIGHT_S, "they did not meet"
             apart_m = math.hypot(short_distance_m(*vehicles[0].place, *vehicles[1].place), vehicles[0].height_m - vehicles[1].height_m)
             if apart_m < nearest_m:
                 nearest_m, nearest_s = apart_m, time.monotonic()
-            if told_s is None and Alert.objects.filter(code=CODE, uav__in=uavs).exists():
-                told_s = time.monotonic()
+            if reported_s is None and Alert.objects.filter(code=CODE, uav__in=uavs).exists():
+                reported_s = time.monotonic()
             time.sleep(LOOK_S)
     assert nearest_m < settings.SEPARATION_RULES.vertical_m  # they did meet
-    assert (nearest_s - told_s) * MEETING_PACE >= TOLD_BEFORE_S
+    assert (nearest_s - reported_s) * MEETING_PACE >= REPORTED_BEFORE_S
     assert Alert.objects.filter(code=CODE, uav__in=uavs, level="critical").exists()  # from 12 s before on

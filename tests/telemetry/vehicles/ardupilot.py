@@ -36,11 +36,11 @@ def float32(value: float) -> float:
 class ArduPilot(Vehicle):
     refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
     has_fence: bool = True  # else fence and rally points are answered by 0 items
-    heard_items: int = 0
+    received_items: int = 0
     firmware: tuple[int, int, int] | None = (4, 6, 0)
     parameters: dict[str, float] = field(default_factory=lambda: {"MIS_RESTART": 0.0, "FENCE_ENABLE": 0.0})
     item_after_landing: int = 1  # 0 in other builds
-    landed_told_after_s: float = 1.0  # its messages of the touch-down come at 1 Hz each, in any order
+    landed_reported_after_s: float = 1.0  # its messages of the touch-down come at 1 Hz each, in any order
     autopilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     upload_kind: MissionType | None = None
     _at: int = 0
@@ -77,7 +77,7 @@ class ArduPilot(Vehicle):
             return [self._ack(mavlink.MAV_MISSION_ERROR, kind)]
         if message.seq != self._at:
             return [self._ack(mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)]
-        self.heard_items += 1
+        self.received_items += 1
         item = item_of(message)
         result = self._checked(item, kind)
         if kind is MissionType.MISSION:
@@ -188,7 +188,7 @@ class ArduPilot(Vehicle):
         return min(times, default=None)
 
     def says_in_air(self) -> bool:
-        return self.is_in_air or self._now_s < self._touched_down_s + self.landed_told_after_s
+        return self.is_in_air or self._now_s < self._touched_down_s + self.landed_reported_after_s
 
     def touch_down(self) -> None:
         """It disarms by itself, its list is at the beginning again, and no item of LAND is told as reached."""

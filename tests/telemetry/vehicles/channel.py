@@ -41,7 +41,7 @@ class Channel:
         self._random = random.Random(self.seed)
         self._due: list[tuple[float, int, bool, bytes]] = []
         self._order = count()
-        self._heard = 0
+        self._received = 0
         self._ground_frames = mavlink.MAVLink(None, srcSystem=GROUND_SYSTEM, srcComponent=mavlink.MAV_COMP_ID_MISSIONPLANNER)
         self._vehicle_frames = mavlink.MAVLink(None, srcSystem=self.vehicle.system, srcComponent=1)
         self._parser = mavlink.MAVLink(None)
@@ -96,8 +96,8 @@ class Channel:
         message = self._parser.parse_char(frame)
         assert message is not None
         if to_vehicle:
-            self._heard += 1
-            if self.vehicle_dies_after is not None and self._heard > self.vehicle_dies_after:
+            self._received += 1
+            if self.vehicle_dies_after is not None and self._received > self.vehicle_dies_after:
                 self.vehicle.is_alive = False
             self._send(self.vehicle.receive(message, self.now_s), to_vehicle=False)
             self.vehicle._plan_wake()

@@ -51,7 +51,7 @@ class FlyingCopter(ArduPilot):
     _low_since_s: float | None = None
     _gps_lost_s: float | None = None
     _has_failsafe: bool = False
-    _to_say: list[Any] = field(default_factory=list)
+    _to_report: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -77,7 +77,7 @@ class FlyingCopter(ArduPilot):
         self._epoch_s += self.since_boot_s
         self._has_failsafe, self._low_since_s, self._gps_lost_s, self._waits_until_s = False, None, None, None
         self.intervals_s.clear()
-        self._to_say.clear()
+        self._to_report.clear()
 
     # Orders
 
@@ -86,7 +86,7 @@ class FlyingCopter(ArduPilot):
             self._set_interval(int(values[0]), values[1] / 1e6)
             return int(mavlink.MAV_RESULT_ACCEPTED)
         if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and values[0] == 1 and (refusal := self._arming_refusal()):
-            self._say(mavlink.MAV_SEVERITY_CRITICAL, refusal)
+            self._report(mavlink.MAV_SEVERITY_CRITICAL, refusal)
             return int(mavlink.MAV_RESULT_FAILED)
         mode_before = self.custom_mode
         result = super().carry_out(command, values)
@@ -97,8 +97,8 @@ class FlyingCopter(ArduPilot):
     def _command(self, message: Any, now_s: float) -> list[Any]:
         """Words before the acknowledgement."""
         answers = super()._command(message, now_s)
-        said, self._to_say = self._to_say, []
-        return [*said, *answers]
+        stated, self._to_report = self._to_report, []
+        return [*stated, *answers]
 
     def _version(self, asked_for: int) -> list[Any]:
         return super()._version(asked_for) or self._message(asked_for)
@@ -124,7 +124,7 @@ class FlyingCopter(ArduPilot):
 
     def _mission_count(self, message: Any, now_s: float) -> list[Any]:
         if self.is_armed and self.custom_mode == AUTO:
-            self._say(mavlink.MAV_SEVERITY_INFO, "Auto mission changed, restarted command")
+            self._report(mavlink.MAV_SEVERITY_INFO, "Auto mission changed, restarted command")
         return super()._mission_count(message, now_s)
 
     # Flight
@@ -135,8 +135,8 @@ class FlyingCopter(ArduPilot):
             self._flown_s += STEP_S
             self._fly()
             self._watch_failsafes()
-        said, self._to_say = self._to_say, []
-        return [*messages, *said, *self._streamed(now_s)]
+        stated, self._to_report = self._to_report, []
+        return [*messages, *stated, *self._streamed(now_s)]
 
     def _fly(self) -> None:
         self._velocity = (0.0, 0.0, 0.0)
@@ -169,7 +169,7 @@ class FlyingCopter(ArduPilot):
         elif item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
             self._return()
         elif self._reaches(item):
-            self._to_say.append(mavlink.MAVLink_mission_item_reached_message(self.current_item))
+            self._to_report.append(mavlink.MAVLink_mission_item_reached_message(self.current_item))
             self._waits_until_s = None
             if self.current_item < len(items) - 1:
                 self.current_item += 1
@@ -229,11 +229,11 @@ class FlyingCopter(ArduPilot):
         self._low_since_s = (self._low_since_s or self._flown_s) if low else None
         if self._low_since_s is not None and self._flown_s - self._low_since_s >= wanted["BATT_LOW_TIMER"] and not self._has_failsafe:
             self._has_failsafe = True
-            self._say(mavlink.MAV_SEVERITY_WARNING, f"Battery 1 is low {wanted['SIM_BATT_VOLTAGE']:.2f}V used 0 mAh")
+            self._report(mavlink.MAV_SEVERITY_WARNING, f"Battery 1 is low {wanted['SIM_BATT_VOLTAGE']:.2f}V used 0 mAh")
             self._change_mode_by_itself({1.0: LAND, 2.0: RTL}.get(wanted["BATT_FS_LOW_ACT"]))
         self._gps_lost_s = (self._gps_lost_s or self._flown_s) if wanted["SIM_GPS_DISABLE"] else None
         if self._gps_lost_s is not None and EKF_FAILS_AFTER_S <= self._flown_s - self._gps_lost_s < EKF_FAILS_AFTER_S + STEP_S:
-            self._say(mavlink.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode")
+            self._report(mavlink.MAV_SEVERITY_CRITICAL, "EKF Failsafe: changed to LAND Mode")
             self._change_mode_by_itself(LAND)
 
     def _change_mode_by_itself(self, mode: int | None) -> None:
@@ -241,8 +241,8 @@ class FlyingCopter(ArduPilot):
             self.custom_mode = mode
             self._enter_mode()
 
-    def _say(self, severity: int, text: str) -> None:
-        self._to_say.append(mavlink.MAVLink_statustext_message(severity, text.encode()))
+    def _report(self, severity: int, text: str) -> None:
+        self._to_report.append(mavlink.MAVLink_statustext_message(severity, text.encode()))
 
     # What it reports
 

@@ -24,14 +24,14 @@ MISSION, HOLD, RETURN, LAND, TAKE_OFF = 4, 3, 5, 6, 2
 class Px4(Vehicle):
     state: str = IDLE
     refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
-    heard_items: int = 0
+    received_items: int = 0
     autopilot = mavlink.MAV_AUTOPILOT_PX4
     _kind: MissionType = MissionType.MISSION
     _at: int = 0
     _count: int = 0
     _new: list[MissionItem] = field(default_factory=list)
     _sent_s: float = 0.0
-    _heard_s: float = 0.0
+    _received_s: float = 0.0
 
     def _mission_count(self, message: Any, now_s: float) -> list[Any]:
         if self.state == SENDING:
@@ -47,7 +47,7 @@ class Px4(Vehicle):
                 self.lists[self._kind] = []
                 return [self._ack(mavlink.MAV_MISSION_ACCEPTED, self._kind)]
             self.state = GETTING
-        self._heard_s = now_s
+        self._received_s = now_s
         return self._request(now_s)
 
     def _mission_item_int(self, message: Any, now_s: float) -> list[Any]:
@@ -58,10 +58,10 @@ class Px4(Vehicle):
             return [self._ack(mavlink.MAV_MISSION_ACCEPTED if again else mavlink.MAV_MISSION_ERROR, self._kind)]
         if self.state == SENDING:
             return [self._ack(mavlink.MAV_MISSION_ERROR, self._kind)]
-        self._heard_s = now_s
+        self._received_s = now_s
         if message.seq != self._at:
             return []
-        self.heard_items += 1
+        self.received_items += 1
         refusal = self._checked(item_of(message))
         if self._kind is MissionType.MISSION:
             refusal = self.refuses.get(message.seq, refusal)
@@ -92,13 +92,13 @@ class Px4(Vehicle):
             self.state = IDLE
         if self.state == GETTING or (self.state == SENDING and message.mission_type != self._kind):
             return []
-        self.state, self._kind, self._at, self._heard_s = SENDING, MissionType(message.mission_type), 0, now_s
+        self.state, self._kind, self._at, self._received_s = SENDING, MissionType(message.mission_type), 0, now_s
         return [mavlink.MAVLink_mission_count_message(*GROUND, len(self.lists[self._kind]), self._kind)]
 
     def _mission_request_int(self, message: Any, now_s: float) -> list[Any]:
         if self.state != SENDING or message.mission_type != self._kind:
             return []
-        self._heard_s = now_s
+        self._received_s = now_s
         held = self.lists[self._kind]
         if message.seq == self._at and self._at < len(held):
             self._at += 1
@@ -141,7 +141,7 @@ class Px4(Vehicle):
         return item_int(number, kind, item, (one, two, three, four), frame, item.altitude_m)
 
     def _due(self, now_s: float) -> list[Any]:
-        if self.state != IDLE and now_s >= self._heard_s + GIVE_UP_S:
+        if self.state != IDLE and now_s >= self._received_s + GIVE_UP_S:
             self.state = IDLE
         if self.state == GETTING and now_s >= self._sent_s + RETRY_S:
             return self._request(now_s)
@@ -150,7 +150,7 @@ class Px4(Vehicle):
     def _due_s(self) -> float | None:
         if self.state == IDLE:
             return None
-        give_up_s = self._heard_s + GIVE_UP_S
+        give_up_s = self._received_s + GIVE_UP_S
         return min(give_up_s, self._sent_s + RETRY_S) if self.state == GETTING else give_up_s
 
     def restart(self) -> None:

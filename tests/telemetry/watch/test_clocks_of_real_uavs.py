@@ -53,12 +53,12 @@ def alerts_of(uavs: list[Uav]) -> set[str]:
     for second in range(12):
         at = NOW + timedelta(seconds=second)
         for uav, side in zip(uavs, (-1.0, 1.0), strict=True):
-            told = Measurement(
+            reported = Measurement(
                 longitude_deg=UAV_AT.lon + side * (APART_M / 2 - SPEED_MPS * second) / DEGREE_M, latitude_deg=UAV_AT.lat + 0.01,
                 altitude_relative_m=60.0, altitude_amsl_m=160.0, is_in_air=True, is_armed=True, mode="hold",
                 velocity_north_mps=0.0, velocity_east_mps=-side * SPEED_MPS, velocity_down_mps=0.0,
             )  # fmt: skip
-            store_records([NewRecord(uav.pk, "mavlink", "boot", second * 1_000, at, at, told)])
+            store_records([NewRecord(uav.pk, "mavlink", "boot", second * 1_000, at, at, reported)])
         UavLink.objects.update(heard_at=at)
         watch.round(at.timestamp() + 0.1)
     return set(Alert.objects.filter(uav__in=uavs).values_list("code", flat=True))

@@ -35,8 +35,8 @@ def uav(tmp_path) -> Uav:
 
 def report(uav: Uav, second: float, **values) -> None:
     at = NOW + timedelta(seconds=second)
-    told = {"longitude_deg": UAV_AT.lon, "latitude_deg": UAV_AT.lat, "altitude_relative_m": 30.0, "is_in_air": True} | values
-    store_records([NewRecord(uav.pk, "mavlink", "boot", int(second * 1_000), at, at, Measurement(**told))])
+    reported = {"longitude_deg": UAV_AT.lon, "latitude_deg": UAV_AT.lat, "altitude_relative_m": 30.0, "is_in_air": True} | values
+    store_records([NewRecord(uav.pk, "mavlink", "boot", int(second * 1_000), at, at, Measurement(**reported))])
 
 
 def watch(name: str = "one", run: str = "1", **options) -> Watch:

@@ -59,11 +59,11 @@ class Maker:
                 path = path.replace(f"{{{name}}}", quote(str(self._id(name, parameter["schema"])).encode("utf-8", "replace"), safe=""))
             elif parameter.get("required") or self._chance.random() > LEFT_OUT_SHARE:
                 value = self._known(name) if where == "query" and self._chance.random() < 0.3 else None
-                told = str(self._value(parameter["schema"]) if value is None else value)
+                reported = str(self._value(parameter["schema"]) if value is None else value)
                 if where == "query":
-                    query[name] = told.encode("utf-8", "replace")
+                    query[name] = reported.encode("utf-8", "replace")
                 else:
-                    headers[name] = self._chance.choice(['"1"', '"2"', "*", "W/1", told.encode("ascii", "replace").decode()[:50]])
+                    headers[name] = self._chance.choice(['"1"', '"2"', "*", "W/1", reported.encode("ascii", "replace").decode()[:50]])
         content = operation.get("requestBody", {}).get("content", {})
         media_type, body = "application/json", None
         if content:

@@ -102,8 +102,8 @@ def test_answers_that_generated_clients_cannot_know_are_named_where_they_are_tol
     answers = [response for methods in document["paths"].values() for each in methods.values() for response in each["responses"].values()]
     contents = [response["content"] for response in answers if response.get("content")]
     unknown = {media_type for content in contents if not any(map(is_known, content)) for media_type in content}
-    told = API_PAGE.read_text().partition("content_type_overrides:\n")[2].partition("```")[0]
-    assert unknown == set(re.findall(r"^  (\S+): application/octet-stream$", told, flags=re.MULTILINE))
+    reported = API_PAGE.read_text().partition("content_type_overrides:\n")[2].partition("```")[0]
+    assert unknown == set(re.findall(r"^  (\S+): application/octet-stream$", reported, flags=re.MULTILINE))
 
 
 def test_every_operation_has_a_summary_and_says_which_errors_it_knows(document: Any) -> None:

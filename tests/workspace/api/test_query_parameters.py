@@ -34,8 +34,8 @@ def operations(document: Any) -> list[tuple[str, str, set[str]]]:
                 for each in described:
                     if each["in"] == "path":
                         schema = each["schema"]
-                        told = IDS.get(schema.get("format", ""), schema.get("enum", ["1"])[0])
-                        address = address.replace(f"{{{each['name']}}}", str(told))
+                        reported = IDS.get(schema.get("format", ""), schema.get("enum", ["1"])[0])
+                        address = address.replace(f"{{{each['name']}}}", str(reported))
                 found.append((method, address, {each["name"] for each in described if each["in"] == "query"}))
     return found
 

@@ -59,7 +59,7 @@ def running_job(user: User) -> Job:
     return job
 
 
-def told(live: WebSocket) -> dict[str, Any]:
+def reported(live: WebSocket) -> dict[str, Any]:
     """The job of the next message about one."""
     while True:
         message = json.loads(live.recv())
@@ -72,13 +72,13 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
     user = somebody()
     job = running_job(user)
     live = here.open(at(job), user=user)
-    first = told(live)
+    first = reported(live)
     assert (first["id"], first["state"], first["message"]) == (str(job.pk), "running", "Planning")
     report_progress(job=job, progress=0.5, message="half way", best={"value": 7.0, "bound": 6.0})
-    half = told(live)
+    half = reported(live)
     assert (half["progress"], half["message"], half["best"]) == (0.5, "half way", {"value": 7.0, "bound": 6.0})
     finish_job(job=job, result={"routes": []}, message="Planned")
-    last = told(live)
+    last = reported(live)
     assert (last["state"], last["result"], last["best"]) == ("done", {"routes": []}, None)
     assert close_code(live) == 1000
 
@@ -87,7 +87,7 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
 def test_a_program_listens_with_its_token(here: Door, origin: str | None) -> None:
     user = somebody()
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
-    assert told(here.open(at(running_job(user)), token=token, origin=origin))["state"] == "running"
+    assert reported(here.open(at(running_job(user)), token=token, origin=origin))["state"] == "running"
 
 
 def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
@@ -122,7 +122,7 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
     of_old_organisation = here.open(at(running_job(moved)), user=moved)
     ended, idle = somebody(), somebody()
     of_ended, of_idle = (here.open(at(running_job(person)), user=person) for person in (ended, idle))
-    told(by_session), told(by_token), told(of_old_organisation), told(of_ended), told(of_idle)
+    reported(by_session), reported(by_token), reported(of_old_organisation), reported(of_ended), reported(of_idle)
     ended_s = time.monotonic()
     User.objects.filter(pk=user.pk).update(session_generation=1)
     ApiToken.objects.update(revoked_at=timezone.now())
@@ -137,7 +137,7 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
 def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
     user = somebody()
     live = here.open(at(running_job(user)), user=user)
-    told(live)
+    reported(live)
     live.send("x" * 100_000)
     assert close_code(live) == 4400
 
@@ -146,20 +146,20 @@ def test_a_dead_redis_delays_word_and_comes_back(door: Door, here: Door) -> None
     user = somebody()
     job = running_job(user)
     live = here.open(at(job), user=user)
-    told(live)
+    reported(live)
     subprocess.run(["redis-cli", "-s", str(door.redis), "shutdown", "nosave"], check=False)  # noqa: S603, S607
     wait_until(lambda: not door.redis.exists())
     report_progress(job=job, progress=0.3, message="without Redis")
-    assert told(live)["message"] == "without Redis"
+    assert reported(live)["message"] == "without Redis"
     other = here.open(at(job), user=user)  # a page that is opened meanwhile
-    assert told(other)["progress"] == 0.3
+    assert reported(other)["progress"] == 0.3
     with running(redis_at(door.redis)):
         wait_until(door.redis.exists)
         report_progress(job=job, progress=0.6, message="it is back")
-        assert [told(live)["message"], told(other)["message"]] == ["it is back", "it is back"]
+        assert [reported(live)["message"], reported(other)["message"]] == ["it is back", "it is back"]
         cancel_job(job=job)
         finish_job(job=job, result=1)
-        assert told(live)["state"] in {"running", "done"}
+        assert reported(live)["state"] in {"running", "done"}
 
 
 def test_a_job_that_is_deleted_between_two_looks_closes_the_socket(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -185,10 +185,10 @@ def test_nobody_waits_for_a_redis_that_does_not_answer(
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"redis://127.0.0.1:{silent.getsockname()[1]}/0"
         settings.CHANNEL_LAYERS = {"default": layer | {"CONFIG": layer["CONFIG"] | {"hosts": [{"address": address}]}}}
-        saying = threading.Thread(target=words.publish_job, args=[uuid4()], daemon=True)
-        saying.start()
-        saying.join(TIMEOUT_S)
-        assert not saying.is_alive()
+        sending = threading.Thread(target=words.publish_job, args=[uuid4()], daemon=True)
+        sending.start()
+        sending.join(TIMEOUT_S)
+        assert not sending.is_alive()
     assert "Redis is away" in caplog.text
 
 

@@ -120,7 +120,7 @@ class Uavs {
 
   /** @param {MapUav} uav */
   #dart(uav) {
-    const said = [t("{name}, not in this mission", { name: uav.name }), headingWords(uav)];
+    const labels = [t("{name}, not in this mission", { name: uav.name }), headingWords(uav)];
     const title = [t("{name}. Click to take it along", { name: uav.name }), headingWords(uav)];
     return h(
       "button",
@@ -128,7 +128,7 @@ class Uavs {
         type: "button",
         tabindex: "-1",
         class: "map-dart",
-        "aria-label": said.filter(Boolean).join(", "),
+        "aria-label": labels.filter(Boolean).join(", "),
         title: title.filter(Boolean).join(" · "),
         onclick: (event) => {
           event.stopPropagation();

@@ -28,7 +28,7 @@ export function layersMenu({ under, shown, more = [] }) {
         checked: isOn,
         onchange: (event) => {
           turn(/** @type {HTMLInputElement} */ (event.target).checked);
-          tellAll();
+          notifyAll();
         },
       }),
       drawing,
@@ -36,7 +36,7 @@ export function layersMenu({ under, shown, more = [] }) {
     );
 
   const all = h("button", { type: "button", class: "button", onclick: showEverything }, t("Show everything"));
-  const tellAll = () => {
+  const notifyAll = () => {
     all.hidden = shown.isWhole();
   };
 
@@ -89,7 +89,7 @@ export function layersMenu({ under, shown, more = [] }) {
       h("h2", { class: "legend-head" }, t("Legend")),
       h("ul", { class: "legend" }, legendItems()),
     ]);
-    tellAll();
+    notifyAll();
   }
   draw();
   return menu;

@@ -48,7 +48,7 @@ async function lastSave(mission, userName) {
 export function createConflicts(context, saving, showBoth) {
   const meeting = createMeeting(context, saving);
   const { seeBoth } = createDecision(context, saving, showBoth);
-  return { ...meeting, seeBoth, tellDeleted: () => tellDeleted(context, saving, meeting.take) };
+  return { ...meeting, seeBoth, showDeleted: () => showDeleted(context, saving, meeting.take) };
 }
 
 /** @param {Pick<MissionContext, "store" | "selection">} context @returns {Version} */
@@ -206,7 +206,7 @@ function createDecision(context, saving, showBoth) {
  * @param {Saving} saving
  * @param {(theirs: Mission) => Promise<void>} take
  */
-function tellDeleted({ store, problem, failed, page }, saving, take) {
+function showDeleted({ store, problem, failed, page }, saving, take) {
   async function bringBack() {
     try {
       const { data } = /** @type {Answer<Mission>} */ (await post(`/missions/${store.state.mission?.id}/restore`, {}));

@@ -1,7 +1,7 @@
 /** UAVs of a mission: chosen from the fleet, added to it, moved, given other values for this mission. */
 
 import { post } from "../../api.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { uavOf, withoutUavAt, withUav, withUavAs, withUavAt } from "../mission_uavs.js";
 import { openChanges, withFleetFigures, withPresentFigures } from "../uav_changes.js";
@@ -35,7 +35,7 @@ export function createFleetActions({ store, selection, change }) {
     const uav = uavOf(data);
     store.update({ fleet: [...store.state.fleet, uav] });
     takeAlong([uav]);
-    say(t("{name} is added and chosen.", { name: uav.name }));
+    announce(t("{name} is added and chosen.", { name: uav.name }));
   }
 
   /** @param {number} id */
@@ -47,7 +47,7 @@ export function createFleetActions({ store, selection, change }) {
   /** @param {number[]} ids */
   function addUavsOfFleet(ids) {
     const added = takeAlong(ids.flatMap((id) => store.state.fleet.find((known) => known.id === id) ?? []));
-    say(tn(added, "{count} UAV is chosen.", "{count} UAVs are chosen."));
+    announce(tn(added, "{count} UAV is chosen.", "{count} UAVs are chosen."));
   }
 
   function takePresentFigures() {

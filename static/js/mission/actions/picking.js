@@ -1,6 +1,6 @@
 /** Picking targets: every change is one step of the history. */
 
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import * as picks from "../selection.js";
 import { createNetworkPicking } from "./network_picking.js";
@@ -22,9 +22,9 @@ export function createPicking(context) {
    * Adds what is not picked yet; says where a mission would not take as many. Returns how many were added.
    *
    * @param {PickedTarget[]} targets
-   * @param {{ sayWhat?: boolean }} [how]
+   * @param {{ announceWhat?: boolean }} [how]
    */
-  function addTargets(targets, { sayWhat = true } = {}) {
+  function addTargets(targets, { announceWhat = true } = {}) {
     const before = selection().targets.length;
     const next = picks.withTargets(selection(), targets);
     if (next.targets.length > picks.MAX_TARGETS && next.targets.length > before) {
@@ -37,8 +37,8 @@ export function createPicking(context) {
     }
     change(next);
     const added = selection().targets.length - before;
-    if (sayWhat)
-      say(
+    if (announceWhat)
+      announce(
         added
           ? t("{added}, {all} in all.", { added: addedWords(added), all: selection().targets.length })
           : t("Already picked."),
@@ -53,7 +53,7 @@ export function createPicking(context) {
    * @param {(added: string) => string} words
    */
   function addMany(targets, words) {
-    const added = addTargets(targets, { sayWhat: false });
+    const added = addTargets(targets, { announceWhat: false });
     if (added || !store.state.problem) toast(words(addedWords(added)), added ? undoIn(context) : null);
     return added;
   }
@@ -80,7 +80,7 @@ export function createPicking(context) {
 
   return {
     /** @param {string} title @param {string} text */
-    tell: (title, text) => problem(title, text, [], { untilChanged: true }),
+    notify: (title, text) => problem(title, text, [], { untilChanged: true }),
     addTargets,
     addMany,
     replaceTargets,
@@ -122,8 +122,8 @@ function createTargetChanges(context) {
     removeTargets,
     setTask,
     setWish,
-    undo: () => history.undo() && say(t("Undone.")),
-    redo: () => history.redo() && say(t("Done again.")),
+    undo: () => history.undo() && announce(t("Undone.")),
+    redo: () => history.redo() && announce(t("Done again.")),
     /** @template {keyof MissionSelection} Name @param {Name} name @param {MissionSelection[Name]} value */
     setOption: (name, value) => change({ ...selection(), [name]: value }),
   };

@@ -4,7 +4,7 @@
  */
 
 import { follow, get, isAbort, post } from "../../api.js";
-import { say } from "../../page/toast.js";
+import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { isWithoutBattery, OBJECTIVES, otherObjective } from "../plan_view.js";
 import * as picks from "../selection.js";
@@ -118,7 +118,8 @@ export function createPlanBeside(store) {
       if (asked.targets.length > MAX_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
       await search.make(other, own);
     } catch (error) {
-      if (!isAbort(error)) say(t("The other way of planning has no figures: {reason}", { reason: wordsOf(error) }));
+      if (!isAbort(error))
+        announce(t("The other way of planning has no figures: {reason}", { reason: wordsOf(error) }));
     } finally {
       search.end(own);
     }

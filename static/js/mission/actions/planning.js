@@ -5,7 +5,7 @@
 
 import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
 import { qualityOf, wishWordsOf } from "../plan_quality.js";
@@ -180,7 +180,7 @@ function createSearch(context, aside, waitForJob) {
  * @returns {(made: ShownPlan, asked: MissionSelection) => void}
  */
 function createShowing({ store, selection, problem }, aside, planAgain) {
-  function tellChanged() {
+  function showChanged() {
     const words = t("The plan is of what was picked when planning began.");
     problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: planAgain }], {
       untilChanged: true,
@@ -204,9 +204,9 @@ function createShowing({ store, selection, problem }, aside, planAgain) {
       chosenRoute: null,
       why: null,
     });
-    say(wordsOf(made));
+    announce(wordsOf(made));
     if (picks.basisOf(selection()) === made.basis) aside.want(asked);
-    else if (!isPlanCurrent(store.state)) tellChanged();
+    else if (!isPlanCurrent(store.state)) showChanged();
   };
 }
 

@@ -1,7 +1,7 @@
 /** Rally points put on the map and moved there; each is one step of the history. */
 
 import { rallyName } from "../../domain/palette.js";
-import { say } from "../../page/toast.js";
+import { announce } from "../../page/toast.js";
 import { t } from "../../text.js";
 import * as link from "../lost_link.js";
 
@@ -17,7 +17,7 @@ export function createRallyPoints({ store, selection, change }) {
   function addRallyPoint(position) {
     if (!set(link.withRallyPoint(selection().lost_link, position))) return;
     const count = points().length;
-    say(t("Rally point {name} is placed.", { name: rallyName(count - 1) }));
+    announce(t("Rally point {name} is placed.", { name: rallyName(count - 1) }));
     if (count >= link.MAX_RALLY_POINTS) store.update({ tool: "point" });
   }
 

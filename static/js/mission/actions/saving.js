@@ -15,7 +15,7 @@ import { createStoredMission, unlessOfSaving } from "./stored_mission.js";
 /** @import { Attempt } from "./save_request.js" */
 
 /** @typedef {{ asCopy?: boolean, byItself?: boolean }} SaveOptions byItself: nobody asked for it, so nothing is said where it goes well */
-/** @typedef {{ meet: (lost: Version | null) => Promise<void>, seeBoth: () => void, tellDeleted: () => void }} Conflicts */
+/** @typedef {{ meet: (lost: Version | null) => Promise<void>, seeBoth: () => void, showDeleted: () => void }} Conflicts */
 /** @typedef {{ waitForJob: (job: string, words: string) => Promise<unknown>, makeRoom: () => void }} Planner */
 /** @typedef {ReturnType<typeof setTimeout> | undefined} Timer */
 
@@ -215,7 +215,7 @@ function createRetry({ store, problem, failed, wordsOf }, conflicts, save, mayTr
   }
 
   /** @param {unknown} error @param {boolean} asCopy */
-  function tell(error, asCopy) {
+  function notify(error, asCopy) {
     const standing = unlessOfSaving(store.state.problem);
     if (standing && standing.text === wordsOf(error)) {
       store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
@@ -238,12 +238,12 @@ function createRetry({ store, problem, failed, wordsOf }, conflicts, save, mayTr
      */
     async afterFailure(error, asCopy, lost) {
       if (isAbort(error)) problem(t("Saved as a draft."), t("Planning was stopped before it was done."), [], how);
-      else if (!(error instanceof ApiError)) tell(error, asCopy);
+      else if (!(error instanceof ApiError)) notify(error, asCopy);
       else if (error.status === 412) await conflicts.meet(lost);
-      else if (error.status === 404 && store.state.mission && !asCopy) conflicts.tellDeleted();
+      else if (error.status === 404 && store.state.mission && !asCopy) conflicts.showDeleted();
       else if (error.isAway) waitForServer(asCopy);
       else if (error.retryAfter_s !== null) waitFor(error, asCopy);
-      else tell(error, asCopy);
+      else notify(error, asCopy);
     },
   };
 }

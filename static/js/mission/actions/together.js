@@ -15,20 +15,20 @@ import { ApiError, get, post } from "../../api.js";
  * @property {() => Promise<FleetUav[]>} readFleet what flies, as it is now
  * @property {(theirs: Mission) => Promise<void>} take a younger revision: see conflicts.js
  * @property {(hasWaited?: boolean) => void} connectedAgain
- * @property {() => void} tellDeleted
+ * @property {() => void} showDeleted
  */
 
 const POLL_MS = 3000;
 const PRESENCE_MS = 6000;
 
 /** @param {MissionStore} store @param {Watching} watching */
-export function watchMission(store, { editor, readFleet, take, connectedAgain, tellDeleted }) {
+export function watchMission(store, { editor, readFleet, take, connectedAgain, showDeleted }) {
   /** @type {ReturnType<typeof setInterval> | undefined} */
   let timer;
   let isAsking = false;
   let reportedAt = 0;
   /** @type {string | null} */
-  let toldDeleted = null;
+  let confirmedDeletion = null;
   /** @type {string | null} */
   let watched = null;
   const followGround = createGroundReading(store, readFleet);
@@ -45,9 +45,9 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   function failed(error, mission) {
     if (!(error instanceof ApiError)) throw error;
     if (error.isAway) store.update({ isAway: true });
-    else if (error.status === 404 && toldDeleted !== mission.id) {
-      toldDeleted = mission.id;
-      tellDeleted();
+    else if (error.status === 404 && confirmedDeletion !== mission.id) {
+      confirmedDeletion = mission.id;
+      showDeleted();
     }
   }
 
@@ -64,7 +64,7 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
       const { data } = /** @type {Answer<Mission | null>} */ (
         await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } })
       );
-      toldDeleted = null;
+      confirmedDeletion = null;
       const { mission: now, saving: isSaving, isAway: wasAway } = store.state;
       if (data && now && !isSaving && now.id === mission.id && data.revision > now.revision) await take(data);
       if (wasAway) connectedAgain(wasAway); // after theirs came in: what waits is saved on top of it

@@ -5,7 +5,7 @@
 
 import { ApiError, get } from "../../api.js";
 import { flyersOf, isFlown, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 
 /** @import { Answer } from "../../api.js" */
@@ -77,7 +77,7 @@ export function createFlightReading(store, page) {
     isAsking = true;
     try {
       const { data } = /** @type {Answer<CommandPage>} */ (await get(`/missions/${mission.id}/commands?limit=200`));
-      if (tellChanges(store.state.commands, data.results)) void readConnections(mission);
+      if (showChanges(store.state.commands, data.results)) void readConnections(mission);
       store.update({ commands: data.results });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // else watchMission says that the server is away
@@ -124,13 +124,13 @@ export function createFlightReading(store, page) {
  * @param {Command[] | null} before
  * @param {Command[]} now
  */
-function tellChanges(before, now) {
+function showChanges(before, now) {
   if (!before) return false;
   const states = new Map(before.map(({ id, state }) => [id, state]));
   const ended = now.filter(({ id, state }) => !isOpen({ state }) && states.has(id) && states.get(id) !== state);
   for (const { uav, kind, state, outcome } of ended) {
     const words = { name: uav.name, act: KINDS[kind], outcome };
-    if (state === "applied") say(t("{act}: done by {name}.", words));
+    if (state === "applied") announce(t("{act}: done by {name}.", words));
     else if (state === "failed") toast(t("{act}: not done by {name}. {outcome}", words));
   }
   return ended.length > 0;

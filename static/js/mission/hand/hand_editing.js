@@ -4,7 +4,7 @@
  */
 
 import { ApiError, request } from "../../api.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { isPlanCurrent } from "../plan_view.js";
 import { createHandLooks, NO_FAULTS } from "./hand_looks.js";
@@ -229,16 +229,16 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
   }
 
   /** What was refused is said at its points and legs. @param {unknown} error */
-  function tellRefused(error) {
+  function showRefused(error) {
     const edit = store.state.hand;
     if (!edit) return;
     const faults = hand.faultsOf(error instanceof ApiError ? error.details : null);
     const places = faults.points.size + faults.legs.size;
-    const told = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
-    const [reason] = [...told.other, ...told.points.values(), ...told.legs.values()];
+    const reported = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
+    const [reason] = [...reported.other, ...reported.points.values(), ...reported.legs.values()];
     toast(t("Not kept: {reason}", { reason }));
     const [place = edit.chosen] = [...faults.points.keys(), ...faults.legs.keys()];
-    put({ isSaving: false, faults: told, chosen: place });
+    put({ isSaving: false, faults: reported, chosen: place });
     if (error instanceof ApiError && error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
   }
 
@@ -260,10 +260,10 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
           })
         );
         taken(data, name);
-        say(t("The route is kept as changed by hand."));
+        announce(t("The route is kept as changed by hand."));
         toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: () => takeBack(sequence) });
       } catch (error) {
-        tellRefused(error);
+        showRefused(error);
       }
     },
     takeBackByHand: () => {

@@ -28,19 +28,19 @@ const signed = (difference, least, textOf) =>
  */
 export function figuresOfLook(look, stored) {
   if (!look || look.length_m === null || look.duration_s === null || !stored) return "";
-  const told = [
+  const reported = [
     `${lengthText(look.length_m)}${signed(look.length_m - stored.length_m, MIN_M, lengthText)}`,
     `${durationText(look.duration_s)}${signed(look.duration_s - stored.duration_s, MIN_S, durationText)}`,
   ];
   if (look.battery_percent !== null) {
     const difference = stored.battery_percent === null ? 0 : look.battery_percent - stored.battery_percent;
-    told.push(
+    reported.push(
       t("{percent} at landing", {
         percent: `${percentText(look.battery_percent)}${signed(difference, MIN_PERCENT, percentText)}`,
       }),
     );
   }
-  return told.join(" · ");
+  return reported.join(" · ");
 }
 
 /**

@@ -1,7 +1,7 @@
 /** What a click on an asset picks, by the tool in hand; where it may mean several things, a small choice beside it. */
 
 import { nearestOnLine } from "../../domain/geodesy.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { lengthText } from "../../units.js";
 import { extentOf, nameOf, targetOf } from "../selection.js";
@@ -168,7 +168,9 @@ function stretchPicking(store, actions, choice) {
     if (!first || first.id === thing.id) {
       const next = first ? null : { id: thing.id, label: thing.properties.label, centre };
       store.update({ stretchFrom: next });
-      say(next ? t("From {name}. Now the last tower.", { name: next.label }) : t("Begin again with the first tower."));
+      announce(
+        next ? t("From {name}. Now the last tower.", { name: next.label }) : t("Begin again with the first tower."),
+      );
       return;
     }
     const found = await actions.stretchBetween(first.id, thing.id);

@@ -46,10 +46,10 @@ export function mountMapPointer(context) {
    * @param {MapThing} thing
    * @param {Position | null} place
    */
-  const saidOf = (thing, place) => /** @param {(content: (Node | string)[]) => void} refresh */ (refresh) => {
-    const said = tipOf({ ...thing, place }, refresh);
+  const tipTextOf = (thing, place) => /** @param {(content: (Node | string)[]) => void} refresh */ (refresh) => {
+    const tip = tipOf({ ...thing, place }, refresh);
     const words = thing.kind === "zone" ? "" : context.reach()?.textOf(thing.id);
-    return words ? [...said, h("div", { class: "reach-said" }, words)] : said;
+    return words ? [...tip, h("div", { class: "reach-said" }, words)] : tip;
   };
 
   /** @param {MapThing | null} thing @param {Position} place @param {ScreenPoint} point */
@@ -80,7 +80,7 @@ export function mountMapPointer(context) {
     if (isPicked) picking.pick(thing, place, point);
     const verdict = context.reach()?.verdict(thing.id);
     if (!isPicked || verdict === "no" || verdict === "partly")
-      tip(keyOf(thing), point, saidOf(thing, place), { soon: true });
+      tip(keyOf(thing), point, tipTextOf(thing, place), { soon: true });
   }
 
   let litHere = false; // the target that is lit is under the pointer
@@ -92,7 +92,7 @@ export function mountMapPointer(context) {
     litHere = Boolean(target);
     const isElsewhere = controls.isMeasuring() || target || picking.isOpen() || context.isHandOn();
     const met = isElsewhere ? null : thing;
-    if (met) tip(keyOf(met), point, saidOf(met, place));
+    if (met) tip(keyOf(met), point, tipTextOf(met, place));
     else tip(null, point);
     shapes.point(met && met.kind !== "zone" ? met : null);
   }

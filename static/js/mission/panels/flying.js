@@ -13,7 +13,7 @@ import {
   stageWords,
   timesOf,
 } from "../../domain/flying.js";
-import { returnOf, returnSaid } from "../../domain/own_return.js";
+import { returnOf, returnStatus } from "../../domain/own_return.js";
 import { routeNumber } from "../../domain/palette.js";
 import { nextStep } from "../../domain/preflight_step.js";
 import { simulatedMark } from "../../simulated.js";
@@ -21,7 +21,7 @@ import { t } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 
 /** @import { Command, Mission, Preflight } from "../../api_types.d.ts" */
-/** @import { Flyer, Said } from "../../domain/flying.js" */
+/** @import { Flyer, StatusText } from "../../domain/flying.js" */
 /** @import { MissionPageState, MissionStore } from "../types.d.ts" */
 /** @import { Flying } from "./approve.js" */
 
@@ -96,8 +96,8 @@ function drawFoot(mission, preflight, isBusy) {
   revoke.disabled = isBusy;
 }
 
-/** @param {Said} said @param {{ role?: string | null, title?: string | null }} [how] */
-const saidLine = ({ words, image, level }, { role = null, title = null } = {}) =>
+/** @param {StatusText} said @param {{ role?: string | null, title?: string | null }} [how] */
+const statusLine = ({ words, image, level }, { role = null, title = null } = {}) =>
   h("p", { class: `flyer-board ${level ?? ""}`, role, title }, icon(image, "small"), h("span", {}, words));
 
 /** @param {Flyer} flyer @param {Mission} mission @param {Command[] | null} read null: not read yet @param {FlyingContext} context */
@@ -109,7 +109,7 @@ function flyerRow(flyer, mission, read, context) {
   const onBoard = boardWords(board, (uav !== null && connections.get(uav)) || null);
   const flight = flightOf(commands, uav);
   const check = isFlown(mission) ? returnOf(returns, place) : null;
-  const home = check && returnSaid(check);
+  const home = check && returnStatus(check);
   const height = commands.find((command) => command.kind === "set-return-height" && command.uav.id === uav);
   return h(
     "li",
@@ -124,11 +124,11 @@ function flyerRow(flyer, mission, read, context) {
         h("strong", {}, name),
         mission.uavs[place].is_simulated && [" ", simulatedMark()],
       ),
-      saidLine(onBoard, { role: board && isMixed(board) ? "alert" : null }),
+      statusLine(onBoard, { role: board && isMixed(board) ? "alert" : null }),
       onBoard.share !== undefined && uploadBar(name, onBoard.share),
-      flight && saidLine(commandWords(flight), { title: timesOf(flight, exactClockText) }),
-      home && saidLine(home, { title: home.title }),
-      height && saidLine(commandWords(height), { title: timesOf(height, exactClockText) }),
+      flight && statusLine(commandWords(flight), { title: timesOf(flight, exactClockText) }),
+      home && statusLine(home, { title: home.title }),
+      height && statusLine(commandWords(height), { title: timesOf(height, exactClockText) }),
     ),
   );
 }

@@ -188,7 +188,7 @@ class SelectionsDialog {
    * @param {string} words
    * @param {(() => unknown) | null} [undo]
    */
-  #tell(words, undo = null) {
+  #notify(words, undo = null) {
     setChildren(
       this.#done,
       words,
@@ -221,7 +221,7 @@ class SelectionsDialog {
       const { data } = /** @type {Answer<Selection>} */ (await post("/selections", body));
       name.value = "";
       await this.#refresh();
-      this.#tell(t("“{name}” is kept.", { name: data.name }));
+      this.#notify(t("“{name}” is kept.", { name: data.name }));
     });
   }
 
@@ -234,7 +234,7 @@ class SelectionsDialog {
       if (instead) actions.replaceTargets(targets, t("The targets of “{name}” are picked.", { name }));
       else actions.addMany(targets, (added) => t("{added} from “{name}”.", { added, name }));
       if (missing.length)
-        actions.tell(
+        actions.notify(
           tn(missing.length, "{count} target is no longer in the data.", "{count} targets are no longer in the data."),
           missing.join(", "),
         );
@@ -258,7 +258,7 @@ class SelectionsDialog {
     return this.#attempt(async () => {
       await patch(`/selections/${row.id}`, { targets: asked(this.#picked()) }, etag(row));
       await this.#refresh();
-      this.#tell(t("“{name}” holds the present targets now.", { name: row.name }));
+      this.#notify(t("“{name}” holds the present targets now.", { name: row.name }));
     });
   }
 
@@ -274,7 +274,7 @@ class SelectionsDialog {
           await post("/selections", { name: row.name, targets });
           await this.#refresh();
         });
-      this.#tell(t("“{name}” is deleted.", { name: row.name }), targets.length ? back : null);
+      this.#notify(t("“{name}” is deleted.", { name: row.name }), targets.length ? back : null);
       (this.#done.querySelector("button") ?? this.#close).focus();
     });
   }

@@ -31,7 +31,7 @@ function worstOf(runs) {
  * @param {{ isStage?: boolean }} [options]
  */
 export function createRehearsing(store, { isStage = false } = {}) {
-  const { change, address, told, missionId } = createChanging(store);
+  const { change, address, reported, missionId } = createChanging(store);
   const { show, chooseRun, showNewest } = createShowing(store, isStage);
   let asked = 0; // the last reading wins
 
@@ -41,7 +41,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
    * @param {string | null} [wanted]
    */
   const read = (wanted = null) =>
-    told(async () => {
+    reported(async () => {
       const mission = missionId();
       if (!mission) {
         change({ ...NOTHING });
@@ -77,7 +77,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
      * @param {{ afresh?: boolean }} [how]
      */
     start: (conditions, { afresh = false } = {}) =>
-      told(async () => {
+      reported(async () => {
         change({ fault: "", running: { id: null, job: null, progress: null, message: t("Being sent") } });
         const key = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
         const { data } = /** @type {Answer<Rehearsal>} */ (
@@ -86,7 +86,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
         await follow(data);
       }),
     cancel: () =>
-      told(async () => {
+      reported(async () => {
         const { running } = store.state.rehearsal;
         if (running?.id) await post(address(running.id, "/cancel"));
       }),
@@ -104,7 +104,7 @@ function createChanging(store) {
     address: (rehearsal = "", rest = "") =>
       `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`,
     /** What the server refuses is told on the panel. @param {() => Promise<void>} act */
-    async told(act) {
+    async reported(act) {
       try {
         await act();
       } catch (error) {
@@ -118,7 +118,7 @@ function createChanging(store) {
 
 /** Which rehearsal and which of its runs is looked at. @param {MissionStore} store @param {boolean} isStage */
 function createShowing(store, isStage) {
-  const { change, address, told } = createChanging(store);
+  const { change, address, reported } = createChanging(store);
   const ofAddress = new URLSearchParams(isStage ? location.search : "");
 
   /** What is looked at stands in the address: it can be loaded again, and passed on. */
@@ -137,7 +137,7 @@ function createShowing(store, isStage) {
 
   /** run: null for the worst of its runs. @param {string} id @param {number | null} [run] */
   const show = (id, run = null) =>
-    told(async () => {
+    reported(async () => {
       const { data: detail } = /** @type {Answer<RehearsalDetail>} */ (await get(address(id)));
       const chosen = run !== null && detail.runs[run] ? run : worstOf(detail.runs);
       change({ detail, run: chosen, track: null });
@@ -149,7 +149,7 @@ function createShowing(store, isStage) {
     show,
     /** @param {number} run */
     chooseRun: (run) =>
-      told(async () => {
+      reported(async () => {
         change({ run, track: null });
         remember();
         const { detail } = store.state.rehearsal;
@@ -199,8 +199,8 @@ function createFollowing(store, read) {
         onProgress: (at) => {
           if (mission !== missionId()) return;
           const isQueued = at.state === "queued";
-          const said = isQueued ? t("Waiting for a worker") : at.message;
-          change({ running: { id, job, progress: isQueued ? null : at.progress, message: said } });
+          const summary = isQueued ? t("Waiting for a worker") : at.message;
+          change({ running: { id, job, progress: isQueued ? null : at.progress, message: summary } });
         },
       });
     } catch (error) {

@@ -248,7 +248,7 @@ function knownPieces(samples) {
  */
 export function profileTable(route, flight, targets, departs_at) {
   /** @param {number | null} height */
-  const said = (height) => (height === null ? t("not known") : heightText(height));
+  const heightOrUnknown = (height) => (height === null ? t("not known") : heightText(height));
   const hasTimes = flight.path.some(({ arrival_s }) => arrival_s !== null);
   const columns = [
     t("Target"),
@@ -263,8 +263,8 @@ export function profileTable(route, flight, targets, departs_at) {
     return [
       targets[target ?? -1]?.label ?? t("Target"),
       lengthText(at_m),
-      said(at.ground_m),
-      said(at.height_m),
+      heightOrUnknown(at.ground_m),
+      heightOrUnknown(at.height_m),
       hasTimes && timeAt(departs_at, at.arrival_s),
       flight.hasBattery && percentText(at.battery_percent ?? 0),
     ];

@@ -5,7 +5,7 @@ import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
 import { colourClass } from "../../domain/palette.js";
 import { provideImages } from "../../map/look/images.js";
 import { mapStyle, repaint, sourceOf } from "../../map/look/style.js";
-import { boxAround, tellFaults } from "../../map/map_view.js";
+import { boxAround, showFaults } from "../../map/map_view.js";
 import { maplibre } from "../../map/maplibre.js";
 import { t } from "../../text.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
@@ -124,7 +124,7 @@ class CloseUp {
       center: [longitude, latitude],
       zoom: 14,
     });
-    tellFaults(map);
+    showFaults(map);
     /** @type {SmallMap} */
     const small = { map, redrawImages: provideImages(map, () => this.#view.palette()), markers: null };
     map.on("load", () => {

@@ -8,7 +8,7 @@ import { CHECKING_HOME, returnsNow } from "../../page/present_returns.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { batchScopes } from "../batch.js";
-import { tellBatch } from "../batch_commanding.js";
+import { commandBatch } from "../batch_commanding.js";
 
 /** @import { LiveMission } from "../../api_types.d.ts" */
 /** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
@@ -32,17 +32,17 @@ export function mountAbortMission(store, page) {
 /** @param {LiveMission} mission @param {HTMLElement} opener @param {MonitorStore} store */
 async function abort(mission, opener, store) {
   const { id, name, state } = mission;
-  const told = { name, isActive: state === "active" };
+  const reported = { name, isActive: state === "active" };
   const flyers = store.state.uavs.filter(({ mission }) => mission === id);
-  const first = abortQuestion({ ...told, uavs: flyers.map((flyer) => ({ name: flyer.name, check: null })) });
+  const first = abortQuestion({ ...reported, uavs: flyers.map((flyer) => ({ name: flyer.name, check: null })) });
   const later = returnsNow(flyers.map((flyer) => flyer.id)).then((returns) =>
-    abortQuestion({ ...told, uavs: flyers.map((flyer) => ({ name: flyer.name, check: returns.get(flyer.id) })) }),
+    abortQuestion({ ...reported, uavs: flyers.map((flyer) => ({ name: flyer.name, check: returns.get(flyer.id) })) }),
   );
   const asked = await confirmAct({ ...first, lines: [...first.lines.slice(0, 2), CHECKING_HOME], later, opener });
   if (!asked) return;
   if (asked.safer) {
     const scopes = batchScopes(flyers, [mission]);
-    if (scopes.length) await tellBatch(store, "return", scopes, asked.safer.parameters.ways);
+    if (scopes.length) await commandBatch(store, "return", scopes, asked.safer.parameters.ways);
     return;
   }
   try {

@@ -5,7 +5,7 @@ import { h } from "../../dom.js";
 import { downAt } from "../../domain/order.js";
 import { copyText } from "../../page/clipboard.js";
 import { confirmAct } from "../../page/confirm.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { positionText } from "../../units.js";
 
@@ -17,7 +17,7 @@ import { positionText } from "../../units.js";
 export async function tried(act, words) {
   try {
     await act();
-    say(words);
+    announce(words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     toast(error.message);

@@ -50,7 +50,7 @@ const closeButton = (alert) =>
 
 /** What has become of an alert. @param {Alert} alert */
 function historyWords(alert) {
-  const said = [
+  const summary = [
     alert.closed_at && t("Ended {time}.", { time: exactClockText(alert.closed_at) }),
     worstWords(alert),
     alert.acknowledged_at &&
@@ -60,7 +60,7 @@ function historyWords(alert) {
       }),
     alert.notes > 0 && tn(alert.notes, "{count} note.", "{count} notes."),
   ];
-  return said.filter(Boolean).join(" ");
+  return summary.filter(Boolean).join(" ");
 }
 
 /** What was worse than what it says now. @param {Alert} alert */
@@ -225,14 +225,14 @@ class AlertPanel {
     setChildren(
       row,
       icon(isKnown ? "check" : level.image),
-      this.#said(alert, uav),
+      this.#summary(alert, uav),
       h("div", { class: "alert-side" }, time, this.#page.canFly && noteButton(alert)),
     );
     if (hadFocus) row.querySelector("button")?.focus({ preventScroll: true });
   }
 
   /** @param {Alert} alert @param {LiveUav | undefined} uav */
-  #said(alert, uav) {
+  #summary(alert, uav) {
     const answers = this.#actButtons(alert);
     const seenLevel = () => this.#seen.of(alert.id, performance.now());
     const known =

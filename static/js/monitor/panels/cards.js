@@ -33,12 +33,12 @@ import { makeHead, refreshHead, UavRow } from "./list_rows.js";
  * @property {(uav: number) => void} jumpTo
  * @property {() => void} close nothing is chosen any more
  * @property {() => void} follow
- * @property {(shown: number, all: number) => void} tellShown how many the filter lets through
+ * @property {(shown: number, all: number) => void} showShown how many the filter lets through
  * @property {Commanding | null} commanding null for who cannot fly
  */
 /** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
 
-const SAID_FOR_MS = 60_000; // a command that is over stays on the card
+const SHOWN_FOR_MS = 60_000; // a command that is over stays on the card
 const STRIP_MARGIN_PX = 32;
 const narrow = matchMedia("(max-width: 720px)"); // there, and where several missions fly, a UAV is a row until it is chosen
 const STRIP_STEP_M = 5; // a UAV that has moved less is drawn where it was
@@ -71,7 +71,7 @@ export function commandOf(uav, commands, now_ms) {
   const own = commands.filter(({ uav: { id } }) => id === uav.id).sort((a, b) => b.sequence - a.sequence);
   return (
     own.find(isOpen) ??
-    own.find(({ finished_at }) => finished_at && now_ms - Date.parse(finished_at) < SAID_FOR_MS) ??
+    own.find(({ finished_at }) => finished_at && now_ms - Date.parse(finished_at) < SHOWN_FOR_MS) ??
     null
   );
 }
@@ -103,7 +103,7 @@ export function mountCards(store, acts) {
     const { state } = store;
     list.classList.toggle("compact", narrow.matches || !acts.isOfOne);
     const entries = listed(state, acts.isOfOne);
-    acts.tellShown(entries.filter((entry) => !isHead(entry)).length, state.uavs.length);
+    acts.showShown(entries.filter((entry) => !isHead(entry)).length, state.uavs.length);
     drawList(entries);
   };
   store.listen(
@@ -366,12 +366,12 @@ class Card {
       const words = t("{act}: being sent …", { act: KINDS[sending.kind] });
       refill(this.#command, words, () => [icon("loader-circle", "small"), h("strong", {}, words)]);
     } else if (command) {
-      const said = commandWords(command);
-      this.#command.className = `card-command ${said.level ?? ""}`;
+      const summary = commandWords(command);
+      this.#command.className = `card-command ${summary.level ?? ""}`;
       this.#command.title = timesOf(command, exactClockText);
-      refill(this.#command, `${command.id} ${command.state} ${said.words}`, () => [
-        icon(said.image, "small"),
-        h("strong", {}, said.words),
+      refill(this.#command, `${command.id} ${command.state} ${summary.words}`, () => [
+        icon(summary.image, "small"),
+        h("strong", {}, summary.words),
       ]);
     }
   }

@@ -50,7 +50,7 @@ export function mountFleetFilter(store) {
   kind.addEventListener("change", change);
   return {
     /** @param {number} shown @param {number} all */
-    tell(shown, all) {
+    notify(shown, all) {
       hidden.hidden = shown === all;
       const words = t("{shown} of {all} UAVs shown.", { shown, all });
       if (count.textContent !== words) count.textContent = words;

@@ -4,7 +4,7 @@ import { signInAddress } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
 import { ASKED, CROWDED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
-import { say } from "../../page/toast.js";
+import { announce } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, zoneText } from "../../units.js";
 
@@ -62,17 +62,21 @@ function drawState(chip, mission) {
 /** @param {Readonly<MonitorState>} state */
 function drawStale(state) {
   const stale = byId("stale");
-  const said = staleWords(state);
+  const summary = staleWords(state);
   const isWhole = state.link === LIVE || state.link === ASKED || state.link === CROWDED;
-  document.documentElement.dataset.link = said?.isBad ? "cut" : isWhole ? "whole" : "opening";
-  if (stale.dataset.words === (said?.words ?? "")) return;
+  document.documentElement.dataset.link = summary?.isBad ? "cut" : isWhole ? "whole" : "opening";
+  if (stale.dataset.words === (summary?.words ?? "")) return;
   const wasHidden = stale.hidden;
-  stale.dataset.words = said?.words ?? "";
-  stale.hidden = !said;
-  if (said && wasHidden) say(`${said.words} ${said.rest ?? ""}`); // once: the seconds that follow are for the eye
-  if (!said) return;
-  const door = said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
-  setChildren(stale, icon("cloud-off"), h("span", {}, h("strong", {}, said.words), said.rest && ` ${said.rest}`, door));
+  stale.dataset.words = summary?.words ?? "";
+  stale.hidden = !summary;
+  if (summary && wasHidden) announce(`${summary.words} ${summary.rest ?? ""}`); // once: the seconds that follow are for the eye
+  if (!summary) return;
+  const door = summary.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
+  setChildren(
+    stale,
+    icon("cloud-off"),
+    h("span", {}, h("strong", {}, summary.words), summary.rest && ` ${summary.rest}`, door),
+  );
 }
 
 /** @param {MonitorStore} store @param {MonitorPage} page */
@@ -84,8 +88,8 @@ export function mountHead(store, page) {
     drawState(chip, mission);
     const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
     const facts = byId("live-facts");
-    const said = [exactClockText(iso), isWhole && countWords(uavs, missions, mission)];
-    facts.textContent = said.filter(Boolean).join(" · ");
+    const summary = [exactClockText(iso), isWhole && countWords(uavs, missions, mission)];
+    facts.textContent = summary.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });
   store.listen(["link", "since_ms", "now_ms", "silent_ms"], drawStale);

@@ -56,9 +56,9 @@ export class UavRow {
     refill(this.#alarm, `${level}`, () =>
       level ? [icon(LEVELS[level].image, "small"), h("span", { class: "unseen" }, LEVELS[level].words)] : [],
     );
-    const said = stateOf(uav);
-    this.#state.textContent = said.words;
-    this.#state.className = `row-state ${said.level ?? ""}`;
+    const summary = stateOf(uav);
+    this.#state.textContent = summary.words;
+    this.#state.className = `row-state ${summary.level ?? ""}`;
     this.#age.textContent = inOneLine(age);
     this.#age.classList.toggle("late", age.level !== "");
     this.#age.title = age.title;

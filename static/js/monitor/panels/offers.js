@@ -5,7 +5,7 @@ import { byId, h, icon, setChildren } from "../../dom.js";
 import { colourClass, routeNumber } from "../../domain/palette.js";
 import { askToClose } from "../../page/close_mission.js";
 import { confirmAct } from "../../page/confirm.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import {
   causeWords,
@@ -33,7 +33,7 @@ async function decide(offer, act, words) {
   deciding.add(offer.id);
   try {
     await post(`/replan-offers/${offer.id}/${act}`, {}, { headers: { "If-Match": `"${offer.revision}"` } });
-    say(words);
+    announce(words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     deciding.delete(offer.id);
@@ -88,8 +88,13 @@ const uavList = (offer, colours) =>
     { class: "offer-uavs" },
     uavLines(offer).map(({ place, letter, name, what, before, after, why }) => {
       const figures = (before || after) && h("small", {}, before ? `${before} → ${after}` : after);
-      const said = h("span", {}, h("strong", {}, name), ` ${what}`, figures, why && h("small", {}, why));
-      return h("li", { class: colourClass(routeNumber(place, colours)) }, h("span", { class: "letter" }, letter), said);
+      const summary = h("span", {}, h("strong", {}, name), ` ${what}`, figures, why && h("small", {}, why));
+      return h(
+        "li",
+        { class: colourClass(routeNumber(place, colours)) },
+        h("span", { class: "letter" }, letter),
+        summary,
+      );
     }),
   );
 

@@ -5,9 +5,9 @@ import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
 import { parametersText } from "../../domain/own_return.js";
 import { canUploadToAll, firstStep, nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
+import { commandUav } from "../../page/command_uav.js";
 import { beginStarts } from "../../page/planned_starts.js";
-import { tellUav } from "../../page/tell_uav.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
 
@@ -61,7 +61,7 @@ const checkRow = ({ code, state, message, detail }, remedy = null) =>
 /** Whether it is being told. @param {number} uav @param {string} name @param {number} height_m */
 async function setHeight(uav, name, height_m) {
   try {
-    return await tellUav(uav, name, "set-return-height", { height_m });
+    return await commandUav(uav, name, "set-return-height", { height_m });
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     toast(`${t("{act}: not sent to {name}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
@@ -151,9 +151,9 @@ function createPanel(place, on) {
         button.dataset.words = words;
         button.replaceChildren(icon(image, "small"), words);
       }
-      const said = busy || [reason, left.length > 0 && `${left.join("; ")}.`].filter(Boolean).join(" ");
-      why.hidden = said === "";
-      if (why.textContent !== said) why.textContent = said;
+      const summary = busy || [reason, left.length > 0 && `${left.join("; ")}.`].filter(Boolean).join(" ");
+      why.hidden = summary === "";
+      if (why.textContent !== summary) why.textContent = summary;
     },
   };
 }
@@ -347,7 +347,7 @@ class BeforeStart {
     return this.#doing(t("Simulated UAVs are being started."), async () => {
       await this.#standIns?.begin();
       this.#setUploadsNext(true);
-      say(t("Simulated UAVs are being started."));
+      announce(t("Simulated UAVs are being started."));
     });
   }
 

@@ -4,7 +4,7 @@ import { ApiError, freshKey, get, patch, post, remove } from "../../api.js";
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { colourClass, routeLetter, routeNumber } from "../../domain/palette.js";
 import { confirmAct } from "../../page/confirm.js";
-import { say, toast } from "../../page/toast.js";
+import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { SPEED_UNIT } from "../../units.js";
 import {
@@ -134,7 +134,7 @@ class SimulationPanel {
   async #done(send, words) {
     try {
       await send();
-      if (words) say(words);
+      if (words) announce(words);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       toast(error.message);

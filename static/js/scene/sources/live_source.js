@@ -28,11 +28,11 @@ export function liveSample(uav, now_ms) {
   const certainty = certaintyOf(uav, now_ms);
   if (certainty === null) return null;
   const { measured, estimated } = uav;
-  const heard = certainty === HEARD && measured?.position ? measured : null;
-  const from = heard ?? estimated ?? measured;
+  const received = certainty === HEARD && measured?.position ? measured : null;
+  const from = received ?? estimated ?? measured;
   if (!from?.position) return null;
   return {
-    kind: certainty === UNHEARD ? LOST : heard ? MEASURED : ESTIMATED,
+    kind: certainty === UNHEARD ? LOST : received ? MEASURED : ESTIMATED,
     at_ms: now_ms,
     since_ms: measured ? Date.parse(measured.measured_at) : null,
     position: from.position,
@@ -40,14 +40,15 @@ export function liveSample(uav, now_ms) {
     altitude_amsl_m: from.altitude_amsl_m ?? measured?.altitude_amsl_m ?? null,
     heading_deg: from.heading_deg ?? measured?.heading_deg ?? 0,
     speed_mps: from.speed_mps ?? null,
-    climb_mps: heard ? heard.climb_mps : null,
-    roll_deg: heard ? heard.roll_deg : 0,
-    pitch_deg: heard ? heard.pitch_deg : 0,
+    climb_mps: received ? received.climb_mps : null,
+    roll_deg: received ? received.roll_deg : 0,
+    pitch_deg: received ? received.pitch_deg : 0,
     battery_percent: measured?.battery_percent ?? null,
-    waypoint: (heard ? heard.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
+    waypoint:
+      (received ? received.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
     mode: measured?.mode ?? "",
     isInAir: inAir(uav) !== false,
-    bound: heard || !estimated ? null : estimated.bound,
+    bound: received || !estimated ? null : estimated.bound,
   };
 }
 
@@ -136,7 +137,7 @@ export function liveSource({ detail, features = [] }) {
    * @param {Moment} sample
    * @param {number} now_ms
    */
-  function hear(route, sample, now_ms) {
+  function receive(route, sample, now_ms) {
     const known = latest.get(route.place);
     if (known && !isOther(known.to, sample)) return false;
     latest.set(route.place, { from: momentAt(route, now_ms) ?? sample, to: sample, at_ms: now_ms });
@@ -156,7 +157,7 @@ export function liveSource({ detail, features = [] }) {
     /** of what was flown: a ribbon that has grown */
     revision: 0,
     windAt: () => wind,
-    /** Returns whether anything is another than before. @param {{ uavs: readonly LiveUav[], now_ms: number }} heard */
+    /** Returns whether anything is another than before. @param {{ uavs: readonly LiveUav[], now_ms: number }} received */
     take({ uavs, now_ms }) {
       let isNew = false;
       for (const route of routes) {
@@ -165,7 +166,7 @@ export function liveSource({ detail, features = [] }) {
         route.uavNow = uav;
         const sample = liveSample(uav, now_ms);
         if (!sample) continue;
-        if (hear(route, sample, now_ms)) isNew = true;
+        if (receive(route, sample, now_ms)) isNew = true;
         const { measured } = uav;
         if (!measured) continue;
         const at_ms = Date.parse(measured.measured_at);

@@ -86,8 +86,8 @@ export function recordSource(loaded) {
  * @param {number} at_ms
  */
 export function windMeasured(routes, at_ms) {
-  const told = routes
+  const reported = routes
     .map(({ track }) => track.samples.findLast((sample) => sample.at_ms <= at_ms && sample.wind))
     .filter((sample) => sample !== undefined);
-  return told.sort((a, b) => b.at_ms - a.at_ms)[0]?.wind ?? null;
+  return reported.sort((a, b) => b.at_ms - a.at_ms)[0]?.wind ?? null;
 }

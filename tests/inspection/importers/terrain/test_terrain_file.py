@@ -88,12 +88,12 @@ def test_a_zip_that_is_more_than_a_worker_takes_is_refused_before_it_is_unpacked
     assert "more than 512 MiB" in refusal(path)
 
 
-@pytest.mark.parametrize(("said", "stored"), [("egm96", "EGM96"), ("  EGM2008 ", "EGM2008"), ("Local   gauge 1912", "Local gauge 1912")])
-def test_a_datum_is_stored_by_its_name(said: str, stored: str) -> None:
-    assert datum_named(said) == stored
+@pytest.mark.parametrize(("stated", "stored"), [("egm96", "EGM96"), ("  EGM2008 ", "EGM2008"), ("Local   gauge 1912", "Local gauge 1912")])
+def test_a_datum_is_stored_by_its_name(stated: str, stored: str) -> None:
+    assert datum_named(stated) == stored
 
 
-@pytest.mark.parametrize("said", ["", "x" * 51, "a\0b", "WGS84", "WGS 84 ellipsoid", "EPSG:4979", "HAE"])
-def test_what_is_no_datum_or_the_ellipsoid_is_refused(said: str) -> None:
+@pytest.mark.parametrize("stated", ["", "x" * 51, "a\0b", "WGS84", "WGS 84 ellipsoid", "EPSG:4979", "HAE"])
+def test_what_is_no_datum_or_the_ellipsoid_is_refused(stated: str) -> None:
     with pytest.raises(DatumFault):
-        datum_named(said)
+        datum_named(stated)

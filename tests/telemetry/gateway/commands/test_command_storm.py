@@ -139,8 +139,8 @@ def test_commands_over_bad_links_and_killed_gateways(number, tmp_path):
         taken = {system: list(vehicle.taken) for system, vehicle in fleet.vehicles.items()}
     ends = Counter(UavCommand.objects.values_list("state", "outcome_code"))
     assert sum(ends.values()) == number
-    told = {(CommandState.APPLIED, ""), (CommandState.EXPIRED, "superseded")}
-    assert set(ends) <= told, ends
+    reported = {(CommandState.APPLIED, ""), (CommandState.EXPIRED, "superseded")}
+    assert set(ends) <= reported, ends
     in_order(uavs, taken)
 
 
@@ -171,8 +171,8 @@ def test_what_is_urgent_hardly_waits_though_gateways_are_killed(tmp_path, monkey
                 else:
                     wait_for(lambda: not is_open().exists(), "all commands", patience_s=MAX_DURATION_S)
         taken = {system: list(vehicle.taken) for system, vehicle in fleet.vehicles.items()}
-    told = {(CommandState.APPLIED, ""), (CommandState.EXPIRED, "superseded")}
-    assert set(UavCommand.objects.values_list("state", "outcome_code")) <= told
+    reported = {(CommandState.APPLIED, ""), (CommandState.EXPIRED, "superseded")}
+    assert set(UavCommand.objects.values_list("state", "outcome_code")) <= reported
     assert UavCommand.objects.count() == given + len(uavs)
     in_order(uavs, taken)
     top, lowest = (p99_wait_s(priority) for priority in (CommandPriority.SAFETY, CommandPriority.PARAMETER))

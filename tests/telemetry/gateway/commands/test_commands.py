@@ -98,7 +98,7 @@ def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp
         at_target = next(place for place, item in enumerate(items) if item.waypoint in visits and item.command == WAYPOINT)
         session = gateway.sessions[uav.mavlink_system_id]
         wait_for(lambda: session.state.is_in_air, "that it is seen in the air")
-        flying.say(mavlink.MAVLink_mission_item_reached_message(at_target + offset))
+        flying.report(mavlink.MAVLink_mission_item_reached_message(at_target + offset))
         wait_for(lambda: mission.targets.filter(state=TargetState.IN_PROGRESS).exists(), "a target in progress")
 
         vehicle.current_item = len(items) - 1 + offset  # as it tells each second
@@ -128,7 +128,7 @@ def test_a_vehicle_that_stands_elsewhere_is_given_nothing(facts, code, uav, miss
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, **facts) as flying:
         upload = ended(dispatch(mission))
         assert (upload.state, upload.outcome_code) == (CommandState.FAILED, code), upload.outcome
-        assert not any(message.get_type() == "MISSION_COUNT" for message in flying.heard)
+        assert not any(message.get_type() == "MISSION_COUNT" for message in flying.received)
 
 
 def test_a_refused_upload_is_told_and_leaves_no_mix(uav, mission, tmp_path):
@@ -229,7 +229,7 @@ def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_wa
     ):
         wait_for(lambda: UavLink.objects.filter(uav=uav, holder__startswith="one/").exists())
         upload = dispatch(mission)
-        wait_for(lambda: vehicle.heard_items >= 2, "some items")
+        wait_for(lambda: vehicle.received_items >= 2, "some items")
         flying.move_to(port_of(two))
         assert UavCommand.objects.get(pk=upload.pk).state == CommandState.SENT, "in mid-upload"
         assert ended(upload).state == CommandState.APPLIED, upload.outcome

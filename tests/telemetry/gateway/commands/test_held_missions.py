@@ -65,7 +65,7 @@ def test_no_uav_waits_while_a_mission_is_held(settings, tmp_path):
         start_flight(uav, mission, approval, gateway)
         with held(mission):
             began_s = time.monotonic()
-            voice.say(mavlink.MAVLink_mission_item_reached_message(1))
+            voice.report(mavlink.MAVLink_mission_item_reached_message(1))
             hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None, mission=mission, approval=approval)
             wait_for(lambda: flying.sub_mode == HOLD, "the hold")
             assert not applied(hold), "its end waits for the mission"

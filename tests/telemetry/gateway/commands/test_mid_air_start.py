@@ -27,7 +27,7 @@ LOAD = FlightLoad((item(10.0, 0), item(10.01, 1), item(10.02, 2), item(10.02, 3,
 
 def held(flavour: Flavour, place: LonLat, height_m: float = 60.0, **facts) -> VehicleState:
     now_s = time.monotonic()
-    state = VehicleState(7, flavour=flavour, custom_mode=HELD[flavour], is_armed=True, heartbeat_at_s=now_s, heard_at_s=now_s)
+    state = VehicleState(7, flavour=flavour, custom_mode=HELD[flavour], is_armed=True, heartbeat_at_s=now_s, received_at_s=now_s)
     state.vehicle_type = mavlink.MAV_TYPE_QUADROTOR
     state.landed_state, state.landed_at_s = mavlink.MAV_LANDED_STATE_IN_AIR, now_s
     state.position, state.altitude_relative_m, state.position_at_s = place, height_m, now_s

@@ -67,7 +67,7 @@ def test_a_fence_of_its_own_that_was_told_at_the_upload_may_stay_but_not_change(
 
 
 def other_station(flying: Any) -> None:
-    flying.say(mavlink.MAVLink_mission_ack_message(42, 190, mavlink.MAV_MISSION_ACCEPTED, 0))
+    flying.report(mavlink.MAVLink_mission_ack_message(42, 190, mavlink.MAV_MISSION_ACCEPTED, 0))
 
 
 def reboot(flying: Any) -> None:

@@ -38,10 +38,10 @@ class InAir(Flyer):
     relative_m: float = 0.0
 
     def _reports(self, now_s):
-        told, home = super()._reports(now_s)
-        told.relative_alt = round(self.relative_m * 1000)
+        reported, home = super()._reports(now_s)
+        reported.relative_alt = round(self.relative_m * 1000)
         home.latitude, home.longitude, home.altitude = round(self.home[1] * 1e7), round(self.home[0] * 1e7), round(HOME_M * 1000)
-        return [told, home]
+        return [reported, home]
 
 
 @pytest.fixture
@@ -129,7 +129,7 @@ def test_what_one_uav_leaves_is_flown_by_the_other(flavour, mission, tmp_path):
         offset = 1 if flavour is Flavour.ARDUPILOT else 0
         session = gateway.sessions[8]
         wait_for(lambda: session.state.is_in_air, "that it is seen in the air")
-        kite.say(mavlink.MAVLink_mission_current_message(len(load.mission) - 1 + offset))
+        kite.report(mavlink.MAVLink_mission_current_message(len(load.mission) - 1 + offset))
         vehicles[1].current_item = len(load.mission) - 1 + offset
         wait_for(lambda: session.state.mission_item == len(load.mission) - 1 + offset, "the landing")
         vehicles[1].is_in_air = vehicles[1].is_armed = False

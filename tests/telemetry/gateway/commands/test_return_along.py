@@ -54,7 +54,7 @@ def fly(vehicle, flying, gateway, uav: Uav, mission: Mission, flavour: Flavour):
 
 
 def uploads(flying) -> int:
-    return sum(message.get_type() == "MISSION_COUNT" for message in flying.heard)
+    return sum(message.get_type() == "MISSION_COUNT" for message in flying.received)
 
 
 def along(uav: Uav, mission: Mission):

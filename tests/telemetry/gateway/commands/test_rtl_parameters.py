@@ -31,9 +31,9 @@ def mission(uav, settings, tmp_path) -> Mission:
 def test_the_height_of_its_return_is_read_and_read_anew(flavour, uav, mission, tmp_path):
     first, later, height_m = TOLD[flavour]
     vehicle = FLAVOURS[flavour](parameters=dict(first))
-    told = {"autopilot": str(flavour), "parameters": first}
+    reported = {"autopilot": str(flavour), "parameters": first}
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
-        wait_for(lambda: Uav.objects.filter(pk=uav.pk, autopilot_return=told).exists(), "parameters that were told")
+        wait_for(lambda: Uav.objects.filter(pk=uav.pk, autopilot_return=reported).exists(), "parameters that were told")
         vehicle.parameters |= later  # somebody else sets it, and the vehicle tells nobody
         assert ended(dispatch(mission)).state == CommandState.APPLIED
         now = {"autopilot": str(flavour), "parameters": first | later}

@@ -34,7 +34,7 @@ def soon_silent(monkeypatch):
         monkeypatch.setattr(module, "HEARD_WITHIN_S", 1.5)
 
 
-def sent_unheard(command: UavCommand) -> bool:
+def sent_unacknowledged(command: UavCommand) -> bool:
     command.refresh_from_db()
     return (command.state, command.outcome_code) == (CommandState.SENT, "unheard")
 
@@ -42,7 +42,7 @@ def sent_unheard(command: UavCommand) -> bool:
 def silenced(flying: Flyer, gateway) -> None:
     session = wait_for(lambda: gateway.sessions.get(7))
     wait_for(lambda: session.is_served(time.time(), 1.5) and session.state.is_in_air is not None, "that it is heard")
-    flying.is_unheard = True
+    flying.is_unacknowledged = True
     wait_for(lambda: not session.is_served(time.time(), 1.5), "silence")
 
 
@@ -53,10 +53,10 @@ def test_a_return_reaches_a_uav_that_is_not_heard_and_counts_once_it_is(kind, fl
         silenced(flying, gateway)
         command = queue_command(uav=uav, kind=kind, actor=None)
         wait_for(lambda: vehicle.custom_mode == RETURNING[flavour], "that it returns")
-        wait_for(lambda: sent_unheard(command), "that it is told")
+        wait_for(lambda: sent_unacknowledged(command), "that it is told")
         time.sleep(1.5)
-        assert sent_unheard(command), "nobody has seen it done"
-        flying.is_unheard = False
+        assert sent_unacknowledged(command), "nobody has seen it done"
+        flying.is_unacknowledged = False
         assert ended(command).state == CommandState.APPLIED, command.outcome
         assert (command.outcome_code, command.outcome) == ("", "")
 
@@ -77,7 +77,7 @@ def test_it_ends_as_unconfirmed_and_a_firmer_one_takes_its_place(uav, tmp_path):
     with gateway_at_work(tmp_path) as gateway, Flyer(vehicle, port_of(gateway)) as flying:
         silenced(flying, gateway)
         hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
-        wait_for(lambda: sent_unheard(hold), "that it is told")
+        wait_for(lambda: sent_unacknowledged(hold), "that it is told")
         back = queue_command(uav=uav, kind=CommandKind.RETURN, actor=None, expires_in_s=2.5)
         wait_for(lambda: vehicle.custom_mode == RETURNING[Flavour.PX4], "that it returns")
         assert (ended(back).state, back.outcome_code) == (CommandState.EXPIRED, "unconfirmed")
@@ -125,7 +125,7 @@ class Sender:
         self.sent.append(frame)
 
 
-def heard(uav: KnownUav, at_s: float) -> tuple[Session, list[bytes]]:
+def session_after(uav: KnownUav, at_s: float) -> tuple[Session, list[bytes]]:
     session, sent = Session(uav, deque(), link_id=1), []
     session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 60.0)
     frame = FrameWriter(7, 1, key=uav.key).frame_of(heartbeat(is_armed=True), at_s)
@@ -135,7 +135,7 @@ def heard(uav: KnownUav, at_s: float) -> tuple[Session, list[bytes]]:
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "may_hear"),
+    ("before", "after", "may_receive"),
     [
         (SIGNED, replace(SIGNED, name="Another"), True),
         (SIGNED, replace(SIGNED, credential_id=2, key=OTHER_KEY), False),
@@ -143,20 +143,20 @@ def heard(uav: KnownUav, at_s: float) -> tuple[Session, list[bytes]]:
         (replace(SIGNED, credential_id=None, key=None, allows_unsigned=True), replace(SIGNED, credential_id=None, key=None), False),
     ],
 )
-def test_who_was_believed_by_another_key_is_not_spoken_to(before, after, may_hear):
+def test_who_was_believed_by_another_key_is_not_spoken_to(before, after, may_receive):
     now_s = time.time()
-    session, sent = heard(before, now_s)
-    assert session.may_hear(now_s)
+    session, sent = session_after(before, now_s)
+    assert session.may_receive(now_s)
     session.change(after)
     session.tick(now_s)
     session.send([heartbeat()], now_s)
-    assert (session.may_hear(now_s), bool(sent)) == (may_hear, may_hear)
+    assert (session.may_receive(now_s), bool(sent)) == (may_receive, may_receive)
 
 
 def test_an_address_is_good_for_an_hour():
     now_s = time.time()
-    session, sent = heard(SIGNED, now_s)
-    assert not session.may_hear(now_s + ADDRESS_GOOD_S + 1.0)
+    session, sent = session_after(SIGNED, now_s)
+    assert not session.may_receive(now_s + ADDRESS_GOOD_S + 1.0)
     session.tick(now_s + ADDRESS_GOOD_S + 1.0)
     assert sent == []
 

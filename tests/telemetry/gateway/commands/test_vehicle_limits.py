@@ -51,7 +51,7 @@ def test_a_mission_beyond_the_limits_is_not_sent(narrow, facts, code, words, uav
         upload = ended(dispatch(mission))
         assert (upload.state, upload.outcome_code) == (CommandState.FAILED, code), upload.outcome
         assert all(part in upload.outcome for part in words), upload.outcome
-        assert not {"MISSION_COUNT", "MISSION_CLEAR_ALL", "MISSION_ITEM_INT"} & {message.get_type() for message in flying.heard}
+        assert not {"MISSION_COUNT", "MISSION_CLEAR_ALL", "MISSION_ITEM_INT"} & {message.get_type() for message in flying.received}
         wait_for(lambda: UavLink.objects.get(uav=uav).limits == WIDE | narrow, "limits that are kept")
     assert list(upload.events.values_list("state", flat=True)) == ["queued", "failed"]
     assert not any(vehicle.lists.values())

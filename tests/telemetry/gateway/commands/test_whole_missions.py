@@ -79,10 +79,10 @@ def test_another_kind_of_vehicle_is_shown_and_takes_neither_mission_nor_command(
         assert (upload.state, upload.outcome_code) == (CommandState.FAILED, "vehicle-class"), upload.outcome
         assert f"The vehicle is a {kind}:" in upload.outcome
         for order in (CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND):
-            told = ended(queue_command(uav=uav, kind=order, actor=None))
-            assert (told.state, told.outcome_code) == (CommandState.FAILED, "vehicle-class"), told.outcome
+            reported = ended(queue_command(uav=uav, kind=order, actor=None))
+            assert (reported.state, reported.outcome_code) == (CommandState.FAILED, "vehicle-class"), reported.outcome
         wait_for(lambda: UavLink.objects.filter(uav=uav, vehicle_type=vehicle_type, mode=mode).exists(), "its kind and mode")
-        assert not gateway.sessions[uav.mavlink_system_id].may_hear(time.time()), "nothing is sent to it unheard"
+        assert not gateway.sessions[uav.mavlink_system_id].may_receive(time.time()), "nothing is sent to it unheard"
     assert vehicle.taken == [] and vehicle.custom_mode == number
     connection = client_of(mission.author).get(f"/api/v1/uavs/{uav.pk}/connection").json()
     assert connection["vehicle_type"] in ("fixed wing", "ground rover")

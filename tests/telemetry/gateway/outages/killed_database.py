@@ -71,9 +71,9 @@ def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
         """Remembers what it has told of its places."""
 
         def _reports(self, now_s: float) -> list[Any]:
-            told = super()._reports(now_s)
-            self.told = [*getattr(self, "told", []), told[0].time_boot_ms]
-            return told
+            reported = super()._reports(now_s)
+            self.reported = [*getattr(self, "reported", []), reported[0].time_boot_ms]
+            return reported
 
     chance, port = random.Random(5), free_port()
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
@@ -103,8 +103,8 @@ def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
         finally:
             for flyer in flyers:
                 flyer.__exit__()
-        told = {(uav.pk, boot_ms) for uav, flyer in zip(uavs, flyers, strict=True) for boot_ms in flyer.told}
-        wait_for(lambda: TelemetryRecord.objects.count() >= len(told), "all records", patience_s=30)
+        reported = {(uav.pk, boot_ms) for uav, flyer in zip(uavs, flyers, strict=True) for boot_ms in flyer.reported}
+        wait_for(lambda: TelemetryRecord.objects.count() >= len(reported), "all records", patience_s=30)
         assert program.poll() is None, "the gateway has lived through it"
     rows = list(TelemetryRecord.objects.values_list("uav_id", "sequence"))
     ends = Counter(UavCommand.objects.filter(pk__in=given).values_list("state", "outcome_code"))
@@ -116,8 +116,8 @@ def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
             out_of_order += not any(abs(speed - command.parameters["speed_mps"]) < 1e-4 for speed in speeds)
     return {
         "kills": KILLS, "given": len(given), "ends": {" ".join(filter(None, end)): number for end, number in ends.items()},
-        "out_of_order": out_of_order, "told": len(told), "stored": len(rows), "doubled": len(rows) - len(set(rows)),
-        "lost": len(told - set(rows)), "lost_that_were_stored": len(stored - set(rows)),
+        "out_of_order": out_of_order, "told": len(reported), "stored": len(rows), "doubled": len(rows) - len(set(rows)),
+        "lost": len(reported - set(rows)), "lost_that_were_stored": len(stored - set(rows)),
     }  # fmt: skip
 
 

@@ -161,12 +161,12 @@ def test_of_two_senders_with_one_system_id_the_first_is_kept_and_both_are_named(
         wait_for(lambda: TelemetryRecord.objects.count() == 1)
         other.send(heartbeat(), position(2_000, lon=20.0))
 
-        def told():
+        def reported():
             link.send(heartbeat())
             other.send(position(2_200, lon=20.0))
             return Alert.objects.filter(uav=uav, code="second-sender", closed_at=None).first()
 
-        alert = wait_for(told)
+        alert = wait_for(reported)
         ports = [str(sender.socket.getsockname()[1]) for sender in (link, other)]
     assert TelemetryRecord.objects.count() == 1
     assert all(port in alert_words(alert.message, alert.values) for port in ports)

@@ -42,7 +42,7 @@ function departureOption(store, actions) {
     "aria-describedby": "departure-words",
   });
   departure.addEventListener("change", () => depart(momentTyped(departure.value)));
-  const said = h("p", { class: "caption", id: "departure-words", role: "status" });
+  const summary = h("p", { class: "caption", id: "departure-words", role: "status" });
   const now = h("button", { type: "button", class: "button", onclick: () => depart(nextMinute(Date.now())) }, t("Now"));
   const anyTime = h("button", { type: "button", class: "button quiet" }, t("Any time"));
   anyTime.addEventListener("click", () => {
@@ -59,13 +59,13 @@ function departureOption(store, actions) {
     { class: "flight-option" },
     h("label", { for: departure.id, class: "field-label" }, t("Departure")),
     h("div", { class: "departure-row" }, departure, now, anyTime),
-    said,
+    summary,
     legal,
   );
   store.listen(["selection"], ({ selection }) => {
     const typed = selection.departs_at ? typedMoment(selection.departs_at) : "";
     if (departure.value !== typed) departure.value = typed;
-    said.textContent = departureWords(selection);
+    summary.textContent = departureWords(selection);
     anyTime.hidden = !selection.departs_at;
   });
   return element;

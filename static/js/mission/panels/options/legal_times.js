@@ -100,7 +100,7 @@ export function showLegalTimes(store, actions) {
  * @param {{ signal: AbortSignal, close: () => void }} dialog
  */
 function fillBody(body, store, actions, { signal, close }) {
-  const said = h("p", { class: "legal-sentence", role: "status" });
+  const summary = h("p", { class: "legal-sentence", role: "status" });
   const departure = h("p", { class: "quiet-text", role: "status" });
   const chart = h("div", { class: "legal-chart" });
   /** @type {LegalTimes | null} */
@@ -110,7 +110,7 @@ function fillBody(body, store, actions, { signal, close }) {
     if (!times) return;
     const { departs_at } = store.state.selection;
     const words = wordsOf(times, departs_at);
-    said.textContent = [words.sentence, marginText(times)].filter(Boolean).join(" ");
+    summary.textContent = [words.sentence, marginText(times)].filter(Boolean).join(" ");
     departure.textContent = words.departure;
     drawLegalChart(chart, times, departs_at, {
       depart: (moment) => void actions.setOption("departs_at", new Date(moment).toISOString()),
@@ -136,7 +136,7 @@ function fillBody(body, store, actions, { signal, close }) {
       );
       return;
     }
-    body.replaceChildren(said, chart, departure);
+    body.replaceChildren(summary, chart, departure);
     draw();
   }
 

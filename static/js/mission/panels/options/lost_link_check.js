@@ -20,13 +20,13 @@ const ICONS = { home: "circle-check", lost: "triangle-alert" };
  * @param {(positions: number[][]) => void} showPlaces
  */
 export function createLinkCheck(store, showPlaces) {
-  const said = h("p", { class: "link-said", role: "status" });
+  const summary = h("p", { class: "link-said", role: "status" });
   const heights = h("p", { class: "caption" });
   const uncounted = h("p", { class: "caption" });
   const rows = h("ul", { class: "link-failures", "aria-label": t("From where a UAV would not get home") });
   const more = h("button", { type: "button", class: "text-button" });
   const barred = h("p", { class: "field-error", role: "alert" });
-  const element = h("div", { class: "link-check" }, said, barred, rows, more, heights, uncounted);
+  const element = h("div", { class: "link-check" }, summary, barred, rows, more, heights, uncounted);
   const row = createRow(store, showPlaces);
   let showsAll = false;
   more.addEventListener("click", () => {
@@ -43,7 +43,7 @@ export function createLinkCheck(store, showPlaces) {
     const inZones = checked ? link.inZonesText(checked) : "";
     const seen = inZones ? "lost" : now; // no tick over a place where nothing may land
     element.dataset.state = seen;
-    said.replaceChildren(
+    summary.replaceChildren(
       ...(ICONS[seen] ? [icon(ICONS[seen], "small")] : []),
       h("span", {}, link.checkText(now, plan)),
     );

@@ -122,11 +122,11 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
  * @param {MissionSelection} selection
  */
 function refreshMarks(place, target, selection) {
-  const { mark, said } = priorityOf(target);
+  const { mark, label } = priorityOf(target);
   const lock = lockOf(selection, target.key);
   /** @type {[string, string][]} */
   const marks = [
-    .../** @type {[string, string][]} */ (mark ? [[mark, said]] : []),
+    .../** @type {[string, string][]} */ (mark ? [[mark, label]] : []),
     .../** @type {[string, string][]} */ (lock ? [["lock", t("Locked to {uav}", { uav: lock.uav })]] : []),
   ];
   const key = marks.join("|");

@@ -10,7 +10,7 @@ import { changeWords, openChanges } from "../../uav_changes.js";
 /** @typedef {Pick<MissionPageState, "mission" | "selection" | "plan" | "planIsStored">} State */
 
 const CHANGEABLE = ["draft", "planned"];
-const MAX_TOLD = 4;
+const MAX_SHOWN = 4;
 
 /**
  * What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know
@@ -18,7 +18,7 @@ const MAX_TOLD = 4;
  *
  * @param {State} state
  */
-export function toldChanges({ mission, selection, plan, planIsStored }) {
+export function shownChanges({ mission, selection, plan, planIsStored }) {
   if (!mission) return [];
   const isOfPlan = planIsStored && isPlanCurrent({ plan, selection });
   return openChanges(selection, mission.uav_changes)
@@ -28,7 +28,7 @@ export function toldChanges({ mission, selection, plan, planIsStored }) {
 
 /** Null where nothing has changed. @param {State} state @param {MissionActions} actions @param {boolean} canPlan */
 export function uavNotice(state, actions, canPlan) {
-  const changes = toldChanges(state);
+  const changes = shownChanges(state);
   if (!state.mission || !changes.length) return null;
   const mayChange = canPlan && CHANGEABLE.includes(state.mission.state);
   const hasFigures = changes.some(({ figures }) => figures.length > 0);
@@ -47,7 +47,7 @@ export function uavNotice(state, actions, canPlan) {
           "A UAV changed since this mission was made.",
           "{count} UAVs changed since this mission was made.",
         );
-  const more = changes.length - MAX_TOLD;
+  const more = changes.length - MAX_SHOWN;
   return h(
     "div",
     { class: "notice warning" },
@@ -59,7 +59,7 @@ export function uavNotice(state, actions, canPlan) {
       h(
         "ul",
         { class: "causes" },
-        changes.slice(0, MAX_TOLD).map((change) => h("li", {}, changeWords(change))),
+        changes.slice(0, MAX_SHOWN).map((change) => h("li", {}, changeWords(change))),
       ),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more UAV", "{count} more UAVs")),
       mayChange &&

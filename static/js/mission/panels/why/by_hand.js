@@ -8,7 +8,7 @@ import { createHandFields } from "./hand_fields.js";
 
 /** @import { HandEdit, HandPoint, MissionActions, MissionPageState, MissionStore, ShownPlan } from "../../types.d.ts" */
 
-const MAX_SAID = 4;
+const MAX_SHOWN = 4;
 
 /** @param {string} image @param {string} label @param {{ title?: string, class?: string, act: () => unknown }} how */
 const iconButton = (image, label, { title, class: more = "", act }) =>
@@ -67,14 +67,14 @@ function createTakeBack(actions) {
     icon("undo-2", "small"),
     t("Take back the last change"),
   );
-  const said = h("p", { class: "quiet-text" });
-  const element = h("div", { class: "stack hand-back" }, said, h("div", { class: "hand-acts" }, button));
+  const explanation = h("p", { class: "quiet-text" });
+  const element = h("div", { class: "stack hand-back" }, explanation, h("div", { class: "hand-acts" }, button));
   return {
     element,
     /** @param {number} steps that are kept @param {number} changes that are not @param {boolean} isSaving */
     refresh(steps, changes, isSaving) {
       element.hidden = steps === 0;
-      said.textContent = changes
+      explanation.textContent = changes
         ? t("Changes that were kept can be taken back once these are kept or dropped.")
         : tn(
             steps,
@@ -160,7 +160,7 @@ function createChosenPoint(store, actions) {
 
 /** Returns its element; it follows store.state.hand. @param {MissionStore} store @param {MissionActions} actions */
 export function createByHand(store, actions) {
-  const said = h("p", { class: "why-sentence", role: "status" });
+  const explanation = h("p", { class: "why-sentence", role: "status" });
   const figures = h("p", { class: "hand-figures" });
   const faults = h("ul", { class: "hand-faults", "aria-label": t("What is wrong") });
   const walk = createWalk(store, actions);
@@ -176,11 +176,11 @@ export function createByHand(store, actions) {
 
   /** @param {string[]} list */
   function drawFaults(list) {
-    const rest = list.length - MAX_SAID;
+    const rest = list.length - MAX_SHOWN;
     const more = rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [];
     faults.hidden = list.length === 0;
     faults.replaceChildren(
-      ...[...list.slice(0, MAX_SAID), ...more].map((words) =>
+      ...[...list.slice(0, MAX_SHOWN), ...more].map((words) =>
         h("li", {}, icon("circle-x", "small"), h("span", {}, words)),
       ),
     );
@@ -193,10 +193,10 @@ export function createByHand(store, actions) {
     const changes = changesOf(points, hand.original);
     const list = faultsOf(hand);
     const stored = plan?.result.routes[hand.sequence];
-    const told = figuresOfLook(hand.look, stored);
-    said.textContent = sentenceOf(hand, changes, list);
-    figures.hidden = !told;
-    figures.textContent = told;
+    const reported = figuresOfLook(hand.look, stored);
+    explanation.textContent = sentenceOf(hand, changes, list);
+    figures.hidden = !reported;
+    figures.textContent = reported;
     figures.classList.toggle("old", hand.isLookOld);
     drawFaults(list);
     walk.refresh(hand, points, plan);
@@ -211,7 +211,7 @@ export function createByHand(store, actions) {
     element: h(
       "div",
       { class: "stack by-hand" },
-      said,
+      explanation,
       faults,
       walk.element,
       chosenPoint.element,

@@ -40,8 +40,8 @@ export function createHandFields(actions, chosen) {
   const speed = numberInput("hand-speed", { min: 0 });
   const latitude = numberInput("hand-latitude", { min: -90, max: 90 });
   const longitude = numberInput("hand-longitude", { min: -180, max: 180 });
-  const speedSaid = h("p", { class: "caption", id: "hand-speed-said" });
-  speed.setAttribute("aria-describedby", speedSaid.id);
+  const speedNote = h("p", { class: "caption", id: "hand-speed-said" });
+  speed.setAttribute("aria-describedby", speedNote.id);
 
   height.addEventListener("change", () => {
     if (height.value && height.validity.valid) actions.raiseByHand(chosen(), height.valueAsNumber * SHORT_UNIT.metres);
@@ -75,7 +75,7 @@ export function createHandFields(actions, chosen) {
       { class: "hand-fields" },
       field(t("Height above ground"), height, SHORT_UNIT.unit),
       field(t("Speed on the way here"), speed, SPEED_UNIT.unit),
-      speedSaid,
+      speedNote,
       field(t("Latitude"), latitude, "°"),
       field(t("Longitude"), longitude, "°"),
     ),
@@ -95,7 +95,7 @@ export function createHandFields(actions, chosen) {
       const usual_mps = point.speed_mps === null ? (flown_mps ?? own_mps) : own_mps;
       speed.placeholder = usual_mps && isFlownTo(point) ? `${typedSpeed(usual_mps)}` : "";
       speed.disabled = !isFlownTo(point);
-      speedSaid.textContent = speedWords(point, own_mps, flown_mps);
+      speedNote.textContent = speedWords(point, own_mps, flown_mps);
       latitude.disabled = !isFree(point);
       longitude.disabled = !isFree(point);
     },

@@ -15,7 +15,7 @@ const timeFor_s = ({ length_m, duration_s }, more_m) => (length_m > 0 ? (more_m 
 /**
  * How much later the last UAV would be done: the target's own hover time goes with it and counts with neither.
  *
- * @param {RouteExplanation} said
+ * @param {RouteExplanation} explanation
  * @param {ShownPlan["result"]} result
  */
 function finishChange_s({ uav, alternative }, result) {
@@ -31,11 +31,11 @@ function finishChange_s({ uav, alternative }, result) {
   return longestDuration_s({ ...result, routes }) - longestDuration_s(result);
 }
 
-/** Empty where there is no other UAV for it. @param {RouteExplanation} said @param {ShownPlan} plan */
-export function insteadWords(said, { result, targets }) {
-  const { alternative } = said;
+/** Empty where there is no other UAV for it. @param {RouteExplanation} explanation @param {ShownPlan} plan */
+export function insteadWords(explanation, { result, targets }) {
+  const { alternative } = explanation;
   if (!alternative) return "";
-  const time_s = finishChange_s(said, result);
+  const time_s = finishChange_s(explanation, result);
   const values = {
     other: result.routes[alternative.uav].uav,
     target: targets[alternative.target]?.label ?? "",

@@ -26,18 +26,18 @@ import { insteadWords } from "./instead_words.js";
 
 const MIN_M = 20; // less is the rounding of positions
 
-/** @param {RouteExplanation} said @param {Explaining} explaining @returns {Child[]} */
-export function routeExplanation(said, explaining) {
+/** @param {RouteExplanation} explanation @param {Explaining} explaining @returns {Child[]} */
+export function routeExplanation(explanation, explaining) {
   const { plan } = explaining;
-  const route = routesOf(plan)[said.uav];
+  const route = routesOf(plan)[explanation.uav];
   return [
-    bar(said),
-    parts(said),
-    zonesInTheWay(said),
-    instead(said, plan),
+    bar(explanation),
+    parts(explanation),
+    zonesInTheWay(explanation),
+    instead(explanation, plan),
     limit(plan, route),
-    bound(said),
-    heaviest(said, route, explaining),
+    bound(explanation),
+    heaviest(explanation, route, explaining),
     otherWay(explaining),
   ];
 }
@@ -45,7 +45,7 @@ export function routeExplanation(said, explaining) {
 /**
  * [{ name, words, length_m }]: straight, kept to the lines, round zones.
  *
- * @param {Pick<RouteExplanation, "zones" | "straight_m" | "on_lines_m" | "round_zones_m">} said
+ * @param {Pick<RouteExplanation, "zones" | "straight_m" | "on_lines_m" | "round_zones_m">} explanation
  */
 export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
   const names = zones.map(({ name }) => name).join(", ");
@@ -61,9 +61,9 @@ export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
   return list.filter(({ name, length_m }) => name === "straight" || length_m >= MIN_M);
 }
 
-/** @param {RouteExplanation} said */
-function bar(said) {
-  const pieces = partsOf(said).map(({ name, length_m }) => {
+/** @param {RouteExplanation} explanation */
+function bar(explanation) {
+  const pieces = partsOf(explanation).map(({ name, length_m }) => {
     const piece = h("i", { class: name });
     piece.style.flexGrow = `${Math.max(1, length_m)}`;
     return piece;
@@ -71,9 +71,9 @@ function bar(said) {
   return h("div", { class: "why-bar", "aria-hidden": "true" }, pieces);
 }
 
-/** @param {RouteExplanation} said */
-function parts(said) {
-  const rows = partsOf(said).map(({ name, words, length_m }) =>
+/** @param {RouteExplanation} explanation */
+function parts(explanation) {
+  const rows = partsOf(explanation).map(({ name, words, length_m }) =>
     h(
       "div",
       {},
@@ -87,7 +87,7 @@ function parts(said) {
 /**
  * Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read.
  *
- * @param {RouteExplanation} said
+ * @param {RouteExplanation} explanation
  */
 function zonesInTheWay({ zones }) {
   const found = zones.filter(({ extra_m }) => extra_m >= MIN_M);
@@ -116,9 +116,9 @@ function showReason(id, reason) {
   );
 }
 
-/** @param {RouteExplanation} said @param {ShownPlan} plan */
-function instead(said, plan) {
-  const words = insteadWords(said, plan);
+/** @param {RouteExplanation} explanation @param {ShownPlan} plan */
+function instead(explanation, plan) {
+  const words = insteadWords(explanation, plan);
   return words && h("p", {}, words);
 }
 
@@ -149,14 +149,16 @@ function bound({ binds, used_wh, usable_wh, wind_s }) {
     wind: wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind"),
     balance: t("another UAV’s route is the longest"),
   };
-  const said = (binds ?? []).flatMap((what) => words[what] ?? []);
-  return said.length ? h("p", {}, h("strong", {}, t("Limiting factor:")), " ", `${sentence(said.join("; "))}.`) : null;
+  const explanation = (binds ?? []).flatMap((what) => words[what] ?? []);
+  return explanation.length
+    ? h("p", {}, h("strong", {}, t("Limiting factor:")), " ", `${sentence(explanation.join("; "))}.`)
+    : null;
 }
 
 /** @param {string} words */
 const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 
-/** @param {RouteExplanation} said @param {ShownRoute} route @param {Explaining} explaining */
+/** @param {RouteExplanation} explanation @param {ShownRoute} route @param {Explaining} explaining */
 function heaviest({ heaviest: found }, route, { plan, actions, canPlan }) {
   const target = found && plan.targets[found.target];
   if (!found || !target || found.saves_m < MIN_M || route.targets.length < 2) return null;

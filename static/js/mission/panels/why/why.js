@@ -172,7 +172,7 @@ class WhyPanel {
     return this.#answer(
       t("Why {target} is not reached", { target: plan.targets[index].label }),
       /** @type {Promise<TargetExplanation>} */ (this.#ask(plan, "/plans/why-target", { target: index })),
-      (said) => targetExplanation(said, entry, { plan, store, actions, canPlan }),
+      (explanation) => targetExplanation(explanation, entry, { plan, store, actions, canPlan }),
     );
   }
 
@@ -189,15 +189,15 @@ class WhyPanel {
     return this.#answer(
       t("Why {name} flies this way", { name: route.uav }),
       /** @type {Promise<RouteExplanation>} */ (asked),
-      (said) => routeExplanation(said, { plan, store, actions, canPlan }),
+      (explanation) => routeExplanation(explanation, { plan, store, actions, canPlan }),
     );
   }
 
   /**
-   * @template {{ zones?: { id: number | null }[] }} Said
+   * @template {{ zones?: { id: number | null }[] }} Explanation
    * @param {string} title
-   * @param {Promise<Said>} asked
-   * @param {(said: Said) => Child[]} show
+   * @param {Promise<Explanation>} asked
+   * @param {(explanation: Explanation) => Child[]} show
    */
   async #answer(title, asked, show) {
     const store = this.#store;
@@ -211,10 +211,10 @@ class WhyPanel {
       ),
     );
     try {
-      const said = await asked;
+      const explanation = await asked;
       if (store.state.why !== why) return;
-      put(title, ...show(said));
-      store.update({ litZones: (said.zones ?? []).flatMap(({ id }) => id ?? []) });
+      put(title, ...show(explanation));
+      store.update({ litZones: (explanation.zones ?? []).flatMap(({ id }) => id ?? []) });
     } catch (error) {
       if (store.state.why !== why) return;
       put(

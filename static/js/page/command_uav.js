@@ -17,7 +17,7 @@ const ANSWER_WITHIN_MS = 30_000; // of a connection that is frozen nothing comes
  * @param {Record<string, any>} filled what was filled in
  * @param {{ key?: string, within_ms?: number }} [how] key: of the command, so that it is not given twice; within_ms: an answer has to come
  */
-export async function tellUav(
+export async function commandUav(
   uav,
   name,
   kind,
@@ -25,18 +25,18 @@ export async function tellUav(
   { key = freshKey(), within_ms = ANSWER_WITHIN_MS } = {},
 ) {
   /** @param {Record<string, any>} more @param {string} own key */
-  const tell = (more, own) =>
+  const notify = (more, own) =>
     post(
       `/uavs/${uav}/commands`,
       { kind, why, parameters: { ...parameters, ...more } },
       { headers: { "Idempotency-Key": own }, signal: AbortSignal.timeout(within_ms) },
     );
   try {
-    await tell({}, key);
+    await notify({}, key);
   } catch (error) {
     if (!(error instanceof ApiError) || error.code !== "start_slot") throw error;
     if (!(await confirmAct(outOfSlotQuestion(name, error.message)))) return false;
-    await tell({ out_of_slot: true }, freshKey());
+    await notify({ out_of_slot: true }, freshKey());
   }
   return true;
 }

@@ -6,7 +6,7 @@ import { t } from "../text.js";
 
 /** @type {Set<CommandKind>} */
 const SENT = new Set(["hold", "return", "land", "abort"]); // by a gateway to where it was heard; a companion computer asks by itself
-const HEARD_WITHIN_MS = 3_600_000;
+const RECEIVED_WITHIN_MS = 3_600_000;
 
 /**
  * Sentences: of those that are told all the same, and of those whose command waits.
@@ -15,10 +15,10 @@ const HEARD_WITHIN_MS = 3_600_000;
  * @param {CommandKind} kind
  * @param {number} now_ms
  */
-export function unheardLines(uavs, kind, now_ms) {
+export function unreachableLines(uavs, kind, now_ms) {
   /** @param {LiveUav} uav */
   const isSent = ({ link }) =>
-    SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.heard_at ?? "") < HEARD_WITHIN_MS;
+    SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.heard_at ?? "") < RECEIVED_WITHIN_MS;
   const sent = uavs.filter(isSent);
   const waiting = uavs.filter((uav) => !isSent(uav));
   /** @param {LiveUav[]} some */
