@@ -1,4 +1,4 @@
-"""The two ends of a conversation, and which messages belong to it."""
+"""Whom messages are addressed to and who sends them: system and component of the vehicle and of the ground station."""
 
 from dataclasses import dataclass
 from typing import Any, TypeAlias
@@ -13,8 +13,8 @@ GROUND_STATION: int = mavlink.MAV_COMP_ID_MISSIONPLANNER
 
 
 @dataclass(frozen=True)
-class Ends:
-    """The vehicle that is spoken to, and who speaks."""
+class Addressing:
+    """Target system and component, and our own."""
 
     system: int
     component: int = AUTOPILOT

@@ -7,20 +7,20 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.vehicle_class import ARDUPILOT_NAMES, VehicleClass
 
 
-class Flavour(StrEnum):
+class AutopilotType(StrEnum):
     PX4 = "px4"
     ARDUPILOT = "ardupilot"
     OTHER = "other"
 
 
-COMMANDED = frozenset({Flavour.PX4, Flavour.ARDUPILOT})  # what another autopilot does is not known
+COMMANDED = frozenset({AutopilotType.PX4, AutopilotType.ARDUPILOT})  # what another autopilot does is not known
 
 
-def flavour_of(autopilot: int) -> Flavour:
+def autopilot_type_of(autopilot: int) -> AutopilotType:
     """autopilot: MAV_AUTOPILOT, of a heartbeat."""
     if autopilot == mavlink.MAV_AUTOPILOT_PX4:
-        return Flavour.PX4
-    return Flavour.ARDUPILOT if autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA else Flavour.OTHER
+        return AutopilotType.PX4
+    return AutopilotType.ARDUPILOT if autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA else AutopilotType.OTHER
 
 
 class Mode(StrEnum):
@@ -62,22 +62,22 @@ def px4_mode(custom_mode: int) -> tuple[int, int]:
     return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
 
 
-def mode_name(flavour: Flavour, custom_mode: int, vehicle_class: VehicleClass = VehicleClass.COPTER) -> str:
-    if flavour is Flavour.PX4:
+def mode_name(autopilot_type: AutopilotType, custom_mode: int, vehicle_class: VehicleClass = VehicleClass.COPTER) -> str:
+    if autopilot_type is AutopilotType.PX4:
         main, sub = px4_mode(custom_mode)
         return PX4_AUTO_NAMES.get(sub, f"AUTO {sub}") if main == PX4_AUTO else PX4_MAIN_NAMES.get(main, f"MODE {main}")
-    if flavour is Flavour.ARDUPILOT:
+    if autopilot_type is AutopilotType.ARDUPILOT:
         names = COPTER_NAMES if vehicle_class is VehicleClass.COPTER else ARDUPILOT_NAMES.get(vehicle_class, {})
         return names.get(custom_mode, f"MODE {custom_mode}")
     return f"MODE {custom_mode}"
 
 
-def is_in_mode(flavour: Flavour, custom_mode: int, mode: Mode, vehicle_class: VehicleClass = VehicleClass.COPTER) -> bool:
-    if flavour is Flavour.PX4:
+def is_in_mode(autopilot_type: AutopilotType, custom_mode: int, mode: Mode, vehicle_class: VehicleClass = VehicleClass.COPTER) -> bool:
+    if autopilot_type is AutopilotType.PX4:
         return px4_mode(custom_mode) == (PX4_AUTO, PX4_SUB_MODES.get(mode))
-    if flavour is Flavour.ARDUPILOT and vehicle_class is not VehicleClass.COPTER:
-        return mode_name(flavour, custom_mode, vehicle_class) == OTHERS_NAMES.get(mode)
-    if flavour is Flavour.ARDUPILOT:
+    if autopilot_type is AutopilotType.ARDUPILOT and vehicle_class is not VehicleClass.COPTER:
+        return mode_name(autopilot_type, custom_mode, vehicle_class) == OTHERS_NAMES.get(mode)
+    if autopilot_type is AutopilotType.ARDUPILOT:
         if mode is Mode.HOLD:
             return custom_mode in COPTER_HOLDING - {COPTER_MODES[Mode.GUIDED]}
         if mode is Mode.RETURN:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
@@ -19,12 +19,12 @@ class ParameterReading:
     A parameter that a vehicle does not have draws no answer from many: it is missing from the outcome once the tries are used up.
     """
 
-    def __init__(self, names: Sequence[str], state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, names: Sequence[str], state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
         self.outcome: dict[str, float] | None = None
         self.wake_at_s: float | None = None
         self._open = list(dict.fromkeys(names))
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._tries = 0
         self._read: dict[str, float] = {}
@@ -33,7 +33,12 @@ class ParameterReading:
         return self._asked(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
-        if self.outcome is None and message.get_type() == "PARAM_VALUE" and self._ends.has_sent(message) and message.param_id in self._open:
+        if (
+            self.outcome is None
+            and message.get_type() == "PARAM_VALUE"
+            and self._addressing.has_sent(message)
+            and message.param_id in self._open
+        ):
             if message.param_id in self._state.parameters:
                 self._read[message.param_id] = self._state.parameters[message.param_id]
             self._open.remove(message.param_id)
@@ -50,7 +55,7 @@ class ParameterReading:
         self._tries += 1
         self.wake_at_s = now_s + self._rules.timeout_s
         return [
-            mavlink.MAVLink_param_request_read_message(self._ends.system, self._ends.component, name.encode(), BY_NAME)
+            mavlink.MAVLink_param_request_read_message(self._addressing.system, self._addressing.component, name.encode(), BY_NAME)
             for name in self._open
         ]
 
@@ -65,12 +70,12 @@ class ParameterSetting:
     `state` is to have taken a message before.
     """
 
-    def __init__(self, name: str, value: float, state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, name: str, value: float, state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
         self.outcome: CommandOutcome | None = None
         self.wake_at_s: float | None = None
         self._name, self._value = name, value
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._tries = 0
         self._is_set = False  # by its own word: it is read back
@@ -80,7 +85,7 @@ class ParameterSetting:
         return self._asked(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
-        if self.outcome is not None or message.get_type() != "PARAM_VALUE" or not self._ends.has_sent(message):
+        if self.outcome is not None or message.get_type() != "PARAM_VALUE" or not self._addressing.has_sent(message):
             return []
         if message.param_id != self._name:
             return []
@@ -107,7 +112,7 @@ class ParameterSetting:
             return []
         self._tries += 1
         self.wake_at_s = now_s + self._rules.timeout_s
-        system, component, name = self._ends.system, self._ends.component, self._name.encode()
+        system, component, name = self._addressing.system, self._addressing.component, self._name.encode()
         if self._is_set:
             return [mavlink.MAVLink_param_request_read_message(system, component, name, BY_NAME)]
         return [mavlink.MAVLink_param_set_message(system, component, name, self._value, mavlink.MAV_PARAM_TYPE_REAL32)]

@@ -32,7 +32,7 @@ USUAL = {"RTL_CONE_SLOPE": 3.0, "FENCE_MARGIN": 2.0, "RTL_MIN_DIST": 10.0, "RTL_
 
 
 @dataclass(frozen=True)
-class OwnReturn:
+class RtlBehaviour:
     """`parameter` sets `height_m`.
 
     `bends_by` is the parameter by which it does not fly straight at one height, `untold` one that would say whether it does; empty: none.
@@ -46,8 +46,8 @@ class OwnReturn:
     shuns_home: bool = False
     rally_points: int | None = None
 
-    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
-        """From a place at `current_m`, so far away from where it goes, which is home (0) or a rally point at `haven_m`."""
+    def level_m(self, current_m: float, away_m: float, goal_m: float) -> float:
+        """From a place at `current_m`, so far away from where it goes, which is home (0) or a rally point at `goal_m`."""
         raise NotImplementedError
 
     def at_height(self, height_m: float) -> Self:
@@ -60,7 +60,7 @@ class OwnReturn:
 
 
 @dataclass(frozen=True)
-class CopterReturn(OwnReturn):
+class CopterRtl(RtlBehaviour):
     """ArduPilot's. `climb_m` it climbs at least; `cone_slope` is the metres that it climbs at most for each metre away.
 
     Its fence lowers it to `ceiling_m`, but never takes it down from where it is.
@@ -70,9 +70,9 @@ class CopterReturn(OwnReturn):
     cone_slope: float | None = None
     ceiling_m: float | None = None
 
-    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
+    def level_m(self, current_m: float, away_m: float, goal_m: float) -> float:
         least_m = current_m + self.climb_m
-        wanted_m = max(haven_m, self.height_m, least_m)
+        wanted_m = max(goal_m, self.height_m, least_m)
         if self.cone_slope is not None:
             wanted_m = min(wanted_m, max(away_m * self.cone_slope, least_m))
         if self.ceiling_m is not None:
@@ -81,7 +81,7 @@ class CopterReturn(OwnReturn):
 
 
 @dataclass(frozen=True)
-class Px4Return(OwnReturn):
+class Px4Rtl(RtlBehaviour):
     """Within `near_m` of where it goes it stays in a cone of so many degrees beside the plumb line (0: no cone); within `accepted_m` it is
     as good as there.
     """
@@ -90,10 +90,10 @@ class Px4Return(OwnReturn):
     cone_deg: float = USUAL["RTL_CONE_ANG"]
     accepted_m: float = USUAL["NAV_ACC_RAD"]
 
-    def level_m(self, current_m: float, away_m: float, haven_m: float) -> float:
-        return max(current_m, haven_m + min(self.height_m, self._above_haven_m(away_m)))
+    def level_m(self, current_m: float, away_m: float, goal_m: float) -> float:
+        return max(current_m, goal_m + min(self.height_m, self._above_goal_m(away_m)))
 
-    def _above_haven_m(self, away_m: float) -> float:
+    def _above_goal_m(self, away_m: float) -> float:
         if self.cone_deg <= 0.0:
             return math.inf
         if away_m <= self.accepted_m:
@@ -103,7 +103,7 @@ class Px4Return(OwnReturn):
         return max(away_m / math.tan(math.radians(min(max(self.cone_deg, 1.0), 89.0))), 2.0 * self.accepted_m)
 
 
-def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | None:
+def rtl_behaviour(autopilot: str, parameters: Mapping[str, float]) -> RtlBehaviour | None:
     """Of the parameters as the vehicle told them; None where it has not told its height."""
     groups = PARAMETERS.get(autopilot)
     if groups is None:
@@ -116,12 +116,12 @@ def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | N
     bends_by = next((f"{name} {values[name]:g}" for name in BENDING[autopilot] if values.get(name)), "")
     untold = "" if straight[0] in parameters else straight[0]
     if autopilot == PX4:
-        return Px4Return(
+        return Px4Rtl(
             parameter, values[parameter], bends_by, untold,
             near_m=values["RTL_MIN_DIST"], cone_deg=values["RTL_CONE_ANG"], accepted_m=values["NAV_ACC_RAD"],
         )  # fmt: skip
     slope = values["RTL_CONE_SLOPE"]
-    return CopterReturn(
+    return CopterRtl(
         parameter,
         values[parameter],
         bends_by,

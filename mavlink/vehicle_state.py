@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.addressing import AUTOPILOT, Message
-from mavlink.autopilot_type import COMMANDED, COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
+from mavlink.autopilot_type import COMMANDED, COPTER_HOLDING, AutopilotType, Mode, autopilot_type_of, is_in_mode, mode_name
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_class import VehicleClass, class_of
 
@@ -32,7 +32,7 @@ class VehicleState:
 
     system: int
     fresh_s: float = CommandRules.fresh_s
-    flavour: Flavour | None = None
+    autopilot_type: AutopilotType | None = None
     vehicle_type: int | None = None
     custom_mode: int | None = None
     system_status: int | None = None
@@ -72,7 +72,11 @@ class VehicleState:
     @property
     def mode(self) -> str:
         """In the autopilot's own words; empty before the first heartbeat."""
-        return "" if self.flavour is None or self.custom_mode is None else mode_name(self.flavour, self.custom_mode, self.vehicle_class)
+        return (
+            ""
+            if self.autopilot_type is None or self.custom_mode is None
+            else mode_name(self.autopilot_type, self.custom_mode, self.vehicle_class)
+        )
 
     @property
     def vehicle_class(self) -> VehicleClass:
@@ -81,21 +85,21 @@ class VehicleState:
     @property
     def can_be_stopped(self) -> bool:
         """Whether the modes that hold it, bring it back and land it are known."""
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is AutopilotType.ARDUPILOT:
             return self.vehicle_class is VehicleClass.COPTER
-        return self.flavour in COMMANDED
+        return self.autopilot_type in COMMANDED
 
     def is_in(self, mode: Mode) -> bool:
-        if self.flavour is None or self.custom_mode is None:
+        if self.autopilot_type is None or self.custom_mode is None:
             return False
-        return is_in_mode(self.flavour, self.custom_mode, mode, self.vehicle_class)
+        return is_in_mode(self.autopilot_type, self.custom_mode, mode, self.vehicle_class)
 
     @property
     def is_in_air(self) -> bool | None:
         """As it says itself; ArduPilot, which must be asked to, at least tells in its heartbeat."""
         if self._knows_landed_state:
             return self.landed_state in IN_AIR
-        if self.flavour is Flavour.ARDUPILOT and self.system_status is not None:
+        if self.autopilot_type is AutopilotType.ARDUPILOT and self.system_status is not None:
             return bool(self.is_armed) and self.system_status in (mavlink.MAV_STATE_ACTIVE, mavlink.MAV_STATE_CRITICAL)
         return None
 
@@ -108,7 +112,7 @@ class VehicleState:
     @property
     def is_held(self) -> bool:
         """Armed or not, it flies no list: what is sent to it cannot change where it goes."""
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is AutopilotType.ARDUPILOT:
             return self.custom_mode in COPTER_HOLDING
         return self.is_in(Mode.HOLD)
 
@@ -123,7 +127,7 @@ class VehicleState:
 def _heartbeat(state: VehicleState, message: Message, now_s: float) -> None:
     if message.type == mavlink.MAV_TYPE_GCS or message.autopilot == mavlink.MAV_AUTOPILOT_INVALID:
         return
-    state.flavour = flavour_of(message.autopilot)
+    state.autopilot_type = autopilot_type_of(message.autopilot)
     state.vehicle_type = message.type
     state.custom_mode = message.custom_mode
     state.system_status = message.system_status
@@ -181,7 +185,7 @@ def _battery(state: VehicleState, message: Message, now_s: float) -> None:
 def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
     """PX4 sends the bits of a whole number in place of the figure (MAVLink's "bytewise" encoding)."""
     value = float(message.param_value)
-    if state.flavour is Flavour.PX4 and message.param_type in WHOLE_TYPES:
+    if state.autopilot_type is AutopilotType.PX4 and message.param_type in WHOLE_TYPES:
         value = float(struct.unpack("<i", struct.pack("<f", value))[0])
     if math.isfinite(value) and (message.param_id in state.parameters or len(state.parameters) < MAX_PARAMETERS):
         state.parameters[message.param_id] = value

@@ -23,7 +23,7 @@ from scripts.python_libraries import CannotInstall
 PROJECT_DIR = Path(__file__).resolve().parent.parent
 VENV = PROJECT_DIR / ".venv"
 NODE_MODULES = PROJECT_DIR / "node_modules"
-WORTH_TELLING_S = 5.0  # shorter than this, nobody is told beforehand
+WORTH_REPORTING_S = 5.0  # shorter than this, nobody is told beforehand
 TERMINAL_INTERVAL_S, LOG_INTERVAL_S = 0.5, 15.0  # between two words on what is going on
 
 
@@ -175,7 +175,7 @@ def carry_out(steps: list[Step]) -> None:
     """Run all steps, each as soon as those before it are done. Raises what the first one that fails raises, once the others have ended."""
     expected_s = about_s(steps)
     progress = Progress(expected_s)
-    if expected_s >= WORTH_TELLING_S:
+    if expected_s >= WORTH_REPORTING_S:
         print(f"To be set up, about {expected_s:.0f} s, less after another checkout: {', '.join(step.text for step in steps)}", flush=True)
     waiting, done = list(steps), set[str]()
     known = {step.text for step in steps}

@@ -17,7 +17,7 @@ DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
 DEMO_USER = "demo"
 WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
 SERVING_PROGRAMS = (*WEB_PROGRAMS, "uav-link", "live")  # that the proxy asks
-TELLING_PROGRAMS = (  # that tell how they do, each at a socket of its own
+PROGRAMS_WITH_METRICS = (  # that tell how they do, each at a socket of its own
     *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator",
     "simulator", "beat",
 )  # fmt: skip
@@ -82,7 +82,7 @@ class Places:
         return self.state / "processes" / program
 
 
-def telling_socket(sockets: Path, program: str) -> Path:
+def health_socket(sockets: Path, program: str) -> Path:
     """Where a program tells how it does; the proxy makes one port of them all."""
     return sockets / f"{program}.told.sock"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from operation.json_lines import is_asked_for
 from scripts import commands
-from scripts.places import DATABASE_USER, TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
+from scripts.places import DATABASE_USER, PROGRAMS_WITH_METRICS, WEB_PROGRAMS, CannotStart, Places, health_socket
 from scripts.postgresql_installations import server_for
 from scripts.system_packages import find_program
 
@@ -110,7 +110,7 @@ def _simulator(places: Places) -> Program:
 
 def _reported(places: Places, sockets: Path, program: Program) -> Program:
     """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
-    environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, program.name)}"}
+    environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{health_socket(sockets, program.name)}"}
     if program.name.startswith("worker-"):
         environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
         environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
@@ -120,7 +120,9 @@ def _reported(places: Places, sockets: Path, program: Program) -> Program:
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:
     """Every process of Spanwise itself."""
-    return [_reported(places, sockets, program) if program.name in TELLING_PROGRAMS else program for program in _programs(places, sockets)]
+    return [
+        _reported(places, sockets, program) if program.name in PROGRAMS_WITH_METRICS else program for program in _programs(places, sockets)
+    ]
 
 
 def _programs(places: Places, sockets: Path) -> list[Program]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from operation.address_limits import COSTLY
 from operation.json_lines import is_asked_for
 from scripts import page_headers, proxy_limits
-from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
+from scripts.places import PROGRAMS_WITH_METRICS, WEB_PROGRAMS, CannotStart, Places, health_socket
 from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
 MAX_FILES = 65_536
@@ -128,14 +128,14 @@ def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
         }}"""
 
 
-def _telling(sockets: Path) -> str:
+def _has_metrics(sockets: Path) -> str:
     """A port of its own for whoever collects metrics: /web-1/metrics and so on. Never that of the pages, and only where it is wanted."""
     port = os.environ.get("SPANWISE_METRICS_PORT", "")
     if not port:
         return ""
     if not port.isdigit():
         raise CannotStart(f"SPANWISE_METRICS_PORT is no port: {port!r}")
-    asked = {name: quoted(f"http://unix:{telling_socket(sockets, name)}:/") for name in TELLING_PROGRAMS}
+    asked = {name: quoted(f"http://unix:{health_socket(sockets, name)}:/") for name in PROGRAMS_WITH_METRICS}
     locations = "\n".join(f"        location /{name}/ {{ proxy_pass {address}; }}" for name, address in asked.items())
     return f"""
     server {{
@@ -177,7 +177,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
             listens_at=f"127.0.0.1:{port}",
             is_behind_https=is_https_asked_for(),
         ),
-        beside=_telling(sockets),
+        beside=_has_metrics(sockets),
     )
 
 

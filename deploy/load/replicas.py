@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from scripts import commands
-from scripts.places import Places, telling_socket
+from scripts.places import Places, health_socket
 from scripts.programs import Program, web_programs
 
 KINDS = (
@@ -82,7 +82,7 @@ def _again(first: Program, name: str, places: Places, sockets: Path) -> Program:
 def _reported_as(environment: Mapping[str, str], name: str, places: Places, sockets: Path) -> dict[str, str]:
     own = dict(environment)
     if "SPANWISE_METRICS" in own:
-        own |= {"SPANWISE_PROGRAM": name, "SPANWISE_METRICS": f"unix:{telling_socket(sockets, name)}"}
+        own |= {"SPANWISE_PROGRAM": name, "SPANWISE_METRICS": f"unix:{health_socket(sockets, name)}"}
     if "PROMETHEUS_MULTIPROC_DIR" in own:
         own["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(name) / "metrics")
     return own

@@ -7,8 +7,8 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message
-from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
+from mavlink.addressing import Addressing, Message
+from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, AutopilotType, Mode
 from mavlink.commands.command import CommandStep, Effect, Seven
 from mavlink.vehicle_class import VehicleClass, refusal_words
 from mavlink.vehicle_state import VehicleState
@@ -65,7 +65,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
     home. A return with an `item` goes on with the list from there, at `speed_mps`: the rest of it is the way home.
     """
-    if state.flavour not in COMMANDED:
+    if state.autopilot_type not in COMMANDED:
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
     if state.vehicle_class is not VehicleClass.COPTER and not (order in STOPS and state.can_be_stopped):
         raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
@@ -135,20 +135,20 @@ _LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow
 _MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
 
 
-def mode_numbers(flavour: Flavour | None, mode: Mode) -> Seven:
+def mode_numbers(autopilot_type: AutopilotType | None, mode: Mode) -> Seven:
     """Of MAV_CMD_DO_SET_MODE. Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
-    if flavour is Flavour.PX4:
+    if autopilot_type is AutopilotType.PX4:
         return (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
     return (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def _mode(state: VehicleState, mode: Mode) -> CommandStep:
-    return CommandStep(f"mode {mode.value}", mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.flavour, mode), _is_in(mode))
+    return CommandStep(f"mode {mode.value}", mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.autopilot_type, mode), _is_in(mode))
 
 
 def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
     """ArduCopter cannot be armed in AUTO and others, and is by GUIDED."""
-    is_barred = state.flavour is Flavour.ARDUPILOT and not state.is_armed and state.custom_mode in COPTER_NOT_ARMABLE
+    is_barred = state.autopilot_type is AutopilotType.ARDUPILOT and not state.is_armed and state.custom_mode in COPTER_NOT_ARMABLE
     return (_mode(state, Mode.GUIDED),) if is_barred else ()
 
 
@@ -160,7 +160,7 @@ def _start(state: VehicleState) -> OrderPlan:
     if _is_ordered_to_fly(state):
         return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
     first = _first_item(state)
-    if state.flavour is Flavour.PX4:
+    if state.autopilot_type is AutopilotType.PX4:
         return OrderPlan(_flies_mission, ((first, _mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
     begin = () if state.is_armed else (_mode(state, Mode.GUIDED), _ARM)
     return OrderPlan(_flies_mission, ((first, *begin, _mode(state, Mode.MISSION), _MISSION_START),))
@@ -209,19 +209,19 @@ def _item(state: VehicleState, place: int) -> CommandStep:
         (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         effect=lambda seen: seen.mission_item == item,
         sent_at_s=lambda seen: seen.mission_item_at_s,
-        instead=lambda ends: mavlink.MAVLink_mission_set_current_message(ends.system, ends.component, item),
+        instead=lambda addressing: mavlink.MAVLink_mission_set_current_message(addressing.system, addressing.component, item),
     )
 
 
 def _number_of(state: VehicleState, place: int) -> int:
     """Of an item, as the vehicle counts."""
-    return place if state.flavour is Flavour.PX4 else place + 1
+    return place if state.autopilot_type is AutopilotType.PX4 else place + 1
 
 
 def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
     """PX4 wants the height above sea level, and is armed afterwards; ArduCopter wants it above home, armed in GUIDED before."""
     relative_m = _positive(parameters, "altitude_relative_m")
-    if state.flavour is Flavour.PX4:
+    if state.autopilot_type is AutopilotType.PX4:
         ground_m = state.altitude_amsl_m if state.home_amsl_m is None else state.home_amsl_m
         if ground_m is None:
             raise CannotOrder("no-home", "The UAV has not told its height above sea level.")
@@ -257,10 +257,12 @@ def _positive(parameters: Mapping[str, float], name: str) -> float:
 MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}
 
 
-def unacknowledged_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
-    """The same again after it was sent so often. `order` is one of MODES, `flavour` one that is commanded."""
-    numbers = mode_numbers(flavour, MODES[order])
-    return mavlink.MAVLink_command_long_message(ends.system, ends.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers)
+def unacknowledged_message(order: Order, autopilot_type: AutopilotType, addressing: Addressing, sent: int) -> Message:
+    """The same again after it was sent so often. `order` is one of MODES, `autopilot_type` one that is commanded."""
+    numbers = mode_numbers(autopilot_type, MODES[order])
+    return mavlink.MAVLink_command_long_message(
+        addressing.system, addressing.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers
+    )
 
 
 def pause_s(sent: int) -> float:

@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
 
@@ -43,7 +43,7 @@ class CommandStep:
     is_slow: bool = False
     sent_at_s: Callable[[VehicleState], float | None] = lambda state: state.heartbeat_at_s
     is_too_late: Effect | None = None
-    instead: Callable[[Ends], Message] | None = None
+    instead: Callable[[Addressing], Message] | None = None
 
 
 class CommandMachine:
@@ -54,13 +54,13 @@ class CommandMachine:
     that a yes or the effect within `refusal_s` overrules it.
     """
 
-    def __init__(self, step: CommandStep, state: VehicleState, ends: Ends, rules: CommandRules) -> None:
+    def __init__(self, step: CommandStep, state: VehicleState, addressing: Addressing, rules: CommandRules) -> None:
         self.outcome: CommandOutcome | None = None
         self.wake_at_s: float | None = None
         self.is_acknowledged = False
         self._step = step
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._begun_s = 0.0
         self._sent = 0
@@ -78,7 +78,7 @@ class CommandMachine:
     def receive(self, message: Message, now_s: float) -> Messages:
         if self.outcome is not None:
             return []
-        if message.get_type() == "COMMAND_ACK" and message.command == self._step.command and self._ends.has_sent(message):
+        if message.get_type() == "COMMAND_ACK" and message.command == self._step.command and self._addressing.has_sent(message):
             self._answered(message.result, now_s)
         if self.outcome is None and self._shows_effect():
             self._end(CommandEnd.APPLIED)
@@ -136,10 +136,10 @@ class CommandMachine:
         self._no, self.is_acknowledged = None, False
         self.wake_at_s = now_s + self._rules.timeout_s
         if self._is_unknown and self._step.instead is not None:
-            return [self._step.instead(self._ends)]
+            return [self._step.instead(self._addressing)]
         return [
             mavlink.MAVLink_command_long_message(
-                self._ends.system, self._ends.component, self._step.command, confirmation, *self._step.parameters
+                self._addressing.system, self._addressing.component, self._step.command, confirmation, *self._step.parameters
             )
         ]
 

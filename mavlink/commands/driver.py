@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.commands.actions import STOPS, CannotOrder, Order, OrderPlan, plan_of
 from mavlink.commands.command import CommandEnd, CommandMachine, CommandOutcome
 from mavlink.script import Course, NextHeartbeat, Pause, Steps
@@ -25,7 +25,7 @@ class CommandDriver:
         self,
         order: Order,
         state: VehicleState,
-        ends: Ends,
+        addressing: Addressing,
         rules: CommandRules,
         *,
         parameters: Mapping[str, float] | None = None,
@@ -34,7 +34,7 @@ class CommandDriver:
         self.order = order
         self.is_acknowledged = False  # the vehicle said yes to a command of it
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._parameters = dict(parameters or {})
         self._unsettled_until_s = unsettled_until_s
@@ -98,7 +98,7 @@ class CommandDriver:
         failure = CommandOutcome(CommandEnd.FAILED)
         for way in plan.ways:
             for step in way:
-                machine = CommandMachine(step, self._state, self._ends, self._rules)
+                machine = CommandMachine(step, self._state, self._addressing, self._rules)
                 yield machine
                 ended = machine.outcome
                 if ended is None or ended.state is CommandEnd.FAILED:

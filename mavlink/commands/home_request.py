@@ -2,7 +2,7 @@
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
 
@@ -10,11 +10,11 @@ from mavlink.vehicle_state import VehicleState
 class HomeReading:
     """`outcome` is whether it was told. `state` is to have taken a message before."""
 
-    def __init__(self, state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
         self.outcome: bool | None = None
         self.wake_at_s: float | None = None
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._tries = 0
         self._begun_s = 0.0
@@ -40,4 +40,6 @@ class HomeReading:
         self.wake_at_s = now_s + self._rules.timeout_s
         newer = (mavlink.MAV_CMD_REQUEST_MESSAGE, float(mavlink.MAVLINK_MSG_ID_HOME_POSITION))
         command, first = newer if self._tries % 2 else (mavlink.MAV_CMD_GET_HOME_POSITION, 0.0)
-        return [mavlink.MAVLink_command_long_message(self._ends.system, self._ends.component, command, 0, first, 0, 0, 0, 0, 0, 0)]
+        return [
+            mavlink.MAVLink_command_long_message(self._addressing.system, self._addressing.component, command, 0, first, 0, 0, 0, 0, 0, 0)
+        ]

@@ -16,9 +16,9 @@ from enum import Enum, StrEnum, auto
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.supported_items import as_old_roi
-from mavlink.mission_sync.wire import Held, HeldItem
+from mavlink.mission_sync.wire import OnboardItem, OnboardList
 from mavlink.vehicle_plan import MissionItem
 
 CENTIMETRE_M = 0.01
@@ -44,24 +44,24 @@ class Found(StrEnum):
     FOREIGN = "foreign"  # with an item of none of these
 
 
-def found(held: Held, wanted: Sequence[MissionItem], known: Sequence[Sequence[MissionItem]], flavour: Flavour) -> Found:
+def found(held: OnboardList, wanted: Sequence[MissionItem], known: Sequence[Sequence[MissionItem]], autopilot_type: AutopilotType) -> Found:
     """known: other lists that were approved for this vehicle. Lists of one mission often begin alike, so a mix is told only by them."""
-    if not differences(wanted, held, flavour):
+    if not differences(wanted, held, autopilot_type):
         return Found.APPROVED
     if not held:
         return Found.NOTHING
-    if any(not differences(items, held, flavour) for items in known):
+    if any(not differences(items, held, autopilot_type) for items in known):
         return Found.KNOWN
     lists = [wanted, *(items for items in known if items)]
     if len(lists) == 1:
         return Found.FOREIGN
-    is_of_some = (any(place in _of_list(held, items, flavour) for items in lists) for place in range(len(held)))
+    is_of_some = (any(place in _of_list(held, items, autopilot_type) for items in lists) for place in range(len(held)))
     return Found.MIXED if all(is_of_some) else Found.FOREIGN
 
 
-def mix_in_words(held: Held, wanted: Sequence[MissionItem], before: Held | None, flavour: Flavour) -> str:
+def mix_in_words(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> str:
     """Which items are whose: "items 0-2 of 7 are new, 3-6 are of the list before"; `before` is None where it is not known."""
-    new = _of_list(held, wanted, flavour)
+    new = _of_list(held, wanted, autopilot_type)
     whose: list[str] = []
     for place, there in enumerate(held):
         is_old = before is not None and place < len(before) and is_identical(before[place], there)
@@ -83,9 +83,9 @@ def mix_in_words(held: Held, wanted: Sequence[MissionItem], before: Held | None,
     return f"{len(held)} items where {len(wanted)} are approved: " + ", ".join(parts) if parts else "no items"
 
 
-def _of_list(held: Held, items: Sequence[MissionItem], flavour: Flavour) -> set[int]:
+def _of_list(held: OnboardList, items: Sequence[MissionItem], autopilot_type: AutopilotType) -> set[int]:
     """The places at which it holds the item of this list."""
-    return {place for place, (item, there) in enumerate(zip(items, held, strict=False)) if is_same(item, there.item, flavour)}
+    return {place for place, (item, there) in enumerate(zip(items, held, strict=False)) if is_same(item, there.item, autopilot_type)}
 
 
 class Keeps(Enum):
@@ -125,7 +125,7 @@ PX4_KEEPS = {
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_NAV_RALLY_POINT: (NOTHING, NOTHING, NOTHING, NOTHING),
 }
-KEEPS = {Flavour.ARDUPILOT: ARDUPILOT_KEEPS, Flavour.PX4: PX4_KEEPS}
+KEEPS = {AutopilotType.ARDUPILOT: ARDUPILOT_KEEPS, AutopilotType.PX4: PX4_KEEPS}
 
 
 @dataclass(frozen=True)
@@ -142,14 +142,14 @@ class Difference:
         return f"item {self.item}: {self.field} is {self.held} instead of {self.wanted}"
 
 
-def differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) -> tuple[Difference, ...]:
-    """All of them, in the order of the list; empty where the vehicle holds what is wanted. `held` without home (see `held_list`)."""
-    return tuple(_differences(wanted, held, flavour))
+def differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> tuple[Difference, ...]:
+    """All of them, in the order of the list; empty where the vehicle holds what is wanted. `held` without home (see `onboard_list`)."""
+    return tuple(_differences(wanted, held, autopilot_type))
 
 
-def _differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) -> Iterator[Difference]:
+def _differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> Iterator[Difference]:
     for place, (item, there) in enumerate(zip(wanted, held, strict=False)):
-        for name, asked_for, found in _of_item(item, there.item, flavour):
+        for name, asked_for, found in _of_item(item, there.item, autopilot_type):
             yield Difference(place, name, asked_for, found, item.waypoint)
         if not there.goes_on and item.command not in NOT_FLOWN:
             yield Difference(place, "going on afterwards", "yes", "no", item.waypoint)
@@ -159,7 +159,7 @@ def _differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) ->
         yield Difference(place, "command", "nothing", str(held[place].item.command))
 
 
-def is_identical(one: HeldItem, other: HeldItem) -> bool:
+def is_identical(one: OnboardItem, other: OnboardItem) -> bool:
     """Two items that were read, figure by figure; NaN is NaN."""
     left, right = one.item, other.item
     return (
@@ -170,36 +170,36 @@ def is_identical(one: HeldItem, other: HeldItem) -> bool:
     )
 
 
-def are_identical(one: Held, other: Held) -> bool:
+def are_identical(one: OnboardList, other: OnboardList) -> bool:
     return len(one) == len(other) and all(map(is_identical, one, other))
 
 
-def is_same(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> bool:
-    return next(_of_item(wanted, held, flavour), None) is None
+def is_same(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotType) -> bool:
+    return next(_of_item(wanted, held, autopilot_type), None) is None
 
 
-def _of_item(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> Iterator[tuple[str, str, str]]:
-    if flavour is Flavour.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
+def _of_item(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotType) -> Iterator[tuple[str, str, str]]:
+    if autopilot_type is AutopilotType.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
         wanted = as_old_roi(wanted)
     if wanted.command != held.command:
         yield "command", str(wanted.command), str(held.command)
         return
-    if not _is_same_frame(wanted, held, flavour):
+    if not _is_same_frame(wanted, held, autopilot_type):
         yield "frame", str(wanted.frame), str(held.frame)
     if wanted.longitude_e7 != held.longitude_e7:
         yield "longitude", f"{wanted.longitude_e7 / 1e7:.7f}", f"{held.longitude_e7 / 1e7:.7f}"
     if wanted.latitude_e7 != held.latitude_e7:
         yield "latitude", f"{wanted.latitude_e7 / 1e7:.7f}", f"{held.latitude_e7 / 1e7:.7f}"
-    if not _is_same_altitude(wanted.altitude_m, held.altitude_m, flavour):
+    if not _is_same_altitude(wanted.altitude_m, held.altitude_m, autopilot_type):
         yield "altitude", f"{wanted.altitude_m:g} m", f"{held.altitude_m:g} m"
-    keeps = KEEPS.get(flavour, {}).get(wanted.command, FOUR_ALL)
+    keeps = KEEPS.get(autopilot_type, {}).get(wanted.command, FOUR_ALL)
     for number, (asked_for, found, kept) in enumerate(zip(wanted.parameters, held.parameters, keeps, strict=True), 1):
         if not _is_kept(asked_for, found, kept):
             yield f"parameter {number}", f"{asked_for:g}", f"{found:g}"
 
 
-def _is_same_frame(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> bool:
-    if flavour is Flavour.ARDUPILOT and wanted.frame == mavlink.MAV_FRAME_MISSION:
+def _is_same_frame(wanted: MissionItem, held: MissionItem, autopilot_type: AutopilotType) -> bool:
+    if autopilot_type is AutopilotType.ARDUPILOT and wanted.frame == mavlink.MAV_FRAME_MISSION:
         return held.frame in PLACELESS_ON_ARDUPILOT
     return _plain_frame(wanted.frame) == _plain_frame(held.frame)
 
@@ -208,10 +208,10 @@ def _plain_frame(frame: int) -> int:
     return SAME_FRAME.get(frame, frame)
 
 
-def _is_same_altitude(wanted_m: float, held_m: float, flavour: Flavour) -> bool:
+def _is_same_altitude(wanted_m: float, held_m: float, autopilot_type: AutopilotType) -> bool:
     if _is_float32(wanted_m, held_m):
         return True
-    if flavour is not Flavour.ARDUPILOT or not (math.isfinite(wanted_m) and math.isfinite(held_m)):
+    if autopilot_type is not AutopilotType.ARDUPILOT or not (math.isfinite(wanted_m) and math.isfinite(held_m)):
         return False
     rounding_m = max(abs(wanted_m), 1.0) * 2.0**-22  # of two figures of 32 bits
     lost_m = abs(wanted_m) - abs(held_m)

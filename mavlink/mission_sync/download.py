@@ -2,9 +2,9 @@
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.mission_sync.upload import UNCERTAIN, TransferOutcome, TransferState
-from mavlink.mission_sync.wire import Held, HeldItem, ack_message, held_item, result_name
+from mavlink.mission_sync.wire import OnboardItem, OnboardList, ack_message, onboard_item, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
 
@@ -16,16 +16,16 @@ class Download:
     that whatever is late arrives before it. ArduPilot needs no beginning anew: its items can be read in any order.
     """
 
-    def __init__(self, kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
         self.kind = kind
         self.outcome: TransferOutcome | None = None
         self.wake_at_s: float | None = None
-        self.read: Held = ()
-        self._ends = ends
+        self.read: OnboardList = ()
+        self._addressing = addressing
         self._rules = rules
         self._count: int | None = None
         self._counted_before: int | None = None
-        self._items: list[HeldItem] = []
+        self._items: list[OnboardItem] = []
         self._is_paced = self._is_pausing = False
         self._refused: tuple[int, float] | None = None
         self._restarts = 0
@@ -40,13 +40,13 @@ class Download:
         return self._asked(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
-        if self.outcome is not None or not self._ends.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
+        if self.outcome is not None or not self._addressing.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
             return []
         name = message.get_type()
         if name == "MISSION_COUNT":
             return self._counted(message.count, now_s)
         if name == "MISSION_ITEM_INT" and self._count is not None and message.seq == len(self._items):
-            return self._got(held_item(message), now_s)
+            return self._got(onboard_item(message), now_s)
         if name == "MISSION_ACK" and message.type != mavlink.MAV_MISSION_ACCEPTED:
             return self._note_refusal(message.type, now_s)
         return []
@@ -67,7 +67,7 @@ class Download:
         if self.outcome is not None:
             return []
         self._end(TransferState.CANCELLED, "cancelled")
-        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._ends)]
+        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._addressing)]
 
     def _counted(self, count: int, now_s: float) -> Messages:
         if self._count is not None:
@@ -79,7 +79,7 @@ class Download:
         self._counted_before = count
         return self._next(now_s)
 
-    def _got(self, item: HeldItem, now_s: float) -> Messages:
+    def _got(self, item: OnboardItem, now_s: float) -> Messages:
         self._refused = None
         self._items.append(item)
         self._progress_s = now_s
@@ -89,7 +89,7 @@ class Download:
         if len(self._items) == self._count:
             self.read = tuple(self._items)
             self._end(TransferState.DONE, "")
-            return [ack_message(mavlink.MAV_MISSION_ACCEPTED, self.kind, self._ends)]
+            return [ack_message(mavlink.MAV_MISSION_ACCEPTED, self.kind, self._addressing)]
         if self._is_paced and not self._is_pausing:
             self._is_pausing, self.wake_at_s = True, now_s + self._rules.item_timeout_s
             return []
@@ -112,12 +112,16 @@ class Download:
         self._asked_anew_s = now_s
         self._is_pausing = False
         self.wake_at_s = now_s + self._rules.timeout_s
-        return [mavlink.MAVLink_mission_request_list_message(self._ends.system, self._ends.component, int(self.kind))]
+        return [mavlink.MAVLink_mission_request_list_message(self._addressing.system, self._addressing.component, int(self.kind))]
 
     def _request(self, now_s: float) -> Messages:
         self._is_pausing = False
         self.wake_at_s = now_s + self._rules.item_timeout_s
-        return [mavlink.MAVLink_mission_request_int_message(self._ends.system, self._ends.component, len(self._items), int(self.kind))]
+        return [
+            mavlink.MAVLink_mission_request_int_message(
+                self._addressing.system, self._addressing.component, len(self._items), int(self.kind)
+            )
+        ]
 
     def _end(self, state: TransferState, code: str) -> Messages:
         self.outcome, self.wake_at_s = TransferOutcome(state, code, len(self._items)), None

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour, Mode
+from mavlink.autopilot_type import AutopilotType, Mode
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
 
@@ -60,7 +60,7 @@ class FlightWatch:
             self.has_flown_list = True
         if not self.has_flown_list:
             return []
-        offset = 1 if state.flavour is Flavour.ARDUPILOT else 0
+        offset = 1 if state.autopilot_type is AutopilotType.ARDUPILOT else 0
         if state.is_armed:
             self._note_bound_for(state, offset)
         if kind == "MISSION_ITEM_REACHED" and state.reached_item is not None and state.reached_item >= offset:

@@ -5,14 +5,18 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from inspection.geodesy import LonLat
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.intermediate_waypoints import FLOWN, length_on_sphere_m, position_of
 from mavlink.vehicle_plan import FlightLoad, MissionType
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
 # the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
-MAX_ITEMS = {(Flavour.ARDUPILOT, MissionType.MISSION): 649}
-USUAL_ITEMS = {(Flavour.PX4, MissionType.MISSION): 500, (Flavour.PX4, MissionType.FENCE): 64, (Flavour.PX4, MissionType.RALLY): 8}
+MAX_ITEMS = {(AutopilotType.ARDUPILOT, MissionType.MISSION): 649}
+USUAL_ITEMS = {
+    (AutopilotType.PX4, MissionType.MISSION): 500,
+    (AutopilotType.PX4, MissionType.FENCE): 64,
+    (AutopilotType.PX4, MissionType.RALLY): 8,
+}
 FIRST_LEG = "MIS_DIST_1WP"  # PX4, in metres; 0 or below: not limited
 ANY_LEG = "MIS_DIST_WPS"
 PARAMETERS = (FIRST_LEG, ANY_LEG)
@@ -27,23 +31,23 @@ class LimitWarning:
     item: int | None = None
 
 
-def too_many(load: FlightLoad, flavour: Flavour) -> LimitWarning | None:
+def too_many(load: FlightLoad, autopilot_type: AutopilotType) -> LimitWarning | None:
     """The first list that no vehicle of the flavour takes."""
-    return next(_longer(load, flavour, MAX_ITEMS, "takes", "too-many-items"), None)
+    return next(_longer(load, autopilot_type, MAX_ITEMS, "takes", "too-many-items"), None)
 
 
-def count_warnings(load: FlightLoad, flavour: Flavour) -> tuple[LimitWarning, ...]:
+def count_warnings(load: FlightLoad, autopilot_type: AutopilotType) -> tuple[LimitWarning, ...]:
     """Lists that are longer than most vehicles of the flavour take."""
-    return tuple(_longer(load, flavour, USUAL_ITEMS, "on most boards takes", "many-items"))
+    return tuple(_longer(load, autopilot_type, USUAL_ITEMS, "on most boards takes", "many-items"))
 
 
 def _longer(
-    load: FlightLoad, flavour: Flavour, most_items: Mapping[tuple[Flavour, MissionType], int], takes: str, code: str
+    load: FlightLoad, autopilot_type: AutopilotType, most_items: Mapping[tuple[AutopilotType, MissionType], int], takes: str, code: str
 ) -> Iterator[LimitWarning]:
     for kind in MissionType:
-        most = most_items.get((flavour, kind))
+        most = most_items.get((autopilot_type, kind))
         if most is not None and len(load.of(kind)) > most:
-            yield LimitWarning(code, f"The {kind.name.lower()} has {len(load.of(kind))} items; {flavour.value} {takes} {most}.")
+            yield LimitWarning(code, f"The {kind.name.lower()} has {len(load.of(kind))} items; {autopilot_type.value} {takes} {most}.")
 
 
 def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: LonLat | None) -> tuple[LimitWarning, ...]:

@@ -30,7 +30,7 @@ class SyncOutcome:
 
     `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
     there, or may be. `left_alone` says in words what of the vehicle's own was kept beside the load, `left_sha256` names these
-    lists, by kind (see wire.held_sha256).
+    lists, by kind (see wire.onboard_sha256).
     """
 
     state: SyncState

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.vehicle_plan import MissionItem
 
 Version = tuple[int, int, int]
 ROI_SINCE: Version = (4, 7, 0)
-KNOWN_SINCE: Mapping[Flavour, Mapping[int, Version]] = {Flavour.ARDUPILOT: {mavlink.MAV_CMD_IMAGE_START_CAPTURE: (4, 4, 0)}}
-NAMES = {Flavour.ARDUPILOT: "ArduPilot", Flavour.PX4: "PX4"}
+KNOWN_SINCE: Mapping[AutopilotType, Mapping[int, Version]] = {AutopilotType.ARDUPILOT: {mavlink.MAV_CMD_IMAGE_START_CAPTURE: (4, 4, 0)}}
+NAMES = {AutopilotType.ARDUPILOT: "ArduPilot", AutopilotType.PX4: "PX4"}
 
 
 @dataclass(frozen=True)
@@ -36,24 +36,24 @@ def as_old_roi(item: MissionItem) -> MissionItem:
     return item
 
 
-def as_known(items: Sequence[MissionItem], flavour: Flavour, firmware: Version | None) -> tuple[MissionItem, ...]:
+def as_known(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> tuple[MissionItem, ...]:
     """The items as this firmware takes them. A version that is not told is taken for an old one."""
-    if flavour is not Flavour.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
+    if autopilot_type is not AutopilotType.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
         return tuple(items)
     return tuple(map(as_old_roi, items))
 
 
-def unknown_items(items: Sequence[MissionItem], flavour: Flavour, firmware: Version | None) -> list[UnknownItem]:
+def unknown_items(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> list[UnknownItem]:
     """Those that this firmware refuses; none while its version is not told."""
     if firmware is None:
         return []
-    since = KNOWN_SINCE.get(flavour, {})
+    since = KNOWN_SINCE.get(autopilot_type, {})
     return [UnknownItem(place, item) for place, item in enumerate(items) if firmware < since.get(item.command, firmware)]
 
 
-def firmware_words(flavour: Flavour | None, firmware: Version | None) -> str:
+def firmware_words(autopilot_type: AutopilotType | None, firmware: Version | None) -> str:
     """ "ArduPilot 4.6.0"."""
-    name = "The autopilot" if flavour is None else NAMES.get(flavour, "The autopilot")
+    name = "The autopilot" if autopilot_type is None else NAMES.get(autopilot_type, "The autopilot")
     return name if firmware is None else f"{name} {'.'.join(map(str, firmware))}"
 
 

@@ -3,15 +3,15 @@
 from collections.abc import Generator, Sequence
 from typing import Any
 
-from mavlink.addressing import Ends, Message, Messages
-from mavlink.autopilot_type import Flavour, Mode
+from mavlink.addressing import Addressing, Message, Messages
+from mavlink.autopilot_type import AutopilotType, Mode
 from mavlink.mission_sync.compare import Difference, Found, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
 from mavlink.mission_sync.outcome import Mix, Progress, SyncOutcome, SyncState
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
 from mavlink.mission_sync.upload import REQUESTS, Clear, TransferOutcome, TransferState, Upload
-from mavlink.mission_sync.wire import Held, has_home, held_list, held_sha256, sent_list
+from mavlink.mission_sync.wire import OnboardList, has_home, onboard_list, onboard_sha256, sent_list
 from mavlink.script import Course, Machine, Steps
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_class import VehicleClass, refusal_words
@@ -40,17 +40,17 @@ class MissionSync:
     """
 
     def __init__(
-        self, load: FlightLoad, state: VehicleState, ends: Ends, rules: TransferRules, *, known: Sequence[FlightLoad] = ()
+        self, load: FlightLoad, state: VehicleState, addressing: Addressing, rules: TransferRules, *, known: Sequence[FlightLoad] = ()
     ) -> None:
         self.load = load
         self.mixes: list[Mix] = []
-        self.before: dict[MissionType, Held] = {}
+        self.before: dict[MissionType, OnboardList] = {}
         self.found_before: dict[MissionType, Found] = {}
         self._state = state
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._known = tuple(known)
-        self._now: dict[MissionType, Held | None] = {}  # as last read; None: it was touched since
+        self._now: dict[MissionType, OnboardList | None] = {}  # as last read; None: it was touched since
         self._sent: dict[MissionType, Upload] = {}
         self._touched: list[MissionType] = []
         self._reason = ""
@@ -101,7 +101,7 @@ class MissionSync:
             return False
         if not state.is_in(Mode.MISSION) or MissionType.MISSION not in self._touched:
             return True
-        return state.flavour is Flavour.PX4 and isinstance(self._steps.step, Upload) and self._kind is MissionType.MISSION
+        return state.autopilot_type is AutopilotType.PX4 and isinstance(self._steps.step, Upload) and self._kind is MissionType.MISSION
 
     def cancel(self, now_s: float) -> Messages:
         """Ends by a failure like others: what was begun is put back."""
@@ -125,7 +125,7 @@ class MissionSync:
                 return SyncOutcome(SyncState.INTACT, self._reason, "Nothing was sent: what the vehicle holds could not be read.")
             self.before[kind] = read
             known = [load.of(kind) for load in self._known]
-            self.found_before[kind] = found(read, self.load.of(kind), known, self._flavour)
+            self.found_before[kind] = found(read, self.load.of(kind), known, self._autopilot_type)
             if self.found_before[kind] is Found.MIXED:
                 self._note_mix(kind, read)
         for kind in ORDER:
@@ -133,41 +133,41 @@ class MissionSync:
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
         words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
-        lists = {kind: held_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
+        lists = {kind: onboard_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
         sha256, mixes = self.load.content_sha256, tuple(self.mixes)
         return SyncOutcome(SyncState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
 
     def _cannot_begin(self) -> SyncOutcome | None:
         state = self._state
         code = words = ""
-        if state.flavour is None:
+        if state.autopilot_type is None:
             code, words = "not-heard", "The vehicle has not said what it is."
-        elif state.flavour is Flavour.OTHER:
+        elif state.autopilot_type is AutopilotType.OTHER:
             code, words = "autopilot", "Missions are sent to PX4 and ArduPilot only: how this autopilot keeps them is not known."
         elif state.vehicle_class is not VehicleClass.COPTER:
             code, words = "vehicle-class", refusal_words(state.vehicle_class)
         elif state.is_armed and not state.is_held:
             code, words = "not-held", f"The vehicle is armed and in mode {state.mode}: it must be disarmed or held first."
         else:
-            limit = too_many(self.load, state.flavour)
-            unknown = unknown_items(self.load.mission, state.flavour, state.firmware)
+            limit = too_many(self.load, state.autopilot_type)
+            unknown = unknown_items(self.load.mission, state.autopilot_type, state.firmware)
             if limit is not None:
                 code, words = limit.code, limit.words
             elif unknown:
-                autopilot, first = firmware_words(state.flavour, state.firmware), unknown[0]
+                autopilot, first = firmware_words(state.autopilot_type, state.firmware), unknown[0]
                 code, words = "unknown-command", f"Not known to {autopilot}: item {first.place}, {command_words(first.item.command)}."
         return SyncOutcome(SyncState.INTACT, code, f"Nothing was sent. {words}") if code else None
 
     @property
-    def _flavour(self) -> Flavour:
-        return self._state.flavour or Flavour.OTHER
+    def _autopilot_type(self) -> AutopilotType:
+        return self._state.autopilot_type or AutopilotType.OTHER
 
     def _bring(self, kind: MissionType) -> Generator[Machine, None, bool]:
         """Whether the vehicle holds the approved list of this kind."""
         wanted = self.load.of(kind)
         if self._is_cancelled:
             return False
-        if not differences(wanted, self.before[kind], self._flavour) or self._is_left_alone(kind):
+        if not differences(wanted, self.before[kind], self._autopilot_type) or self._is_left_alone(kind):
             return True
         self._touched.append(kind)
         self._reason = ""
@@ -211,10 +211,12 @@ class MissionSync:
         self._kind, self._stage = kind, SENDING if items else CLEARING
         step: Upload | Clear
         if items:
-            step = self._sent[kind] = Upload(sent_list(items, kind, self._flavour, self._state.firmware), kind, self._ends, self._rules)
+            step = self._sent[kind] = Upload(
+                sent_list(items, kind, self._autopilot_type, self._state.firmware), kind, self._addressing, self._rules
+            )
         else:
             self._sent.pop(kind, None)
-            step = Clear(kind, self._ends, self._rules)
+            step = Clear(kind, self._addressing, self._rules)
         yield step
         if isinstance(step, Upload) and not self._is_restoring:
             self._why = self._refusal_in_words(step)
@@ -225,8 +227,11 @@ class MissionSync:
         ended: TransferOutcome | None = upload.outcome
         if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
             return ""
-        autopilot, command = firmware_words(self._state.flavour, self._state.firmware), command_words(upload.items[ended.item].command)
-        place = ended.item - has_home(upload.kind, self._flavour)
+        autopilot, command = (
+            firmware_words(self._state.autopilot_type, self._state.firmware),
+            command_words(upload.items[ended.item].command),
+        )
+        place = ended.item - has_home(upload.kind, self._autopilot_type)
         return f"Refused by {autopilot}: item {place} of the {_name(upload.kind)}, {command} ({ended.code})."
 
     def _difference_in_words(self, kind: MissionType) -> str:
@@ -237,19 +242,19 @@ class MissionSync:
         words = f"Of the {name}, item {first.item}: {first.field} was sent as {first.wanted} and came back as {first.held}."
         return f"{words} There are {len(found) - 1} more differences." if len(found) > 1 else words
 
-    def _read(self, kind: MissionType) -> Generator[Machine, None, Held | None]:
+    def _read(self, kind: MissionType) -> Generator[Machine, None, OnboardList | None]:
         """As often as there are attempts. A list that the vehicle does not have at all is empty."""
         self._kind, self._stage = kind, READING
         for _ in range(self._rules.attempts):
             if self._is_cancelled and not self._is_restoring:
                 return None
-            step = Download(kind, self._ends, self._rules)
+            step = Download(kind, self._addressing, self._rules)
             yield step
             if step.outcome is not None and step.outcome.code == "unsupported":
                 self._now[kind] = ()
                 return ()
             if self._ended(step.outcome) is TransferState.DONE:
-                self._now[kind] = held_list(step.read, kind, self._flavour)
+                self._now[kind] = onboard_list(step.read, kind, self._autopilot_type)
                 return self._now[kind]
         return None
 
@@ -270,7 +275,7 @@ class MissionSync:
                 unread.append(kind)
         return self._verdict(unread)
 
-    def _settle(self, kind: MissionType) -> Generator[Machine, None, Held | None]:
+    def _settle(self, kind: MissionType) -> Generator[Machine, None, OnboardList | None]:
         """Makes of a list that was touched either the one before or none, and tells what it is now."""
         held = yield from self._read(kind)
         if held is None or are_identical(held, self.before[kind]):
@@ -298,7 +303,7 @@ class MissionSync:
             shown = self._differences(mixed[0])
             return SyncOutcome(SyncState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
         if unread:
-            is_critical = self._flavour is Flavour.ARDUPILOT
+            is_critical = self._autopilot_type is AutopilotType.ARDUPILOT
             may = "part of the new one and part of the old" if is_critical else "the old one or the new one, whole"
             words = f"The vehicle fell silent while its {_name(unread[0])} was sent: it may hold {may}. Read it back before any flight."
             return SyncOutcome(SyncState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
@@ -310,13 +315,13 @@ class MissionSync:
     def _with_why(self, words: str) -> str:
         return f"{self._why} {words}".strip()
 
-    def _differs(self, kind: MissionType, held: Held) -> bool:
-        return bool(differences(self.load.of(kind), held, self._flavour))
+    def _differs(self, kind: MissionType, held: OnboardList) -> bool:
+        return bool(differences(self.load.of(kind), held, self._autopilot_type))
 
     def _differences(self, kind: MissionType) -> tuple[Difference, ...]:
-        return differences(self.load.of(kind), self._now[kind] or (), self._flavour)
+        return differences(self.load.of(kind), self._now[kind] or (), self._autopilot_type)
 
-    def _note_mix(self, kind: MissionType, held: Held) -> None:
+    def _note_mix(self, kind: MissionType, held: OnboardList) -> None:
         """Of what was read while the list was being replaced, or found to be mixed before."""
         if not held or not self._differs(kind, held) or (kind in self._touched and are_identical(held, self.before[kind])):
             return
@@ -324,13 +329,13 @@ class MissionSync:
         if mix not in self.mixes:
             self.mixes.append(mix)
 
-    def _left_in_words(self, kind: MissionType, held: Held) -> str:
+    def _left_in_words(self, kind: MissionType, held: OnboardList) -> str:
         if not held:
             return f"Its {_name(kind)} could not be put back: it holds none."
         return f"Its {_name(kind)} is a mix: {self._mix_words(kind, held)}."
 
-    def _mix_words(self, kind: MissionType, held: Held) -> str:
-        return mix_in_words(held, self.load.of(kind), self.before.get(kind), self._flavour)
+    def _mix_words(self, kind: MissionType, held: OnboardList) -> str:
+        return mix_in_words(held, self.load.of(kind), self.before.get(kind), self._autopilot_type)
 
 
 def _name(kind: MissionType) -> str:

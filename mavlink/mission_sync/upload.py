@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message, Messages
+from mavlink.addressing import Addressing, Message, Messages
 from mavlink.mission_sync.wire import ack_message, item_message, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
@@ -41,11 +41,11 @@ class TransferOutcome:
 class Clear:
     """MISSION_CLEAR_ALL of one list. A vehicle that is busy is asked again; read the list back to know."""
 
-    def __init__(self, kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
         self.kind = kind
         self.outcome: TransferOutcome | None = None
         self.wake_at_s: float | None = None
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._begun_s = 0.0
         self._refused: int | None = None
@@ -55,7 +55,7 @@ class Clear:
         return self._asked(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
-        if self.outcome is not None or not self._ends.has_sent(message) or message.get_type() != "MISSION_ACK":
+        if self.outcome is not None or not self._addressing.has_sent(message) or message.get_type() != "MISSION_ACK":
             return []
         if message.mission_type == self.kind:
             if message.type == mavlink.MAV_MISSION_ACCEPTED:
@@ -77,7 +77,7 @@ class Clear:
 
     def _asked(self, now_s: float) -> Messages:
         self.wake_at_s = now_s + self._rules.timeout_s
-        return [mavlink.MAVLink_mission_clear_all_message(self._ends.system, self._ends.component, int(self.kind))]
+        return [mavlink.MAVLink_mission_clear_all_message(self._addressing.system, self._addressing.component, int(self.kind))]
 
     def _end(self, state: TransferState, code: str) -> Messages:
         self.outcome, self.wake_at_s = TransferOutcome(state, code), None
@@ -94,14 +94,14 @@ class Upload:
     announcement is made again when the vehicle falls silent after it. Therefore even `done` is a claim: read the list back.
     """
 
-    def __init__(self, items: Sequence[MissionItem], kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+    def __init__(self, items: Sequence[MissionItem], kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
         """items: as they go over the wire (see `sent_list`)."""
         self.items = tuple(items)
         self.kind = kind
         self.outcome: TransferOutcome | None = None
         self.wake_at_s: float | None = None
         self.items_done = 0  # the most that were asked for beyond them
-        self._ends = ends
+        self._addressing = addressing
         self._rules = rules
         self._at: int | None = None  # the item asked for last
         self._may_be_ahead = False
@@ -115,7 +115,7 @@ class Upload:
         return self._announced(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
-        if not self._ends.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
+        if not self._addressing.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
             return []
         if message.get_type() in REQUESTS:
             return self._requested(message.seq, now_s)
@@ -143,7 +143,7 @@ class Upload:
         if self.outcome is not None:
             return []
         self._end(TransferState.CANCELLED, "cancelled")
-        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._ends)]
+        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._addressing)]
 
     def _requested(self, number: int, now_s: float) -> Messages:
         if number >= len(self.items):
@@ -186,11 +186,11 @@ class Upload:
 
     def _announced(self, now_s: float) -> Messages:
         self._wait(now_s)
-        return [mavlink.MAVLink_mission_count_message(self._ends.system, self._ends.component, len(self.items), int(self.kind))]
+        return [mavlink.MAVLink_mission_count_message(self._addressing.system, self._addressing.component, len(self.items), int(self.kind))]
 
     def _item(self, number: int) -> Message:
         self._has_sent_last = self._has_sent_last or number == len(self.items) - 1
-        return item_message(self.items[number], number, self.kind, self._ends)
+        return item_message(self.items[number], number, self.kind, self._addressing)
 
     def _wait(self, now_s: float) -> None:
         self.wake_at_s = now_s + (self._rules.timeout_s if self._at is None else self._rules.item_timeout_s)

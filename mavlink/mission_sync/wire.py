@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends, Message
-from mavlink.autopilot_type import Flavour
+from mavlink.addressing import Addressing, Message
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.supported_items import Version, as_known
 from mavlink.vehicle_plan import MissionItem, MissionType
 
@@ -17,39 +17,39 @@ NOTHING = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL_INT
 
 
 @dataclass(frozen=True)
-class HeldItem:
+class OnboardItem:
     """An item as a vehicle holds it; without `goes_on` it would stop there for good."""
 
     item: MissionItem
     goes_on: bool = True
 
 
-Held = tuple[HeldItem, ...]
+OnboardList = tuple[OnboardItem, ...]
 
 
-def has_home(kind: MissionType, flavour: Flavour) -> bool:
+def has_home(kind: MissionType, autopilot_type: AutopilotType) -> bool:
     """Whether item 0 is home: ArduPilot ignores what is sent there, and a list sent without it loses its first item."""
-    return kind is MissionType.MISSION and flavour is Flavour.ARDUPILOT
+    return kind is MissionType.MISSION and autopilot_type is AutopilotType.ARDUPILOT
 
 
 def sent_list(
-    items: Sequence[MissionItem], kind: MissionType, flavour: Flavour, firmware: Version | None = None
+    items: Sequence[MissionItem], kind: MissionType, autopilot_type: AutopilotType, firmware: Version | None = None
 ) -> tuple[MissionItem, ...]:
     """What is sent for a list, by commands that the firmware knows; nothing for an empty one."""
-    items = as_known(items, flavour, firmware)
-    if not items or not has_home(kind, flavour):
+    items = as_known(items, autopilot_type, firmware)
+    if not items or not has_home(kind, autopilot_type):
         return items
     placed = next((item for item in items if item.longitude_e7 or item.latitude_e7), NOTHING)
     home = MissionItem(NOTHING.command, NOTHING.frame, NOTHING.parameters, placed.longitude_e7, placed.latitude_e7)
     return (home, *items)
 
 
-def held_list(read: Held, kind: MissionType, flavour: Flavour) -> Held:
+def onboard_list(read: OnboardList, kind: MissionType, autopilot_type: AutopilotType) -> OnboardList:
     """What was read, without home."""
-    return read[1:] if has_home(kind, flavour) else read
+    return read[1:] if has_home(kind, autopilot_type) else read
 
 
-def held_sha256(held: Held) -> str:
+def onboard_sha256(held: OnboardList) -> str:
     """Names exactly what was read; figures as they are on the wire, where all NaN are one."""
     rows = [
         (
@@ -61,10 +61,10 @@ def held_sha256(held: Held) -> str:
     return hashlib.sha256(repr(rows).encode()).hexdigest()
 
 
-def item_message(item: MissionItem, sequence: int, kind: MissionType, ends: Ends) -> Message:
+def item_message(item: MissionItem, sequence: int, kind: MissionType, addressing: Addressing) -> Message:
     return mavlink.MAVLink_mission_item_int_message(
-        ends.system,
-        ends.component,
+        addressing.system,
+        addressing.component,
         sequence,
         item.frame,
         item.command,
@@ -78,7 +78,7 @@ def item_message(item: MissionItem, sequence: int, kind: MissionType, ends: Ends
     )
 
 
-def held_item(message: Message) -> HeldItem:
+def onboard_item(message: Message) -> OnboardItem:
     """Of a MISSION_ITEM_INT."""
     item = MissionItem(
         command=message.command,
@@ -88,11 +88,11 @@ def held_item(message: Message) -> HeldItem:
         latitude_e7=message.x,
         altitude_m=message.z,
     )
-    return HeldItem(item, bool(message.autocontinue))
+    return OnboardItem(item, bool(message.autocontinue))
 
 
-def ack_message(result: int, kind: MissionType, ends: Ends) -> Message:
-    return mavlink.MAVLink_mission_ack_message(ends.system, ends.component, result, int(kind))
+def ack_message(result: int, kind: MissionType, addressing: Addressing) -> Message:
+    return mavlink.MAVLink_mission_ack_message(addressing.system, addressing.component, result, int(kind))
 
 
 def result_name(result: int) -> str:

@@ -9,7 +9,7 @@ from django.utils.translation import gettext as _
 from missions.hooks.in_air import uavs_in_the_air
 from missions.models import ENDED_STATES, CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
 from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import change_state, held_mission, uavs_that_may_hold
+from missions.services.approval.approval import change_state, locked_mission, uavs_that_may_hold
 from missions.services.commands.dispatch import busy_elsewhere
 from missions.services.commands.flight_progress import ON_ITS_WAY, UNDECIDED
 from missions.services.commands.outbox import queue_command
@@ -28,7 +28,7 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
     is in the air, where an open target has no reason, and where nothing is left to close.
     """
     with transaction.atomic():
-        held = held_mission(mission.pk, expected_revision)
+        held = locked_mission(mission.pk, expected_revision)
         if held.state not in (*ON_ITS_WAY, *ENDED_STATES):
             raise refuse("not_sent", _("Only an uploaded mission can be closed."))
         refuse_for(_in_the_air(held))

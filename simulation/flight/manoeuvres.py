@@ -165,9 +165,9 @@ class Return:
     def begin(self, cockpit: Cockpit) -> None:
         east_m, north_m, up_m = cockpit.here
         settings = cockpit.settings
-        self._goal = cockpit.nearest_haven()
-        haven_m = self._goal[2]
-        wanted_m = haven_m + settings.return_height_m if settings.return_adds_to_haven else max(haven_m, settings.return_height_m)
+        self._goal = cockpit.nearest_rally_point()
+        goal_m = self._goal[2]
+        wanted_m = goal_m + settings.return_height_m if settings.return_adds_to_rally_point else max(goal_m, settings.return_height_m)
         is_near = math.dist(self._goal[:2], cockpit.here[:2]) <= settings.return_near_m
         self._level_m = up_m if is_near else max(up_m, wanted_m)
         self._is_climbing = self._level_m > up_m + AT_HEIGHT_M

@@ -39,7 +39,7 @@ class Severity(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Haven:
+class RallyPoint:
     """A rally point; its height counts from the take-off."""
 
     position: LonLat

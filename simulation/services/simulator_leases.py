@@ -26,14 +26,14 @@ OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
 @dataclass(frozen=True)
-class Held:
+class LeasedSimulation:
     """A simulation that was taken, with those of its vehicles that are to be flown."""
 
     simulation: Simulation
     vehicles: tuple[SimulatedVehicle, ...]
 
 
-def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Collection[UUID]) -> Held | None:
+def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Collection[UUID]) -> LeasedSimulation | None:
     """The one that has waited longest, if its UAVs times its speed are no more than most_load; anything where none is `flown` yet.
 
     Those whose time is over are ended on the way. One that bears the holder's name and is not flown was given up: it begins anew.
@@ -55,7 +55,7 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
             is_first = simulation.restarts == 0
             if not is_first:
                 SimulationChange.objects.filter(simulation=simulation, done_at=None).update(done_at=now)
-            return Held(simulation, tuple(vehicles))
+            return LeasedSimulation(simulation, tuple(vehicles))
     return None
 
 

@@ -54,7 +54,7 @@ def command_of(message: Any) -> Command:
 
 
 def acknowledgement(number: int, result: int, station: Station) -> Outgoing:
-    return Outgoing(mavlink.MAVLink_command_ack_message(number, int(result), 0, 0, *station.ends), station)
+    return Outgoing(mavlink.MAVLink_command_ack_message(number, int(result), 0, 0, *station.target), station)
 
 
 def _finite(*values: float) -> Seven:

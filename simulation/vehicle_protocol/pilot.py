@@ -23,6 +23,7 @@ from simulation.vehicle_protocol.mode_numbers import (
     px4_number,
     usual_number,
 )
+from simulation.vehicle_protocol.simulated_autopilot import SimulatedAutopilot
 from simulation.vehicle_protocol.vehicle import Vehicle
 
 ACCEPTED, DENIED, FAILED = int(mavlink.MAV_RESULT_ACCEPTED), int(mavlink.MAV_RESULT_DENIED), int(mavlink.MAV_RESULT_FAILED)
@@ -38,12 +39,12 @@ class Pilot:
     """`refusal` is why the last order was refused, in words, for the people at the stations; whoever tells it takes it out."""
 
     vehicle: Vehicle
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     refusal: str = ""
     shown: ShownMode = field(init=False)
 
     def __post_init__(self) -> None:
-        self.shown = ShownMode.at_start(self.flavour)
+        self.shown = ShownMode.at_start(self.autopilot_type)
 
     @property
     def custom_mode(self) -> int:
@@ -57,14 +58,14 @@ class Pilot:
 
     def set_mode_number(self, number: int) -> int:
         """By the number that heartbeats bear."""
-        mode = ordered_mode(self.flavour, number)
+        mode = ordered_mode(self.autopilot_type, number)
         if mode is None:
             return self._refused("This mode needs a pilot at the sticks, and there is none.", UNSUPPORTED)
         state = self.vehicle.state
-        if self.flavour is Flavour.ARDUPILOT and number in COPTER_BY_HAND and state.is_armed and state.is_in_air:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and number in COPTER_BY_HAND and state.is_armed and state.is_in_air:
             return self._refused("This mode needs a pilot at the sticks, and there is none.")
         is_begun_on_ground = mode is Mode.MISSION and state.is_armed and not state.is_in_air
-        if self.flavour is Flavour.ARDUPILOT and is_begun_on_ground and not begins_with_take_off(self.vehicle.items):
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and is_begun_on_ground and not begins_with_take_off(self.vehicle.items):
             return self._refused("Auto: Missing Takeoff Cmd")
         is_there = mode is Mode.HOLD and state.mode is Mode.HOLD
         outcome = DONE if is_there else self.vehicle.set_mode(mode)
@@ -73,17 +74,21 @@ class Pilot:
         return self._result(outcome)
 
     def set_mode(self, mode: Mode) -> int:
-        return self.set_mode_number(usual_number(self.flavour, mode))
+        return self.set_mode_number(usual_number(self.autopilot_type, mode))
 
     def set_current(self, number: int) -> int:
         """number: as the flavour counts; ArduPilot's home means the first that is flown."""
-        outcome = self.vehicle.set_current(max(number - self.flavour.first_item, 0))
+        outcome = self.vehicle.set_current(max(number - self.autopilot_type.first_item, 0))
         return self._result(outcome, DENIED)
 
     def _arm(self, command: Command) -> int:
         wanted, is_forced = command.whole(1), command.whole(2) == FORCE
         if wanted == 1:
-            if self.flavour is Flavour.ARDUPILOT and not self.vehicle.state.is_armed and self.custom_mode in COPTER_NOT_ARMABLE:
+            if (
+                self.autopilot_type is SimulatedAutopilot.ARDUPILOT
+                and not self.vehicle.state.is_armed
+                and self.custom_mode in COPTER_NOT_ARMABLE
+            ):
                 return self._refused("Arm: this mode is not armable")
             return self._result(self.vehicle.arm())
         if wanted == 0:
@@ -95,7 +100,7 @@ class Pilot:
         state, height_m = self.vehicle.state, command[7]
         if not command.is_frame_known:
             return DENIED
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
             if not state.is_armed or self.custom_mode != GUIDED:
                 return self._refused("Take-off needs an armed vehicle in GUIDED")
             if height_m is None or height_m <= 0 or command.is_above_sea:
@@ -107,14 +112,14 @@ class Pilot:
             relative_m = wanted_m if wanted_m >= MIN_TAKE_OFF_M else relative_m
         outcome = self.vehicle.take_off(relative_m)
         if outcome.is_done:
-            self.shown.asked = usual_number(self.flavour, Mode.TAKE_OFF)
+            self.shown.asked = usual_number(self.autopilot_type, Mode.TAKE_OFF)
         return self._result(outcome)
 
     def _set_mode(self, command: Command) -> int:
         base, main, sub = command.whole(1), command.whole(2), command.whole(3)
         if base is None or not base & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED or main is None:
             return UNSUPPORTED
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
             return self.set_mode_number(main)
         if not 0 <= main <= 255 or not 0 <= (sub or 0) <= 255:
             return DENIED
@@ -123,7 +128,7 @@ class Pilot:
     def _start(self, command: Command) -> int:
         """PX4 arms by itself; ArduCopter agrees while it is disarmed, and does nothing."""
         first = command.whole(1)
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
             return self.set_mode(Mode.MISSION) if self.vehicle.state.is_armed else ACCEPTED
         if first is not None and first > 0 and (result := self.set_current(first)) != ACCEPTED:
             return result
@@ -160,7 +165,7 @@ class Pilot:
         heading_rad = command[4]
         outcome = self.vehicle.go_to(place, relative_m, None if heading_rad is None else math.degrees(heading_rad))
         if outcome.is_done:
-            self.shown.asked = usual_number(self.flavour, Mode.GO_TO)
+            self.shown.asked = usual_number(self.autopilot_type, Mode.GO_TO)
         return self._result(outcome)
 
     def _change_speed(self, command: Command) -> int:

@@ -127,7 +127,7 @@ def _ways(
         return _Ways()
     height_m, drain, home = reported.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
     here = model.line.east_north(position)
-    way, own = (home[0] - here[0], home[1] - here[1]), situation.link.own_return
+    way, own = (home[0] - here[0], home[1] - here[1]), situation.link.rtl_behaviour
     climb_m = 0.0 if own is None or situation.mode is ModeKind.LAND else own.level_m(height_m, math.hypot(*way), 0.0) - height_m
     home_s, home_percent, moving_per_s = _way_to(consumption, drain, way, height_m, wind_mps, climb_m=climb_m)
     landings = [(math.hypot(*way), way) for way in (east_north_m(position, point) for point in model.rally_points)]

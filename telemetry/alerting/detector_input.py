@@ -9,7 +9,7 @@ from telemetry.alerting.limits import Limits
 from telemetry.alerting.modes import AT_THE_END, FLY_LIST, ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.status_texts import StatusText
-from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
+from telemetry.alerting.surroundings import FlightModel, LinkFacts, Meeting, NearZone, OnboardState, Order
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
 
@@ -51,7 +51,7 @@ class Situation:
     link: LinkFacts = field(default_factory=LinkFacts)
     open_levels: Mapping[Key, str] = field(default_factory=dict)
     model: FlightModel | None = None
-    held: Held | None = None
+    held: OnboardState | None = None
     order: Order | None = None
     zones: tuple[NearZone, ...] = ()
     meetings: tuple[Meeting, ...] = ()

@@ -5,7 +5,7 @@ from typing import Any
 from uuid import UUID
 
 from inspection.geodesy import LonLat
-from mavlink.rtl import OwnReturn
+from mavlink.rtl import RtlBehaviour
 from planning.clearance.lost_link import LostLinkPlan
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
@@ -27,7 +27,7 @@ class LinkFacts:
     clock_rate: float = 1.0
     battery_state: str = ""
     autopilot: str = ""  # a name of mavlink/autopilot_type.py
-    own_return: OwnReturn | None = None  # how high it flies home by itself; None: not known
+    rtl_behaviour: RtlBehaviour | None = None  # how high it flies home by itself; None: not known
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Order:
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
+class OnboardState:
     """What the UAV holds, as far as it was read back. `is_approved`: exactly a flight of the approval in force.
 
     `is_changing`: a mission is being brought to it or taken off it; `items` of the list, without home, None where it has none.

@@ -14,8 +14,8 @@ from typing import Any
 from django.conf import settings
 from django.utils import timezone
 
-from mavlink.addressing import Ends
-from mavlink.autopilot_type import Flavour
+from mavlink.addressing import Addressing
+from mavlink.autopilot_type import AutopilotType
 from mavlink.commands.actions import Order, pause_s, unacknowledged_message
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.commands.driver import CommandDriver
@@ -47,7 +47,7 @@ from telemetry.gateway.preparation import (
     return_by_list,
     task_of,
 )
-from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_aboard
+from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_back
 from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from telemetry.services.alerts.mission_alerts import raise_mission_mismatch, raise_other_list
 from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
@@ -74,30 +74,34 @@ DATABASE_RETRY_S = 0.5
 
 async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: Callable[[], bool]) -> CannotCarry | None:
     """Legs that the vehicle would refuse. It is asked if it has not told, and again before it is refused: it may have been set anew."""
-    if session.flavour is Flavour.ARDUPILOT and load.fence and FENCE_PARAMETERS[0] not in session.state.parameters:
+    if session.autopilot_type is AutopilotType.ARDUPILOT and load.fence and FENCE_PARAMETERS[0] not in session.state.parameters:
         await _read(FENCE_PARAMETERS, session, is_wanted)  # for warnings_of
-    if session.flavour is not Flavour.PX4:
+    if session.autopilot_type is not AutopilotType.PX4:
         return None
-    if not session.limits or session.questions.may_ask_limits(session.state) or leg_warnings(load, session.limits, session.state.position):
-        session.questions.limits_left = 0
+    if (
+        not session.limits
+        or session.message_requests.may_ask_limits(session.state)
+        or leg_warnings(load, session.limits, session.state.position)
+    ):
+        session.message_requests.limits_left = 0
         await _read(PARAMETERS, session, is_wanted)
     refused = leg_warnings(load, session.limits, session.state.position)
     return _refusal(refused) if refused else None
 
 
 async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], bool]) -> None:
-    reading = ParameterReading(names, session.state, Ends(session.uav.system), replace(settings.TRANSFER_RULES, retries=RETRIES))
+    reading = ParameterReading(names, session.state, Addressing(session.uav.system), replace(settings.TRANSFER_RULES, retries=RETRIES))
     await ProtocolDriver(session, reading, is_wanted).run(on_change=lambda: None)
 
 
 def warnings_of(load: FlightLoad, session: Session) -> str:
     """What may go wrong although it is sent; empty where nothing is known."""
-    if session.flavour is None:
+    if session.autopilot_type is None:
         return ""
-    words = [warning.words for warning in count_warnings(load, session.flavour)]
-    if session.flavour is Flavour.PX4 and not session.limits:
+    words = [warning.words for warning in count_warnings(load, session.autopilot_type)]
+    if session.autopilot_type is AutopilotType.PX4 and not session.limits:
         words.append(UNTOLD)
-    off_by = fence_off_by(session.flavour, session.state.parameters) if load.fence else ""
+    off_by = fence_off_by(session.autopilot_type, session.state.parameters) if load.fence else ""
     if off_by:
         words.append(FENCE_OFF.format(parameter=off_by))
     return " ".join(words)
@@ -115,10 +119,10 @@ async def send_unacknowledged(
 ) -> None:
     """`may_send` is asked before each message, `is_wanted` after it."""
     sent, next_s = 0, time.monotonic()
-    while may_send() and session.state.flavour is not None:
+    while may_send() and session.state.autopilot_type is not None:
         if (now_s := time.monotonic()) >= next_s:
             session.commanded_s = now_s
-            session.send([unacknowledged_message(order, session.state.flavour, Ends(session.uav.system), sent)])
+            session.send([unacknowledged_message(order, session.state.autopilot_type, Addressing(session.uav.system), sent)])
             sent += 1
             next_s = now_s + pause_s(sent)
             if not await is_wanted():
@@ -158,7 +162,7 @@ class Delivery:
             task = await self._surely(task_of, self.command)
             if isinstance(task, Task):
                 if task.take_off is not None:
-                    self.session.questions.own_return.ask_anew(time.monotonic())
+                    self.session.message_requests.rtl_reading.ask_anew(time.monotonic())
                 task = await self._reason_against(task) or await self._beyond_limits(task) or task
             if isinstance(task, Task):
                 task = as_begun(task, self.session.state)
@@ -196,7 +200,7 @@ class Delivery:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
 
     async def _reason_against(self, task: Task) -> CannotCarry | None:
-        if task.aboard is not None:
+        if task.onboard is not None:
             await ask_for_the_present(self.session, lambda: self.is_ours)
         return reason_not_to(task, self.session.state, time.monotonic())
 
@@ -208,7 +212,7 @@ class Delivery:
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
         order, parameters = task.order, task.parameters
-        if task.aboard is not None and not await self._is_aboard(task.aboard, task.before):
+        if task.onboard is not None and not await self._is_onboard(task.onboard, task.before):
             return
         too_near = await self._surely(reason_not_to_start, self.command) if self.command.kind == CommandKind.START else None
         if too_near is not None:  # while the list was read, somebody else has taken off
@@ -224,7 +228,7 @@ class Delivery:
             await self._end(note_released)
             return
         keeper = CommandDriver(
-            order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
+            order, self.session.state, Addressing(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
             parameters=parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
         )  # fmt: skip
         reported = False
@@ -245,7 +249,7 @@ class Delivery:
 
     async def _set_return_height(self, height_m: float) -> None:
         """By the parameter that the vehicle has for it, read back afterwards."""
-        wanted = return_height_parameter(self.session.flavour, self.session.state.parameters, height_m)
+        wanted = return_height_parameter(self.session.autopilot_type, self.session.state.parameters, height_m)
         if wanted is None:
             words = "The vehicle has not told how high it returns."
             await self._refuse(CannotCarry("not-read", words, is_for_good=False))
@@ -253,14 +257,14 @@ class Delivery:
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
             return
-        setting = ParameterSetting(*wanted, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES)
+        setting = ParameterSetting(*wanted, self.session.state, Addressing(self.session.uav.system), settings.TRANSFER_RULES)
         outcome = await ProtocolDriver(self.session, setting, lambda: self.is_ours).run(on_change=lambda: None)
         if isinstance(outcome, CommandOutcome):
             await self._send_order(outcome)
         else:
             await self._end(note_released)
 
-    async def _is_aboard(self, load: FlightLoad, before: Loaded | None) -> bool:
+    async def _is_onboard(self, load: FlightLoad, before: Loaded | None) -> bool:
         """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command.
 
         Its time runs from the end of the reading; as long as that goes on, it is not over.
@@ -273,11 +277,11 @@ class Delivery:
                 read, noted_s = done, time.monotonic()
                 self._note(note_read_back, self.command.pk, done=done, total=total, **self._fence)
 
-        reading = await read_aboard(self.session, load, before.beside if before else {}, lambda: self.is_ours, advance)
+        reading = await read_back(self.session, load, before.beside if before else {}, lambda: self.is_ours, advance)
         await asyncio.gather(*self._notes, return_exceptions=True)
         if reading is None:
             await self._end(note_released)
-        elif reading.is_aboard:
+        elif reading.is_onboard:
             await self._surely(raise_other_list, self.command)
             if before is not None:
                 await self._surely(confirm_loaded, self.carried, before)
@@ -306,7 +310,7 @@ class Delivery:
         if not await self._surely(begin_loading, self.carried):
             await self._end(note_released)
             return
-        keeper = MissionSync(task.load, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
+        keeper = MissionSync(task.load, self.session.state, Addressing(self.session.uav.system), settings.TRANSFER_RULES, known=task.known)
         noted_s, mixes = 0.0, 0
 
         def change() -> None:
@@ -341,7 +345,7 @@ class Delivery:
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
             self.session.forget_flown()
-            self.session.questions.own_return.ask_anew(time.monotonic())  # also of the rally points that it holds now
+            self.session.message_requests.rtl_reading.ask_anew(time.monotonic())  # also of the rally points that it holds now
             await self._end_with(end_loading, wanted, note=outcome.words, warnings=reported)
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)

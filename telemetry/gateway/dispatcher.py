@@ -41,10 +41,10 @@ class Dispatcher:
     notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # of what is carried
     _deliveries: dict[UUID, Delivery] = field(default_factory=dict)
     _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
-    _hint: asyncio.Event = field(default_factory=asyncio.Event)
+    _woken: asyncio.Event = field(default_factory=asyncio.Event)
 
-    def hint(self) -> None:
-        self._hint.set()
+    def wake(self) -> None:
+        self._woken.set()
 
     async def run(self) -> None:
         while True:
@@ -52,8 +52,8 @@ class Dispatcher:
                 await self.look()
             except DatabaseAway:
                 await asyncio.sleep(RETRY_S)
-            if await wait_for_event(self._hint, POLL_INTERVAL_S):
-                self._hint.clear()
+            if await wait_for_event(self._woken, POLL_INTERVAL_S):
+                self._woken.clear()
 
     async def look(self) -> None:
         """Drops what is not ours any more, takes what waits, begins what can begin."""
@@ -140,7 +140,7 @@ class Dispatcher:
     def _ended(self, task: asyncio.Task[None]) -> None:
         if not task.cancelled() and task.exception() is not None:
             logger.error("a command broke down", exc_info=task.exception())
-        self.hint()
+        self.wake()
 
     def _forget_ended(self) -> None:
         for command_id in [key for key, task in self._tasks.items() if task.done()]:

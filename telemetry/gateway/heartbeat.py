@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import AUTOPILOT
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.parameters import BY_NAME
@@ -21,7 +21,7 @@ INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_MISSION_CURRENT: 1.0,
     mavlink.MAVLINK_MSG_ID_SYSTEM_TIME: 1.0,
 }
-WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
+WIND = {AutopilotType.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, AutopilotType.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
 WIND_INTERVAL_S = 2.0
 ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
 STREAM_HZ = 4  # of all data streams, for autopilots that know no intervals
@@ -33,9 +33,9 @@ def heartbeat() -> Message:
     return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3)
 
 
-def intervals_s(flavour: Flavour, budget_bytes_s: float) -> dict[int, float]:
+def intervals_s(autopilot_type: AutopilotType, budget_bytes_s: float) -> dict[int, float]:
     """For the messages of telemetry, by their ids; stretched alike, by MAX_STRETCH_FACTOR at most, to fit a budget (0: none)."""
-    wanted = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
+    wanted = INTERVALS_S | ({WIND[autopilot_type]: WIND_INTERVAL_S} if autopilot_type in WIND else {})
     load_bytes_s = sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
     stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), MAX_STRETCH_FACTOR)
     return {number: every_s * stretch for number, every_s in wanted.items()}
@@ -51,7 +51,7 @@ def streams(system: int, *, is_on: bool) -> Message:
     return mavlink.MAVLink_request_data_stream_message(system, AUTOPILOT, mavlink.MAV_DATA_STREAM_ALL, hz, int(is_on))
 
 
-def questions(system: int) -> list[Message]:
+def onboard_info_requests(system: int) -> list[Message]:
     """For what is told once."""
     return [_command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, number) for number in ONCE]
 
@@ -61,7 +61,7 @@ def position_request(system: int) -> Message:
     return _command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
 
 
-def limit_questions(system: int) -> list[Message]:
+def limit_requests(system: int) -> list[Message]:
     """For the parameters that say what it would not fly."""
     return [mavlink.MAVLink_param_request_read_message(system, AUTOPILOT, name.encode(), BY_NAME) for name in PARAMETERS]
 

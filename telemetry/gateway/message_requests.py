@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from django.conf import settings
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.vehicle_state import VehicleState
 from telemetry.gateway import heartbeat
-from telemetry.gateway.rtl_parameters import OwnReturn
+from telemetry.gateway.rtl_parameters import RtlReading
 
 ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
 MISSING_INTERVALS = 3.0  # of a message, after which it does not come
@@ -19,15 +19,15 @@ UNANSWERED_ROUNDS = 2  # of asking for intervals without a position, before stre
 ASK_SELDOM_S = 60.0
 LISTENS_S = 10.0  # for another ground station, before streams are stopped, which it may live by
 STATION_GONE_S = 60.0  # after its last heartbeat
-LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
+LIMIT_REQUESTS = 3  # a vehicle that has no such parameters says nothing
 
 
 @dataclass
-class Questions:
+class MessageRequests:
     """Times are monotonic seconds."""
 
-    limits_left: int = LIMIT_QUESTIONS
-    own_return: OwnReturn = field(default_factory=OwnReturn)
+    limits_left: int = LIMIT_REQUESTS
+    rtl_reading: RtlReading = field(default_factory=RtlReading)
     _asked_s: float = -math.inf
     _ask_again_s: float = ASK_AGAIN_S
     _rounds: int = 0  # of asking for intervals since positions came last
@@ -36,8 +36,8 @@ class Questions:
     _station_s: float = -math.inf  # when another ground station was heard last
     _are_streams_settled: bool = False  # stopped, or started as there is nothing else
     _received_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
-    _questioned_s: float = -math.inf
-    _question_again_s: float = ASK_AGAIN_S
+    _once_requested_s: float = -math.inf
+    _request_once_again_s: float = ASK_AGAIN_S
 
     def receive(self, message: Message, now_s: float) -> None:
         """Every message of the autopilot."""
@@ -51,31 +51,31 @@ class Questions:
 
     def due(self, state: VehicleState, now_s: float, *, has_position: bool) -> list[Message]:
         """Of a vehicle that is heard; `has_position`: it has told where it is a moment ago."""
-        if state.flavour is None:
+        if state.autopilot_type is None:
             return []
-        wanted = self._telemetry(state.system, state.flavour, now_s, has_position=has_position)
-        wanted += self.own_return.questions(state, now_s)
+        wanted = self._telemetry(state.system, state.autopilot_type, now_s, has_position=has_position)
+        wanted += self.rtl_reading.requests(state, now_s)
         once = self._once(state)
-        if once and now_s - self._questioned_s >= self._question_again_s:
-            self._questioned_s = now_s
-            self._question_again_s = min(2 * self._question_again_s, ASK_SELDOM_S)
+        if once and now_s - self._once_requested_s >= self._request_once_again_s:
+            self._once_requested_s = now_s
+            self._request_once_again_s = min(2 * self._request_once_again_s, ASK_SELDOM_S)
             self.limits_left -= self.may_ask_limits(state)
             wanted += once
         return wanted
 
-    def _telemetry(self, system: int, flavour: Flavour, now_s: float, *, has_position: bool) -> list[Message]:
+    def _telemetry(self, system: int, autopilot_type: AutopilotType, now_s: float, *, has_position: bool) -> list[Message]:
         """Messages that do not come, by intervals. Streams bring many that nobody reads: only where intervals bring no position."""
         if has_position:
             self._rounds = 0
         self._first_s = now_s if self._first_s is None else self._first_s
-        if flavour is Flavour.ARDUPILOT and has_position and self._may_stop_streams(now_s):
+        if autopilot_type is AutopilotType.ARDUPILOT and has_position and self._may_stop_streams(now_s):
             self._are_streams_settled, self._asked_s = True, now_s
-            asked = heartbeat.interval_requests(system, heartbeat.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S))
+            asked = heartbeat.interval_requests(system, heartbeat.intervals_s(autopilot_type, settings.LINK_BUDGET_BYTES_S))
             return [heartbeat.streams(system, is_on=False), *asked]  # stopping ends intervals, too
         if now_s - self._asked_s < (self._ask_again_s if has_position else ASK_AGAIN_S):
             return []
         is_first = self._asked_s == -math.inf
-        wanted_s = heartbeat.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S)
+        wanted_s = heartbeat.intervals_s(autopilot_type, settings.LINK_BUDGET_BYTES_S)
         missing_s = {number: every_s for number, every_s in wanted_s.items() if is_first or self._is_missing(number, every_s, now_s)}
         if not missing_s and has_position:
             return []
@@ -83,7 +83,7 @@ class Questions:
         self._ask_again_s = min(2 * self._ask_again_s, ASK_SELDOM_S)
         self._rounds += not has_position
         asked = heartbeat.interval_requests(system, missing_s)
-        if flavour is Flavour.PX4:
+        if autopilot_type is AutopilotType.PX4:
             return asked
         needs_streams = not has_position and (self._are_intervals_refused or self._rounds > UNANSWERED_ROUNDS)
         if needs_streams:
@@ -101,9 +101,11 @@ class Questions:
         return now_s - self._received_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)
 
     def may_ask_limits(self, state: VehicleState) -> bool:
-        return state.flavour is Flavour.PX4 and self.limits_left > 0 and any(name not in state.parameters for name in PARAMETERS)
+        return (
+            state.autopilot_type is AutopilotType.PX4 and self.limits_left > 0 and any(name not in state.parameters for name in PARAMETERS)
+        )
 
     def _once(self, state: VehicleState) -> list[Message]:
         is_reported = state.firmware is not None and state.home is not None
-        limits = heartbeat.limit_questions(state.system) if self.may_ask_limits(state) else []
-        return [*([] if is_reported else heartbeat.questions(state.system)), *limits]
+        limits = heartbeat.limit_requests(state.system) if self.may_ask_limits(state) else []
+        return [*([] if is_reported else heartbeat.onboard_info_requests(state.system)), *limits]

@@ -9,7 +9,7 @@ from django.conf import settings
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
 from mavlink.approved_route import TakeOff
-from mavlink.autopilot_type import RESTARTS, Flavour, Mode
+from mavlink.autopilot_type import RESTARTS, AutopilotType, Mode
 from mavlink.commands.actions import ITEM, SPEED_MPS, Order
 from mavlink.commands.leg import BesideLeg, beside_leg, beside_place
 from mavlink.intermediate_waypoints import FLOWN
@@ -69,7 +69,7 @@ _OFF_ROUTE = CannotCarry("off-route", "The UAV is not on the way on which its ro
 class Task:
     """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
 
-    `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
+    `onboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
     is begun in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its take-off. `along`: the
     order is to return by the rest of this list.
     """
@@ -77,7 +77,7 @@ class Task:
     load: FlightLoad | None = None
     order: Order | None = None
     parameters: dict[str, float] | None = None
-    aboard: FlightLoad | None = None
+    onboard: FlightLoad | None = None
     take_off: TakeOff | None = None
     wanted: Loaded | None = None
     before: Loaded | None = None
@@ -127,7 +127,7 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         too_near = reason_not_to_start(command)
         if too_near is not None:
             return too_near
-    return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before, begun_by=begun_by)
+    return Task(order=Order(command.kind), take_off=approved.take_off, onboard=approved.load, before=before, begun_by=begun_by)
 
 
 def _return_along(command: UavCommand, before: Loaded | None) -> Task | CannotCarry:
@@ -144,7 +144,7 @@ def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: dateti
         return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
         return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
-    is_ardupilot = state.flavour is Flavour.ARDUPILOT
+    is_ardupilot = state.autopilot_type is AutopilotType.ARDUPILOT
     if is_ardupilot and not state.is_in(Mode.MISSION):
         if state.parameters.get(RESTARTS) is None:
             return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
@@ -193,11 +193,11 @@ def reason_not_to(task: Task, state: VehicleState, now_s: float) -> CannotCarry 
     if state.home is None or not _is_new(state.home_at_s, now_s):
         return CannotCarry("no-home", "The UAV does not tell where its home is, from which it counts its heights.", is_for_good=False)
     elsewhere = _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
-    if elsewhere is not None or not state.is_in_air or task.aboard is None or state.is_in(Mode.MISSION):
+    if elsewhere is not None or not state.is_in_air or task.onboard is None or state.is_in(Mode.MISSION):
         return elsewhere
     if task.begun_by is not None:
-        return _not_on_the_way(task.aboard, task.begun_by, state, now_s)
-    return _off_the_leg(task.take_off, task.aboard, state, now_s)
+        return _not_on_the_way(task.onboard, task.begun_by, state, now_s)
+    return _off_the_leg(task.take_off, task.onboard, state, now_s)
 
 
 def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s: float) -> CannotCarry | None:
@@ -207,7 +207,7 @@ def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s:
     item = item_to_begin_with(load, begun_by, state)
     if item is None:
         return _OFF_ROUTE
-    if state.flavour is Flavour.ARDUPILOT and item > 0:
+    if state.autopilot_type is AutopilotType.ARDUPILOT and item > 0:
         if state.parameters.get(RESTARTS) is None:
             return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
         if state.parameters[RESTARTS]:
@@ -217,9 +217,9 @@ def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s:
 
 def as_begun(task: Task, state: VehicleState) -> Task | CannotCarry:
     """With the item that it begins with, where it is held in the air. One that flies its list already is told to fly it."""
-    if task.begun_by is None or task.aboard is None or state.is_in(Mode.MISSION):
+    if task.begun_by is None or task.onboard is None or state.is_in(Mode.MISSION):
         return task
-    item = item_to_begin_with(task.aboard, task.begun_by, state)
+    item = item_to_begin_with(task.onboard, task.begun_by, state)
     return _OFF_ROUTE if item is None else replace(task, parameters={ITEM: float(item)})
 
 
@@ -230,7 +230,7 @@ def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
         return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
     item = state.mission_item
-    if state.flavour is Flavour.ARDUPILOT:
+    if state.autopilot_type is AutopilotType.ARDUPILOT:
         if state.parameters.get(RESTARTS) is None:
             return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
         item = 0 if state.parameters[RESTARTS] else max(item - 1, 0)

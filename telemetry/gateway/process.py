@@ -28,7 +28,7 @@ from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
 from telemetry.gateway.leasing import Leasing
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
-from telemetry.gateway.reporter import Telling
+from telemetry.gateway.reporter import Reporter
 from telemetry.gateway.sender_authentication import UnknownSenders
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
@@ -49,16 +49,16 @@ CANCEL_AGAIN_S = 0.5
 LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
-async def listen(on_hint: Callable[[], None]) -> None:
+async def listen(on_message: Callable[[], None]) -> None:
     """Until it is cancelled, over outages of the database, too."""
     parameters = {name: value for name, value in connection.get_connection_params().items() if name in PLAIN}
     while True:
         try:
             async with await psycopg.AsyncConnection.connect(**parameters, autocommit=True) as listening:
                 await listening.execute(f"LISTEN {CHANNEL}")
-                on_hint()
+                on_message()
                 async for _ in listening.notifies():
-                    on_hint()
+                    on_message()
         except psycopg.Error as error:
             logger.debug("no hints: %s", error)
         await asyncio.sleep(RETRY_DELAY_S)
@@ -79,7 +79,7 @@ class Gateway:
 
     def __post_init__(self) -> None:
         self.database = DatabaseThread("gateway-store")
-        self.telling = Telling(self._all)
+        self.reporter = Reporter(self._all)
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
         self.unknown = UnknownSenders(self.store.note_sighting)
         self.flights = Flights(self.options)
@@ -183,11 +183,11 @@ class Gateway:
             "leases": self.leasing.run(),
             "store": self._store_loop(),
             "commands": self.desk.run(),
-            "hints": listen(self.desk.hint),
+            "hints": listen(self.desk.wake),
             "vehicles": self._every(1.0, self._tick),
             "logs": self._every(SYNC_INTERVAL_S, self._sync_logs),
             "counts": self._every(COUNTS_INTERVAL_S, self._report_counts),
-            **{name: self._every(every_s, notify) for name, (every_s, notify) in self.telling.loops().items()},
+            **{name: self._every(every_s, notify) for name, (every_s, notify) in self.reporter.loops().items()},
         }
 
     async def _every(self, interval_s: float, do: Callable[[], Coroutine[Any, Any, None]]) -> None:
@@ -208,13 +208,13 @@ class Gateway:
             async with asyncio.timeout(STOP_WITHIN_S):
                 while await self.store.flush():
                     pass
-                await self.telling.flown()
-                await self.flights.write_rows(self.telling.database)
+                await self.reporter.flown()
+                await self.flights.write_rows(self.reporter.database)
                 await self.database.run(release_leases, holder=self.options.holder)
         except (DatabaseAway, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
-        self.telling.database.close()
+        self.reporter.database.close()
 
     async def _close_desk(self) -> None:
         try:
@@ -278,7 +278,7 @@ class Gateway:
 
     async def _sync_logs(self) -> None:
         await self.flights.sync(time.time())
-        await self.flights.write_rows(self.telling.database)
+        await self.flights.write_rows(self.reporter.database)
 
     async def _report_counts(self) -> None:
         if counts := self.dropped():

@@ -9,14 +9,14 @@ from typing import Any, Protocol
 
 from django.conf import settings
 
-from mavlink.addressing import Ends
-from mavlink.autopilot_type import RESTARTS, Flavour
+from mavlink.addressing import Addressing
+from mavlink.autopilot_type import RESTARTS, AutopilotType
 from mavlink.commands.home_request import HomeReading
 from mavlink.frames import Message
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.upload import TransferState
-from mavlink.mission_sync.wire import held_list, held_sha256
+from mavlink.mission_sync.wire import onboard_list, onboard_sha256
 from mavlink.parameters import ParameterReading
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from telemetry.gateway.session import Session
@@ -83,9 +83,9 @@ class ProtocolDriver:
 
 @dataclass(frozen=True)
 class Reading:
-    """`code` and `words` say why it is not `is_aboard`."""
+    """`code` and `words` say why it is not `is_onboard`."""
 
-    is_aboard: bool
+    is_onboard: bool
     code: str = ""
     words: str = ""
 
@@ -94,7 +94,7 @@ def _notify(on_item: Callable[[int], None], before: int, done: int) -> None:
     on_item(before + done)
 
 
-async def read_aboard(
+async def read_back(
     session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
 ) -> Reading | None:
     """None once it is not wanted any more. `on_item` is told how many items were read of all lists.
@@ -105,9 +105,9 @@ async def read_aboard(
     for kind in MissionType:
         for _ in range(READINGS):
             reading = await _read(session, load, kind, beside, is_wanted, partial(_notify, on_item, before))
-            if reading is None or reading.is_aboard:
+            if reading is None or reading.is_onboard:
                 break
-        if reading is None or not reading.is_aboard:
+        if reading is None or not reading.is_onboard:
             return reading
         before += len(load.of(kind))
     return Reading(True)
@@ -115,11 +115,11 @@ async def read_aboard(
 
 async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
     """Its state then has its home, and of an ArduPilot in the air how it would go on; what it does not tell is as old as it was."""
-    ends, rules = Ends(session.uav.system), settings.TRANSFER_RULES
-    asked: list[StateMachine] = [HomeReading(session.state, ends, rules)]
-    if session.flavour is Flavour.ARDUPILOT and session.state.is_in_air:
+    addressing, rules = Addressing(session.uav.system), settings.TRANSFER_RULES
+    asked: list[StateMachine] = [HomeReading(session.state, addressing, rules)]
+    if session.autopilot_type is AutopilotType.ARDUPILOT and session.state.is_in_air:
         session.state.parameters.pop(RESTARTS, None)
-        asked.append(ParameterReading((RESTARTS,), session.state, ends, rules))
+        asked.append(ParameterReading((RESTARTS,), session.state, addressing, rules))
     for keeper in asked:
         await ProtocolDriver(session, keeper, is_wanted).run(on_change=lambda: None)
 
@@ -132,7 +132,7 @@ async def _read(
     is_wanted: Callable[[], bool],
     on_item: Callable[[int], None],
 ) -> Reading | None:
-    download = Download(kind, Ends(session.uav.system), settings.TRANSFER_RULES)
+    download = Download(kind, Addressing(session.uav.system), settings.TRANSFER_RULES)
     most = len(load.of(kind))
     outcome = await ProtocolDriver(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
     if outcome is None:
@@ -142,10 +142,10 @@ async def _read(
         return Reading(True)  # it has no such list
     if outcome.state is not TransferState.DONE:
         return Reading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
-    flavour = session.flavour or Flavour.OTHER
-    held = held_list(download.read, kind, flavour)
-    found = differences(load.of(kind), held, flavour)
-    if not found or (not load.of(kind) and beside.get(name) == held_sha256(held)):
+    autopilot_type = session.autopilot_type or AutopilotType.OTHER
+    held = onboard_list(download.read, kind, autopilot_type)
+    found = differences(load.of(kind), held, autopilot_type)
+    if not found or (not load.of(kind) and beside.get(name) == onboard_sha256(held)):
         return Reading(True)
     more = f" and {len(found) - 1} more" if len(found) > 1 else ""
     return Reading(False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
 from typing import Any
 
-from missions.services.commands.rtl_check import note_own_return
+from missions.services.commands.rtl_check import note_rtl_behaviour
 from missions.services.fleet.credentials import note_mavlink_key_use
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.session import Session
@@ -25,7 +25,7 @@ SENDERS_INTERVAL_S = 2.0
 
 
 @dataclass
-class Telling:
+class Reporter:
     """`database` is one of its own: it may wait for missions, and leases do not wait behind it."""
 
     sessions: Callable[[], list[Session]]
@@ -37,7 +37,7 @@ class Telling:
         return {
             "senders": (SENDERS_INTERVAL_S, self.second_senders),
             "flown": (FLOWN_INTERVAL_S, self.flown),
-            "returns": (FLOWN_INTERVAL_S, self.own_returns),
+            "returns": (FLOWN_INTERVAL_S, self.rtl_readings),
             "doubts": (FLOWN_INTERVAL_S, self.doubts),
             "keys": (KEYS_INTERVAL_S, self.keys),
         }
@@ -66,12 +66,14 @@ class Telling:
                 await self._notify(session, f"what it has flown ({flown})", note_flown, flown=flown)
                 session.flown.pop(0)
 
-    async def own_returns(self) -> None:
+    async def rtl_readings(self) -> None:
         for session in self.sessions():
-            reported = session.questions.own_return.news(session.state)
+            reported = session.message_requests.rtl_reading.news(session.state)
             if reported is not None:
-                await self._notify(session, "its own return", note_own_return, autopilot=reported.autopilot, parameters=reported.parameters)
-                session.questions.own_return.note(reported)
+                await self._notify(
+                    session, "its own return", note_rtl_behaviour, autopilot=reported.autopilot, parameters=reported.parameters
+                )
+                session.message_requests.rtl_reading.note(reported)
 
     async def doubts(self) -> None:
         for session in self.sessions():

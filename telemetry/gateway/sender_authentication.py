@@ -9,7 +9,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from mavlink.autopilot_type import COMMANDED, flavour_of
+from mavlink.autopilot_type import COMMANDED, autopilot_type_of
 from mavlink.decoding.report import E7, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.signing import FrameWriter, Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
@@ -62,7 +62,7 @@ class UnknownSenders:
         """ArduPilot tells where it is only to whoever asks."""
         now_s = time.monotonic()
         is_asked = now_s - self._asked_s.get(system, -ASK_AGAIN_S) < ASK_AGAIN_S
-        if system in self._positions or is_asked or flavour_of(heartbeat.autopilot) not in COMMANDED:
+        if system in self._positions or is_asked or autopilot_type_of(heartbeat.autopilot) not in COMMANDED:
             return
         self._asked_s[system] = now_s
         peer.send(self._writer.frame_of(position_request(system), time.time()))
@@ -72,7 +72,7 @@ class UnknownSenders:
         self.note(
             Sighting(
                 system=frame.system,
-                autopilot=flavour_of(heartbeat.autopilot),
+                autopilot=autopilot_type_of(heartbeat.autopilot),
                 vehicle_type=type_name(heartbeat.type),
                 address=peer.name[:100],
                 is_signed=frame.is_signed,

@@ -12,7 +12,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import AUTOPILOT
-from mavlink.autopilot_type import MISSION_MODES, Flavour
+from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.decoding.boots import Stamp, VehicleTime
 from mavlink.decoding.measurement import LinkQuality
 from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_place, is_vehicle
@@ -26,7 +26,7 @@ from missions.models import LinkKind
 from telemetry.gateway import heartbeat
 from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.fleet import KnownUav
-from telemetry.gateway.message_requests import Questions
+from telemetry.gateway.message_requests import MessageRequests
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.sender_authentication import SENDER_SILENT_S, Belief, is_within
@@ -40,7 +40,7 @@ QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
 logger = logging.getLogger(__name__)
 MAX_WAITING = 5_000  # frames of a vehicle that is not served yet
 RECEIVED_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
-GREET_AGAIN_S = 1.0
+HEARTBEAT_AGAIN_S = 1.0
 LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
@@ -138,7 +138,7 @@ class Session:
     listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
     log: Callable[[bytes, int, float], None] | None = None
     is_unsaved: bool = False
-    questions: Questions = field(default_factory=Questions)
+    message_requests: MessageRequests = field(default_factory=MessageRequests)
     lists: ListWatch = field(default_factory=ListWatch)
     rate: LinkRate = field(default_factory=LinkRate)
     commanded_s: float | None = None  # monotonic: when a command was last under way
@@ -168,7 +168,7 @@ class Session:
         if refusal is not None:
             self._count_loss(refusal)
             if refusal in LATE:
-                self._greet_late_clock(frame, peer, now_s)
+                self._answer_late_clock(frame, peer, now_s)
             return
         self.is_unsaved = True
         self._quality.count(frame.component, frame.sequence)
@@ -190,7 +190,7 @@ class Session:
     def note_station(self, peer: Peer) -> None:
         """Another ground station was heard from this address."""
         if peer == self.peer:
-            self.questions.note_station(time.monotonic())
+            self.message_requests.note_station(time.monotonic())
 
     def receive_radio(self, frame: Frame, now_s: float) -> None:
         """Of the radio that the vehicle's frames come through; it cannot sign."""
@@ -234,7 +234,7 @@ class Session:
     def is_served(self, now_s: float, within_s: float) -> bool:
         """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
         is_here = is_within(self.last_message_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
-        return self.is_held and is_here and self.state.flavour is not None
+        return self.is_held and is_here and self.state.autopilot_type is not None
 
     def may_receive(self, now_s: float) -> bool:
         """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
@@ -277,7 +277,7 @@ class Session:
             self._send([heartbeat.heartbeat()], now_s)
         if is_within(self.last_message_s, now_s, SENDER_SILENT_S):
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
-            self.send(self.questions.due(self.state, time.monotonic(), has_position=has_position), now_s)
+            self.send(self.message_requests.due(self.state, time.monotonic(), has_position=has_position), now_s)
 
     # What is known
 
@@ -293,7 +293,7 @@ class Session:
             uav_id=self.uav.uav_id,
             last_message_ago_s=max(time.time() - self.last_message_s, 0.0),
             address=self.peer.name[:100] if self.peer else "",
-            autopilot=state.flavour or "",
+            autopilot=state.autopilot_type or "",
             firmware=".".join(map(str, state.firmware)) if state.firmware else "",
             vehicle_type=state.vehicle_type,
             mode=state.mode[:30],
@@ -318,9 +318,9 @@ class Session:
         signing = self.belief.to_json()
         return signing and signing | {"sent": self._writer.last_timestamp}
 
-    def _greet_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
+    def _answer_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
         """Whoever knows the key but not the time sets its clock by a signed frame of ours, whoever else sends its frames."""
-        self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, GREET_AGAIN_S)}
+        self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, HEARTBEAT_AGAIN_S)}
         if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
             self._greeted[peer.name] = now_s
             self._writer.key = self.belief.key_of(frame)
@@ -333,7 +333,7 @@ class Session:
         stamp = self._stamp(message, now_s) if kind in SEND_TIME else None
         self._reporter.receive(message, now_s)
         monotonic_s = time.monotonic()
-        self.questions.receive(message, monotonic_s)
+        self.message_requests.receive(message, monotonic_s)
         if not _reports_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))
@@ -380,8 +380,8 @@ class Session:
         )
 
     @property
-    def flavour(self) -> Flavour | None:
-        return self.state.flavour
+    def autopilot_type(self) -> AutopilotType | None:
+        return self.state.autopilot_type
 
 
 def _reports_no_place(message: Message) -> bool:

@@ -42,7 +42,7 @@ class Feed:
         self.readers.discard(reader)
         self._waiting.discard(reader)
 
-    def hint(self) -> None:
+    def wake(self) -> None:
         self._message.set()
 
     def next_message(self, reader: Reader) -> str:

@@ -24,8 +24,8 @@ CONNECT_S = 1.0
 HEALTH_INTERVAL_S = 10.0
 
 
-async def listen(on_hint: Callable[[int], None]) -> None:
-    """Until it is cancelled, over outages of Redis, too. on_hint is given the organisation's key."""
+async def listen(on_message: Callable[[int], None]) -> None:
+    """Until it is cancelled, over outages of Redis, too. on_message is given the organisation's key."""
     every = live_channel("*")
     prefix = every.removesuffix("*")
     while True:
@@ -34,7 +34,7 @@ async def listen(on_hint: Callable[[int], None]) -> None:
             async with redis, redis.pubsub(ignore_subscribe_messages=True) as channels:
                 await channels.psubscribe(every)
                 async for message in channels.listen():
-                    on_hint(int(message["channel"].decode().removeprefix(prefix)))
+                    on_message(int(message["channel"].decode().removeprefix(prefix)))
         except (RedisError, OSError, ValueError) as error:
             logger.debug("no hints: %r", error)
         await asyncio.sleep(RETRY_DELAY_S)
@@ -53,7 +53,7 @@ class Hub:
             feed = Feed(reader.organisation_id, self._look_at)
             self._feeds[reader.organisation_id] = (feed, asyncio.create_task(feed.run()))
         if self._listening is None:
-            self._listening = asyncio.create_task(listen(self._hint))
+            self._listening = asyncio.create_task(listen(self._wake))
         feed, _ = self._feeds[reader.organisation_id]
         feed.join(reader)
         return feed
@@ -68,9 +68,9 @@ class Hub:
             self._listening.cancel()
             self._listening = None
 
-    def _hint(self, organisation_id: int) -> None:
+    def _wake(self, organisation_id: int) -> None:
         if organisation_id in self._feeds:
-            self._feeds[organisation_id][0].hint()
+            self._feeds[organisation_id][0].wake()
 
     async def _look_at(self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Look) -> Look:
         return await self._look(organisation_id, missions, languages, before)

@@ -11,7 +11,7 @@ from uuid import UUID
 from django.db import connection
 from django.db.models import Exists, OuterRef
 
-from mavlink.rtl import OwnReturn, own_return
+from mavlink.rtl import RtlBehaviour, rtl_behaviour
 from missions.command_rules import ALONG_ROUTE
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.modes import RETURN_ALONG
@@ -48,13 +48,13 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
         sha256, approval, flight, doubt, autopilot, battery, reported = row[7:]
         rate = believed_rate(clock_rate if is_simulated else None)
         last_message_s = None if heard_at is None else heard_at.timestamp()
-        facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(reported))
+        facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _rtl_behaviour(reported))
         found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
     return found
 
 
-def _own_return(reported: Mapping[str, Any]) -> OwnReturn | None:
-    return own_return(reported.get("autopilot", ""), reported.get("parameters", {}))
+def _rtl_behaviour(reported: Mapping[str, Any]) -> RtlBehaviour | None:
+    return rtl_behaviour(reported.get("autopilot", ""), reported.get("parameters", {}))
 
 
 def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[StatusText, ...]]:

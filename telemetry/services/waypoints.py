@@ -12,7 +12,7 @@ from uuid import UUID
 
 from django.db import connection
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from missions.models import Approval
 from missions.services.commands.dispatch import DamagedApproval, approved_load
 
@@ -51,7 +51,7 @@ def lists_on(uav_ids: Iterable[int]) -> dict[int, LoadedList]:
         approved = _approved_waypoints(approval, uav_id, flight)
         if approved is not None:
             mission_id, waypoints = approved
-            found[uav_id] = LoadedList(mission_id, read_at, 1 if autopilot == Flavour.ARDUPILOT else 0, waypoints)
+            found[uav_id] = LoadedList(mission_id, read_at, 1 if autopilot == AutopilotType.ARDUPILOT else 0, waypoints)
     return found
 
 

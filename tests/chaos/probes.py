@@ -7,7 +7,7 @@ from pathlib import Path
 
 from deploy.load.installation import Installation
 from deploy.load.replicas import kind_of
-from scripts.places import telling_socket
+from scripts.places import health_socket
 
 TIMEOUT_S = 5.0
 
@@ -45,5 +45,5 @@ def is_ready(installation: Installation, name: str) -> bool:
         with socket.socket() as caller:
             return caller.connect_ex(("127.0.0.1", installation.port)) == 0
     sockets = installation.sockets
-    own = sockets / f"{name}.sock" if kind_of(name) in {"web", "live"} else telling_socket(sockets, name)
+    own = sockets / f"{name}.sock" if kind_of(name) in {"web", "live"} else health_socket(sockets, name)
     return answer_of(own)[0] == 200

@@ -10,7 +10,7 @@ from mavlink.commands.command import CommandEnd
 from mavlink.parameters import ParameterReading, ParameterSetting
 from mavlink.timeouts import TransferRules
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, known
+from tests.telemetry.vehicles.loads import ADDRESSING, known
 from tests.telemetry.vehicles.px4 import Px4
 
 RULES = TransferRules()
@@ -31,7 +31,7 @@ class WithParameters(Px4):
 def test_parameters_are_read_over_a_bad_link_and_whole_ones_are_whole(seed: int):
     vehicle = WithParameters()
     state = known(vehicle)
-    reading = ParameterReading(["MIS_DIST_WPS", "NAV_DLL_ACT"], state, ENDS, RULES)
+    reading = ParameterReading(["MIS_DIST_WPS", "NAV_DLL_ACT"], state, ADDRESSING, RULES)
     channel = Channel(reading, vehicle, Link(0.3, duplicates=0.1, reordered=0.1), seed, listeners=[state])
     assert channel.run() == {"MIS_DIST_WPS": 900.0, "NAV_DLL_ACT": 3.0}
 
@@ -39,14 +39,14 @@ def test_parameters_are_read_over_a_bad_link_and_whole_ones_are_whole(seed: int)
 def test_parameter_that_the_vehicle_does_not_have_is_missing_in_the_end():
     vehicle = WithParameters()
     state = known(vehicle)
-    reading = ParameterReading(["MIS_DIST_1WP", "MIS_DIST_WPS"], state, ENDS, RULES)
+    reading = ParameterReading(["MIS_DIST_1WP", "MIS_DIST_WPS"], state, ADDRESSING, RULES)
     channel = Channel(reading, vehicle, listeners=[state])
     assert channel.run() == {"MIS_DIST_WPS": 900.0}
     assert len(channel.to_vehicle) == 2 + RULES.retries
 
 
 def test_nothing_to_read_is_read_at_once():
-    reading = ParameterReading([], known(Px4()), ENDS, RULES)
+    reading = ParameterReading([], known(Px4()), ADDRESSING, RULES)
     assert (reading.start(0.0), reading.outcome) == ([], {})
 
 
@@ -54,7 +54,7 @@ def test_nothing_to_read_is_read_at_once():
 def test_a_parameter_is_set_over_a_bad_link_and_read_back(seed: int):
     vehicle = Px4(parameters={"RTL_RETURN_ALT": 60.0})
     state = known(vehicle)
-    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ADDRESSING, RULES)
     outcome = Channel(setting, vehicle, Link(0.3, duplicates=0.1, reordered=0.1), seed, listeners=[state]).run()
     assert (outcome.state, vehicle.parameters["RTL_RETURN_ALT"]) == (CommandEnd.APPLIED, 85.0)
     assert "read back" in outcome.words
@@ -64,7 +64,7 @@ def test_a_parameter_that_the_vehicle_keeps_as_it_was_is_not_set():
     vehicle = Px4(parameters={"RTL_RETURN_ALT": 60.0})
     vehicle.parameters_kept = {"RTL_RETURN_ALT"}
     state = known(vehicle)
-    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ADDRESSING, RULES)
     outcome = Channel(setting, vehicle, Link(), 1, listeners=[state]).run()
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "denied")
     assert "stays 60" in outcome.words
@@ -73,7 +73,7 @@ def test_a_parameter_that_the_vehicle_keeps_as_it_was_is_not_set():
 def test_a_vehicle_that_does_not_answer_is_silent():
     vehicle = Px4()
     state = known(vehicle)
-    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ADDRESSING, RULES)
     vehicle.parameters_kept = {"RTL_RETURN_ALT"}
     outcome = Channel(setting, vehicle, Link(), 1, listeners=[state]).run()
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "silent")

@@ -2,16 +2,16 @@
 
 import pytest
 
-from mavlink.rtl import own_return
+from mavlink.rtl import rtl_behaviour
 
 FENCE = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 7.0, "FENCE_ALT_MAX": 25.0, "FENCE_MARGIN": 2.0}
 COPTER = {"RTL_ALT": 3_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_CONE_SLOPE": 3.0, "RTL_ALT_TYPE": 0.0}
 
 
 def level_m(autopilot: str, parameters: dict[str, float], current_m: float, away_m: float, **haven) -> float:
-    own = own_return(autopilot, parameters)
+    own = rtl_behaviour(autopilot, parameters)
     assert own is not None
-    return own.level_m(current_m, away_m, haven.get("haven_m", 0.0))
+    return own.level_m(current_m, away_m, haven.get("goal_m", 0.0))
 
 
 @pytest.mark.parametrize(
@@ -35,13 +35,13 @@ def test_a_copter_returns_at_its_height_or_its_own(parameters, current_m, away_m
 
 
 def test_newer_ardupilots_count_metres():
-    own = own_return("ardupilot", {"RTL_ALT_M": 45.0, "RTL_CLIMB_MIN_M": 2.0})
+    own = rtl_behaviour("ardupilot", {"RTL_ALT_M": 45.0, "RTL_CLIMB_MIN_M": 2.0})
     assert (own.parameter, own.height_m, own.climb_m, own.value_for(45.2)) == ("RTL_ALT_M", 45.0, 2.0, "46 m")
 
 
 def test_a_value_is_told_as_it_is_to_be_set():
-    assert own_return("ardupilot", COPTER).value_for(45.2) == "4600 (46 m)"
-    assert own_return("px4", {"RTL_RETURN_ALT": 60.0}).value_for(45.2) == "46 m"
+    assert rtl_behaviour("ardupilot", COPTER).value_for(45.2) == "4600 (46 m)"
+    assert rtl_behaviour("px4", {"RTL_RETURN_ALT": 60.0}).value_for(45.2) == "46 m"
 
 
 @pytest.mark.parametrize(
@@ -61,14 +61,14 @@ def test_px4_returns_at_its_height_but_for_the_last_metres(parameters, current_m
 
 
 def test_a_rally_point_has_a_height_of_its_own():
-    assert level_m("ardupilot", COPTER, 10.0, 500.0, haven_m=40.0) == 40.0
-    assert level_m("ardupilot", COPTER, 10.0, 500.0, haven_m=20.0) == 30.0, "no lower than home"
-    assert level_m("px4", {"RTL_RETURN_ALT": 60.0}, 10.0, 500.0, haven_m=5.0) == 65.0
+    assert level_m("ardupilot", COPTER, 10.0, 500.0, goal_m=40.0) == 40.0
+    assert level_m("ardupilot", COPTER, 10.0, 500.0, goal_m=20.0) == 30.0, "no lower than home"
+    assert level_m("px4", {"RTL_RETURN_ALT": 60.0}, 10.0, 500.0, goal_m=5.0) == 65.0
 
 
 @pytest.mark.parametrize(("autopilot", "parameters"), [("px4", {}), ("ardupilot", {"RTL_CLIMB_MIN": 0.0}), ("other", COPTER), ("", {})])
 def test_without_its_height_nothing_is_known(autopilot, parameters):
-    assert own_return(autopilot, parameters) is None
+    assert rtl_behaviour(autopilot, parameters) is None
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ def test_without_its_height_nothing_is_known(autopilot, parameters):
     ],
 )
 def test_what_makes_it_leave_the_straight_way_is_named(autopilot, parameters, bends_by):
-    assert own_return(autopilot, parameters).bends_by == bends_by
+    assert rtl_behaviour(autopilot, parameters).bends_by == bends_by
 
 
 @pytest.mark.parametrize(
@@ -94,10 +94,10 @@ def test_what_makes_it_leave_the_straight_way_is_named(autopilot, parameters, be
     ],
 )
 def test_whether_it_flies_straight_must_have_been_told(autopilot, parameters, untold):
-    assert own_return(autopilot, parameters).untold == untold
+    assert rtl_behaviour(autopilot, parameters).untold == untold
 
 
 def test_rally_points_and_whether_home_counts_are_told_by_ardupilot_alone():
-    reported = own_return("ardupilot", COPTER | {"RALLY_INCL_HOME": 0.0, "RALLY_TOTAL": 3.0})
+    reported = rtl_behaviour("ardupilot", COPTER | {"RALLY_INCL_HOME": 0.0, "RALLY_TOTAL": 3.0})
     assert (reported.shuns_home, reported.rally_points) == (True, 3)
-    assert (own_return("ardupilot", COPTER).shuns_home, own_return("px4", {"RTL_RETURN_ALT": 60.0}).rally_points) == (False, None)
+    assert (rtl_behaviour("ardupilot", COPTER).shuns_home, rtl_behaviour("px4", {"RTL_RETURN_ALT": 60.0}).rally_points) == (False, None)

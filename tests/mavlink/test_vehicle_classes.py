@@ -13,7 +13,7 @@ from mavlink.vehicle_class import VehicleClass, class_of
 from tests.mavlink.commands.orders_given import reported
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load
 from tests.telemetry.vehicles.px4 import Px4
 
 PLANE, QUADPLANE = mavlink.MAV_TYPE_FIXED_WING, mavlink.MAV_TYPE_VTOL_QUADROTOR
@@ -75,11 +75,11 @@ def test_px4_of_another_kind_is_held_brought_back_and_landed_and_nothing_else(or
     assert outcome.code == ("" if order in STOPS else "vehicle-class")
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 @pytest.mark.parametrize("vehicle_type", OTHERS)
-def test_no_mission_is_sent_to_another_kind(flavour, vehicle_type):
-    vehicle = FLAVOURS[flavour](vehicle_type=vehicle_type)
-    channel = Channel(MissionSync(load(7), known(vehicle), ENDS, TransferRules()), vehicle)
+def test_no_mission_is_sent_to_another_kind(autopilot_type, vehicle_type):
+    vehicle = AUTOPILOT_TYPES[autopilot_type](vehicle_type=vehicle_type)
+    channel = Channel(MissionSync(load(7), known(vehicle), ADDRESSING, TransferRules()), vehicle)
     outcome = channel.run()
     assert (outcome.state, outcome.code, channel.to_vehicle) == (SyncState.INTACT, "vehicle-class", [])
     assert outcome.words.startswith("Nothing was sent. The vehicle is a ")

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour, Mode
+from mavlink.autopilot_type import AutopilotType, Mode
 from mavlink.vehicle_state import VehicleState
 from tests.mavlink.mission_sync.test_upload import received
 
@@ -44,7 +44,7 @@ def test_mode_has_the_autopilots_name_and_our_meaning(autopilot: int, custom_mod
 
 def test_nothing_is_known_before_a_heartbeat():
     state = VehicleState(7)
-    assert (state.flavour, state.mode, state.is_in_air, state.is_held) == (None, "", None, False)
+    assert (state.autopilot_type, state.mode, state.is_in_air, state.is_held) == (None, "", None, False)
     assert not state.is_fresh(0.0, 3.0)
 
 
@@ -54,7 +54,7 @@ def test_nothing_is_known_before_a_heartbeat():
     heartbeat(mavlink.MAV_AUTOPILOT_INVALID, component=154),
 ])  # fmt: skip
 def test_heartbeats_of_others_are_not_the_vehicles(message: Any):
-    assert state_of(message).flavour is None
+    assert state_of(message).autopilot_type is None
 
 
 def test_flying_is_told_by_the_landed_state_and_else_by_ardupilots_heartbeat():
@@ -85,7 +85,7 @@ def test_position_home_mission_version_health_and_texts_are_kept():
     assert state.parameters == {"MIS_DIST_WPS": 900.0}
     assert state.words_since(8.0) == "Need Position Estimate"
     assert state.words_since(8.5) == ""
-    assert (state.received_at_s, state.heartbeat_at_s, state.flavour) == (8.0, 0.0, Flavour.PX4)
+    assert (state.received_at_s, state.heartbeat_at_s, state.autopilot_type) == (8.0, 0.0, AutopilotType.PX4)
 
 
 def test_only_the_newest_texts_are_kept():

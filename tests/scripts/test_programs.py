@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts.places import TELLING_PROGRAMS, Places
+from scripts.places import PROGRAMS_WITH_METRICS, Places
 from scripts.programs import web_programs
 
 
@@ -16,4 +16,4 @@ def test_each_takes_memory_from_two_pools_unless_the_site_says_otherwise(
     if of_the_site:
         monkeypatch.setenv("MALLOC_ARENA_MAX", of_the_site)
     pools = {program.name: program.environment.get("MALLOC_ARENA_MAX") for program in web_programs(Places(tmp_path), tmp_path)}
-    assert {name: pools[name] for name in TELLING_PROGRAMS} == dict.fromkeys(TELLING_PROGRAMS, given)
+    assert {name: pools[name] for name in PROGRAMS_WITH_METRICS} == dict.fromkeys(PROGRAMS_WITH_METRICS, given)

@@ -13,7 +13,7 @@ from simulation.models import Simulation
 from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.services.simulations import PoolUav, start_pool
-from simulation.services.simulator_leases import Held, take_simulation
+from simulation.services.simulator_leases import LeasedSimulation, take_simulation
 from workspace.models import User
 
 HERE = LonLat(10.0, 56.0)
@@ -30,7 +30,7 @@ def stand_ins(mission: Mission, actor: User, **more: Any) -> Simulation:
     return start_simulated_flights(mission=mission_of_organisation(mission.organisation, mission.pk), actor=actor, sky=CALM, **more)
 
 
-def taken(holder: str = "one/a", *flown: Simulation, most_load: float = 60.0) -> Held | None:
+def taken(holder: str = "one/a", *flown: Simulation, most_load: float = 60.0) -> LeasedSimulation | None:
     return take_simulation(holder=holder, lease_s=5.0, most_load=most_load, flown=[simulation.pk for simulation in flown])
 
 

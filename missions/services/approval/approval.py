@@ -58,7 +58,7 @@ def approve_mission(
     With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
     """
     with transaction.atomic():
-        held = held_mission(mission.pk, expected_revision)
+        held = locked_mission(mission.pk, expected_revision)
         if held.state == MissionState.DRAFT:
             raise refuse("not_planned", _("A draft cannot be approved. Plan it first."))
         if held.state != MissionState.PLANNED:
@@ -93,7 +93,7 @@ def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revi
     again, it tells those once more that failed to. What is being flown is not revoked but aborted.
     """
     with transaction.atomic():
-        held = held_mission(mission.pk, expected_revision)
+        held = locked_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
         if approval is None or held.state not in {MissionState.APPROVED, MissionState.DISPATCHED}:
             raise refuse("not_approved", _("Only a mission that is approved and not yet flown can be revoked. Abort one that is flown."))
@@ -144,7 +144,7 @@ def _is_being_cleared(uav: Uav, approval: Approval) -> bool:
     return approval.commands.filter(uav=uav, kind=CommandKind.CLEAR_MISSION, state__in=OPEN_COMMANDS).exists()
 
 
-def held_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
+def locked_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
     """The row, held until the caller's transaction ends. Raises MissionChanged."""
     held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
     if held.deleted_at is not None or (expected_revision is not None and held.revision != expected_revision):

@@ -26,7 +26,7 @@ from missions.models import (
 )
 from missions.selectors.commands import upload_of
 from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import change_state, held_mission, uavs_that_may_hold
+from missions.services.approval.approval import change_state, locked_mission, uavs_that_may_hold
 from missions.services.approval.checks import look_at, look_that_counts
 from missions.services.approval.document import content_sha256
 from missions.services.commands.flight_progress import ON_ITS_WAY
@@ -73,7 +73,7 @@ def dispatch_mission(
     """
     look = look_at(mission, now=timezone.now())
     with transaction.atomic():
-        held = held_mission(mission.pk, expected_revision)
+        held = locked_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
         if approval is None or held.state not in TO_SEND:
             raise refuse("not_approved", _("Only an approved mission can be uploaded to UAVs."))
@@ -111,7 +111,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
     nothing else: what was said of its flights, and whether an earlier abort was heard, may be wrong.
     """
     with transaction.atomic():
-        held = held_mission(mission.pk, expected_revision)
+        held = locked_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
         is_over = held.state in UNSUCCESSFUL
         if approval is None or not (is_over or held.state in ON_ITS_WAY):

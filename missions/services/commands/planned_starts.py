@@ -26,7 +26,7 @@ from missions.models import (
 )
 from missions.selectors.commands import places_in_flight, upload_of
 from missions.selectors.missions import approval_in_force
-from missions.services.approval.approval import held_mission
+from missions.services.approval.approval import locked_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import withdraw
 from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
@@ -75,7 +75,7 @@ def begin_planned_starts(
     wanted = [uav_id for route in waiting_for_start(mission) if (uav_id := route.mission_uav.uav_id)] if uavs is None else uavs
     against = reasons_against_starts(mission, wanted)  # before the row is held: it may take seconds, for which no abort shall wait
     with transaction.atomic():
-        held = held_mission(mission.pk, None)
+        held = locked_mission(mission.pk, None)
         approval = approval_in_force(held)
         if approval is None or held.state not in ON_ITS_WAY:
             raise refuse("not_on_its_way", _("Only an uploaded mission can be started."))

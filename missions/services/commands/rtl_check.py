@@ -19,7 +19,7 @@ from inspection.selectors.planning import planning_read
 from inspection.zones.reach import ZoneTable
 from mavlink.approved_route import Flight, NotARoute
 from mavlink.fence import fence_of
-from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
+from mavlink.rtl import NAMES, PARAMETERS, RtlBehaviour, fence_off_by, rtl_behaviour
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.document import frozen_route
@@ -62,7 +62,7 @@ class ReturnCheck:
     detail: str = ""
 
 
-def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
+def note_rtl_behaviour(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
     """Read from the vehicle just now; what has nothing to do with its return is left out. No edit: the row's revision stays."""
     own = {name: value for name, value in parameters.items() if name in NAMES.get(autopilot, ())}
     if own:
@@ -94,7 +94,7 @@ def _fence_warning(mission: Mission, route: Route) -> str:
 class ReportedReturn:
     """How a UAV flies home by itself, as far as it was read from it: `own` is None where that is not known, and `why` tells the reason."""
 
-    own: OwnReturn | None
+    own: RtlBehaviour | None
     state: ReturnState = ReturnState.CLEAR
     why: str = ""
     parameter: str | None = None
@@ -118,7 +118,7 @@ def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedR
         words = _("Return path of %(uav)s unknown: its companion computer decides. Nothing on it is checked.")
         return ReportedReturn(None, ReturnState.NOT_CHECKED, words % values)
     autopilot_return = uav.autopilot_return
-    own = own_return(autopilot_return.get("autopilot", ""), autopilot_return.get("parameters", {}))
+    own = rtl_behaviour(autopilot_return.get("autopilot", ""), autopilot_return.get("parameters", {}))
     if own is None:
         words = _("Return altitude of %(uav)s not reported by the autopilot. Its return path is not checked against terrain and zones.")
         return ReportedReturn(None, ReturnState.UNKNOWN, words % values, detail=_height_names(autopilot_return.get("autopilot", "")))
@@ -142,7 +142,7 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
     return checked_ways(checked, reported.own, ways, table)
 
 
-def checked_ways(checked: ReturnCheck, own: OwnReturn, ways: Sequence[WaysHome], table: ZoneTable, *, where: str = "") -> ReturnCheck:
+def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[WaysHome], table: ZoneTable, *, where: str = "") -> ReturnCheck:
     """The check with what is in these ways. where: from where they lead, in words; empty: from waypoints of a route, by their numbers."""
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
@@ -159,11 +159,11 @@ class WaysNow:
     ways: tuple[WaysHome, ...]
     table: ZoneTable
 
-    def checked(self, check: ReturnCheck, own: OwnReturn) -> ReturnCheck:
+    def checked(self, check: ReturnCheck, own: RtlBehaviour) -> ReturnCheck:
         """Return the check with what is in these ways."""
         return checked_ways(check, own, self.ways, self.table, where=_("From where it is now"))
 
-    def clear_heights_m(self, own: OwnReturn, lowest_m: float, step_m: float) -> list[float]:
+    def clear_heights_m(self, own: RtlBehaviour, lowest_m: float, step_m: float) -> list[float]:
         """Return heights from `lowest_m` on, so many metres apart, at which nothing is in the way and which flights may have."""
         most_m = settings.FLIGHT_RULES.max_agl_m
         found, height_m = [], float(math.ceil(lowest_m))
@@ -177,7 +177,7 @@ class WaysNow:
 
 
 def ways_now(
-    own: OwnReturn, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
+    own: RtlBehaviour, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
 ) -> WaysNow:  # fmt: skip
     """The way home from places at which a UAV may be now, and that to the rally point that it would take instead.
 
@@ -206,7 +206,7 @@ def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tup
     return zones_near(in_force, positions, margins, window)
 
 
-def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
+def _why_unknown(own: RtlBehaviour, name: str, *, has_rally: bool) -> str:
     """Why nobody can say here where it flies on its way home; empty where that is known."""
     if own.untold:
         words = _("Return path of %(uav)s unknown: its autopilot has not reported how it returns. It is not checked.")
@@ -271,11 +271,11 @@ def _places_by_haven(places: Places, home: Haven, rally: Sequence[Haven], *, shu
             yield haven, own
 
 
-def _levels(way: WaysHome, own: OwnReturn) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _levels(way: WaysHome, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     return way.levels_m(own.level_m)
 
 
-def _safe_height_m(ways: Sequence[WaysHome], own: OwnReturn) -> float | None:
+def _safe_height_m(ways: Sequence[WaysHome], own: RtlBehaviour) -> float | None:
     """The lowest in whole metres, or a little above it, that is clear from everywhere and comes no higher than flights may."""
     most_m = settings.FLIGHT_RULES.max_agl_m
     highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))
@@ -316,7 +316,7 @@ def _words(trouble: Trouble, table: ZoneTable, where: str) -> str:
     }[trouble.kind] % values
 
 
-def _advice(own: OwnReturn, safe_m: float | None) -> str:
+def _advice(own: RtlBehaviour, safe_m: float | None) -> str:
     if safe_m is None:
         return _("No height of %(parameter)s is clear: use Hold and Land instead.") % {"parameter": own.parameter}
     values = {"parameter": own.parameter, "value": own.value_for(safe_m)}

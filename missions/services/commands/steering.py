@@ -8,7 +8,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from mavlink.rtl import own_return
+from mavlink.rtl import rtl_behaviour
 from missions.command_rules import ALONG_ROUTE, HEIGHT_M, SETS_IN_MOTION, THEN_RETURN, WAIT_S
 from missions.hooks.in_air import uavs_down_off_plan
 from missions.models import (
@@ -131,7 +131,7 @@ def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
     if uav.link == LinkKind.HTTP:
         raise refuse("not_by_companion", _("The return height of %(uav)s is set by its companion, not from here.") % values)
     reported = uav.autopilot_return
-    if own_return(reported.get("autopilot", ""), reported.get("parameters", {})) is None:
+    if rtl_behaviour(reported.get("autopilot", ""), reported.get("parameters", {})) is None:
         raise refuse("not_read", _("The return height of %(uav)s was never read: connect it first.") % values)
     heights = {name: value for name, value in given.items() if name != THEN_RETURN}
     checked = {"height_m": _within("height_m", heights, MIN_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}

@@ -25,7 +25,7 @@ from missions.models import (
     Uav,
     UavCommand,
 )
-from missions.services.approval.approval import approve_mission, change_state, held_mission
+from missions.services.approval.approval import approve_mission, change_state, locked_mission
 from missions.services.commands.flight_progress import end_if_over
 from missions.services.commands.outbox import queue_command
 from missions.services.commands.refused import refuse
@@ -48,11 +48,11 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
         words = why_outdated(held, timezone.now())
         if words:
             raise refuse("outdated", words + " " + _("Plan the rest again."))
-        mission, uavs = held_mission(held.mission_id, None), held.difference["uavs"]
+        mission, uavs = locked_mission(held.mission_id, None), held.difference["uavs"]
         given_up = [uav["place"] for uav in uavs if uav["change"] in GIVEN_UP]
         mission.routes.filter(mission_uav__sequence__in=given_up).update(continued_by=held.continuation)
         approval = approve_mission(mission=held.continuation, actor=actor, is_under_way=True)
-        continuation = held_mission(held.continuation.pk, None)
+        continuation = locked_mission(held.continuation.pk, None)
         _hand_over_targets(mission, continuation, held.difference)
         why = f"Continues {mission.name}."
         reported = []

@@ -10,7 +10,7 @@ import {
   saferReturn,
   separateReturns,
   togetherLine,
-} from "./own_return.js";
+} from "./rtl_check.js";
 
 /** @import { CommandKind, LandingHere, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 

@@ -191,7 +191,7 @@ export function placesText(waypoints) {
 }
 
 /** @param {number} haven */
-export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
+export const returnPointText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
 
 /** Wh to a tenth: what is missing may be little. @param {number} missing_wh */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
@@ -203,7 +203,7 @@ const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_w
  * @param {Pick<FailureGroup, "waypoints" | "haven" | "trouble" | "zone" | "missing_wh" | "over_m">} group
  */
 export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
-  const values = { places: placesText(waypoints), haven: havenText(haven) };
+  const values = { places: placesText(waypoints), haven: returnPointText(haven) };
   const where =
     waypoints.length === 1
       ? t("waypoint {places}, back to {haven}", values)

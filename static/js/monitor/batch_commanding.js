@@ -4,7 +4,7 @@ import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { holdLinesOfAll, separateReturns, togetherLine } from "../domain/own_return.js";
+import { holdLinesOfAll, separateReturns, togetherLine } from "../domain/rtl_check.js";
 import { confirmAct } from "../page/confirm.js";
 import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";

@@ -3,7 +3,7 @@
 import { MEASURED } from "../domain/certainty.js";
 import { distance_m } from "../domain/geodesy.js";
 import { inAir } from "../domain/in_air.js";
-import { MIN_HOLD_S } from "../domain/own_return.js";
+import { MIN_HOLD_S } from "../domain/rtl_check.js";
 import { t } from "../text.js";
 import { clockText, durationText, exactClockText, heightText, lengthText, percentText, speedText } from "../units.js";
 import { ageWords, isHeld } from "./uav_words.js";

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from telemetry.alerting.conflicts import elsewhere, meetings, ways_of
 from telemetry.alerting.detector_input import Situation, WatchedUav
 from telemetry.alerting.detector_state import Memory, position_of
@@ -14,7 +14,7 @@ from telemetry.alerting.detectors import down
 from telemetry.alerting.limits import Limits, sound_limits
 from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.state_machine import Closed, Opened, changes
-from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
+from telemetry.alerting.surroundings import LinkFacts, NearZone, OnboardState
 from telemetry.selectors.alert_facts import (
     Loaded,
     closed_by_people,
@@ -162,16 +162,16 @@ def _zones(uav: WatchedUav, limits: Limits, zones: ZonesAbout) -> tuple[NearZone
     return () if position is None else zones.within(position, max(MIN_REACH_M, MAX_SPEED_MPS * limits.zone_ahead_s))
 
 
-def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> Held:
+def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> OnboardState:
     if loaded.approval_id is None or loaded.flight is None:
-        return Held(doubt=loaded.doubt, is_changing=is_changing)
+        return OnboardState(doubt=loaded.doubt, is_changing=is_changing)
     content = approved_content(loaded.approval_id, uav.uav_id, loaded.flight)
     is_approved = loaded.approval_id == uav.approval_id and content is not None and content.content_sha256 == loaded.sha256
-    return Held(
+    return OnboardState(
         approval_id=loaded.approval_id,
         is_approved=is_approved,
         doubt=loaded.doubt,
         is_changing=is_changing,
         items=None if content is None else content.items,
-        first_item=1 if loaded.autopilot == Flavour.ARDUPILOT else 0,
+        first_item=1 if loaded.autopilot == AutopilotType.ARDUPILOT else 0,
     )

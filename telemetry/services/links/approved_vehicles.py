@@ -6,7 +6,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
 from mavlink.approved_route import NotARoute
-from mavlink.autopilot_type import COMMANDED, Flavour
+from mavlink.autopilot_type import COMMANDED, AutopilotType
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items, version_of
 from mavlink.rtl import fence_off_by
@@ -58,16 +58,16 @@ def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[Reason]:
         return
     if link.autopilot not in COMMANDED:
         return
-    flavour, firmware = Flavour(link.autopilot), version_of(link.firmware)
+    autopilot_type, firmware = AutopilotType(link.autopilot), version_of(link.firmware)
     try:
         loads = flight_loads(frozen_route(route, mission))
     except (CannotBeFlown, NotARoute):
         return  # which approving refuses by itself
-    unknown = [one.item for load in loads for one in unknown_items(load.mission, flavour, firmware)]
+    unknown = [one.item for load in loads for one in unknown_items(load.mission, autopilot_type, firmware)]
     first_of = {item.command: item.waypoint for item in reversed(unknown)}
     for command, waypoint in first_of.items():
         values = {
-            "autopilot": firmware_words(flavour, firmware), "uav": name, "command": command_words(command),
+            "autopilot": firmware_words(autopilot_type, firmware), "uav": name, "command": command_words(command),
             "waypoint": 0 if waypoint is None else waypoint + 1,
         }  # fmt: skip
         words = _(

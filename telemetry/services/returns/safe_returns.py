@@ -9,7 +9,7 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, distance_m
-from mavlink.rtl import OwnReturn
+from mavlink.rtl import RtlBehaviour
 from missions.models import Mission, MissionUav
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, WaysNow
 from missions.services.commands.start_slots import KEPT_SHARE
@@ -63,7 +63,7 @@ class Flown:
     mission: Mission | None
     place: MissionUav | None
     check: ReturnCheck
-    own: OwnReturn | None
+    own: RtlBehaviour | None
     rally: Sequence[tuple[LonLat, float]] = ()
     home: LonLat | None = None
     straight: StraightReturn | None = None

@@ -12,7 +12,7 @@ from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
 from tests.telemetry.vehicles import px4
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, mission
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, mission
 from tests.telemetry.vehicles.vehicle import Vehicle
 
 RULES = CommandRules()
@@ -24,13 +24,13 @@ MODES = {"px4": {"mission": 4, "hold": 3, "return": 5, "land": 6}, "ardupilot": 
 PARAMETERS = {"altitude_relative_m": 12.0, "speed_mps": 4.5}
 
 
-def vehicle_of(flavour: str, *, mode: str = "", in_air: bool = False) -> Vehicle:
-    vehicle = FLAVOURS[flavour]()
+def vehicle_of(autopilot_type: str, *, mode: str = "", in_air: bool = False) -> Vehicle:
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     vehicle.heartbeats = True
     vehicle.lists[0] += mission(7)  # type: ignore[index]
     vehicle.is_armed = vehicle.is_in_air = in_air
-    number = MODES[flavour].get(mode, 0)
-    vehicle.custom_mode = (4 << 16 | number << 24) if flavour == "px4" and mode else number
+    number = MODES[autopilot_type].get(mode, 0)
+    vehicle.custom_mode = (4 << 16 | number << 24) if autopilot_type == "px4" and mode else number
     return vehicle
 
 
@@ -47,7 +47,7 @@ def reported(
     home = mavlink.MAVLink_home_position_message(554000000, 98000000, 20000, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
     for message in [*vehicle.reports(), home]:
         state.receive(mavlink.MAVLink(None).parse_char(message.pack(frames)), 0.0)
-    keeper = CommandDriver(order, state, ENDS, RULES, parameters=parameters, **more)
+    keeper = CommandDriver(order, state, ADDRESSING, RULES, parameters=parameters, **more)
     channel = Channel(keeper, vehicle, link or Link(), seed, listeners=[state])
     return channel.run(), channel
 

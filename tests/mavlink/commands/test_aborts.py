@@ -22,26 +22,26 @@ from tests.mavlink.commands.orders_given import (
     vehicle_of,
 )
 from tests.mavlink.mission_sync.test_upload import received
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_on_the_ground_disarms(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_abort_on_the_ground_disarms(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     vehicle.is_armed = True
     assert reported(vehicle, Order.ABORT)[0] == APPLIED
     assert not vehicle.is_armed
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_lands_where_the_return_is_refused(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_abort_lands_where_the_return_is_refused(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type, mode="mission", in_air=True)
     carried_out = vehicle.carry_out
-    back = float(MODES[flavour]["return"])
+    back = float(MODES[autopilot_type]["return"])
     vehicle.carry_out = lambda command, values: 2 if back in values[1:3] else carried_out(command, values)  # type: ignore[method-assign]
     assert reported(vehicle, Order.ABORT)[0] == APPLIED
-    assert mode_of(vehicle) == MODES[flavour]["land"]
+    assert mode_of(vehicle) == MODES[autopilot_type]["land"]
 
 
 @dataclass
@@ -70,18 +70,18 @@ class LeavesGround:
 
 @pytest.mark.parametrize("answers", [True, False])
 @pytest.mark.parametrize("after_s", [0.1, 0.9, 2.0])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_during_the_take_off_calls_the_uav_back(flavour: str, after_s: float, answers: bool):
-    vehicle = vehicle_of(flavour, mode="mission")
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_abort_during_the_take_off_calls_the_uav_back(autopilot_type: str, after_s: float, answers: bool):
+    vehicle = vehicle_of(autopilot_type, mode="mission")
     LeavesGround(vehicle, after_s, answers)
     outcome, channel = reported(vehicle, Order.ABORT)
-    assert (outcome.state, mode_of(vehicle)) == (CommandEnd.APPLIED, MODES[flavour]["return"])
+    assert (outcome.state, mode_of(vehicle)) == (CommandEnd.APPLIED, MODES[autopilot_type]["return"])
     assert channel.now_s < after_s + 3.0
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission")
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type, mode="mission")
     state = VehicleState(vehicle.system)
     vehicle.is_armed = True
     for message in vehicle.reports():
@@ -89,27 +89,27 @@ def test_abort_with_a_landed_state_that_is_too_old_does_not_disarm(flavour: str)
     vehicle.is_in_air = True
     beat = received(vehicle.reports()[0])  # EXTENDED_SYS_STATE is lost from now on
     state.receive(beat, RULES.fresh_s + 0.5)
-    keeper = CommandDriver(Order.ABORT, state, ENDS, RULES)
+    keeper = CommandDriver(Order.ABORT, state, ADDRESSING, RULES)
     assert [message.command for message in keeper.start(RULES.fresh_s + 0.6)] == [SET_MODE]
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_abort_that_is_refused_every_way_is_tried_again(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_abort_that_is_refused_every_way_is_tried_again(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type, mode="mission", in_air=True)
     carried_out, noes = vehicle.carry_out, iter([2, 2])  # return and land are refused once
 
     vehicle.carry_out = lambda command, values: next(noes, None) or carried_out(command, values)  # type: ignore[method-assign]
     assert reported(vehicle, Order.ABORT)[0] == APPLIED
-    assert mode_of(vehicle) == MODES[flavour]["return"]
+    assert mode_of(vehicle) == MODES[autopilot_type]["return"]
 
 
 @pytest.mark.parametrize("order", [Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(flavour: str, order: Order):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(autopilot_type: str, order: Order):
     """It was sent before, and a radio held it back."""
-    vehicle, state = vehicle_of(flavour, mode="mission", in_air=True), VehicleState(7)
+    vehicle, state = vehicle_of(autopilot_type, mode="mission", in_air=True), VehicleState(7)
     flying = vehicle.custom_mode
-    keeper = CommandDriver(order, state, ENDS, RULES, unsettled_until_s=2.0)
+    keeper = CommandDriver(order, state, ADDRESSING, RULES, unsettled_until_s=2.0)
     frames = mavlink.MAVLink(None, srcSystem=vehicle.system, srcComponent=1)
     now_s, sent = 0.0, 0
 
@@ -137,4 +137,4 @@ def test_a_start_that_arrives_after_what_makes_it_safe_does_not_last(flavour: st
         if keeper.outcome is not None:
             break
     assert (keeper.outcome, sent) == (APPLIED, 2) and now_s >= 2.0
-    assert mode_of(vehicle) == MODES[flavour]["return" if order is Order.ABORT else order.value]
+    assert mode_of(vehicle) == MODES[autopilot_type]["return" if order is Order.ABORT else order.value]

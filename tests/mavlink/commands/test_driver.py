@@ -5,7 +5,7 @@ import math
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
 from mavlink.commands.driver import CommandDriver
@@ -31,13 +31,13 @@ from tests.mavlink.mission_sync.test_upload import received
 from tests.mavlink.test_vehicle_state import heartbeat
 from tests.telemetry.vehicles import ardupilot, px4
 from tests.telemetry.vehicles.channel import Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES
 from tests.telemetry.vehicles.vehicle import GROUND
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_arming_is_seen_in_the_heartbeat(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_arming_is_seen_in_the_heartbeat(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     outcome, _ = reported(vehicle, Order.ARM)
     assert (outcome, vehicle.is_armed) == (APPLIED, True)
 
@@ -64,19 +64,19 @@ def test_copter_starts_by_guided_arming_auto_and_the_start():
 
 
 @pytest.mark.parametrize("knows_command", [True, False])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_start_on_the_ground_begins_with_the_first_item(flavour: str, knows_command: bool):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_start_on_the_ground_begins_with_the_first_item(autopilot_type: str, knows_command: bool):
     """Not where the last flight was broken off."""
-    vehicle = vehicle_of(flavour)
+    vehicle = vehicle_of(autopilot_type)
     vehicle.current_item, vehicle.knows_set_current = 5, knows_command
     outcome, channel = reported(vehicle, Order.START)
-    assert (outcome, vehicle.is_in_air, vehicle.current_item) == (APPLIED, True, FIRST_ITEM[flavour])
+    assert (outcome, vehicle.is_in_air, vehicle.current_item) == (APPLIED, True, FIRST_ITEM[autopilot_type])
     assert channel.to_vehicle[0].command == SET_ITEM
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_start_does_not_begin_before_the_first_item_is_seen(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_start_does_not_begin_before_the_first_item_is_seen(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     vehicle.current_item = 5
     vehicle._set_current = lambda item: 0  # type: ignore[method-assign]
     outcome, channel = reported(vehicle, Order.START)
@@ -85,9 +85,9 @@ def test_start_does_not_begin_before_the_first_item_is_seen(flavour: str):
     assert not vehicle.is_armed
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_start_in_the_air_goes_on_where_it_was_held(flavour: str):
-    vehicle = vehicle_of(flavour, mode="hold", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_start_in_the_air_goes_on_where_it_was_held(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type, mode="hold", in_air=True)
     vehicle.current_item = 5
     reported(vehicle, Order.START)
     assert vehicle.current_item == 5
@@ -98,7 +98,7 @@ def test_uav_that_does_not_tell_whether_it_flies_is_not_set_in_motion(order: Ord
     keeper, state = fresh()
     state.receive(received(mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)), 0.0)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), RULES.fresh_s + 0.1)
-    keeper = CommandDriver(order, state, ENDS, RULES)
+    keeper = CommandDriver(order, state, ADDRESSING, RULES)
     assert keeper.start(RULES.fresh_s + 0.2) == []
     assert keeper.outcome is not None and keeper.outcome.code == "not-told"
 
@@ -111,38 +111,38 @@ def test_yes_to_a_start_without_leaving_the_ground_is_no_start():
     assert channel.now_s > RULES.lift_off_s
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_take_off_lifts_to_the_height_that_the_flavour_wants(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_take_off_lifts_to_the_height_that_the_flavour_wants(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     outcome, channel = reported(vehicle, Order.TAKE_OFF)
     (up,) = [message for message in channel.to_vehicle if message.command == TAKEOFF]
     assert (outcome, vehicle.is_in_air) == (APPLIED, True)
-    assert up.param7 == (32.0 if flavour == "px4" else 12.0)
-    assert commands(channel) == ([TAKEOFF, ARM] if flavour == "px4" else [SET_MODE, ARM, TAKEOFF])
+    assert up.param7 == (32.0 if autopilot_type == "px4" else 12.0)
+    assert commands(channel) == ([TAKEOFF, ARM] if autopilot_type == "px4" else [SET_MODE, ARM, TAKEOFF])
 
 
 @pytest.mark.parametrize(
     ("order", "mode"),
     [(Order.PAUSE, "hold"), (Order.HOLD, "hold"), (Order.RETURN, "return"), (Order.LAND, "land"), (Order.ABORT, "return")],
 )
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_uav_in_the_air_changes_its_mode(flavour: str, order: Order, mode: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_uav_in_the_air_changes_its_mode(autopilot_type: str, order: Order, mode: str):
+    vehicle = vehicle_of(autopilot_type, mode="mission", in_air=True)
     outcome, channel = reported(vehicle, order)
-    assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[flavour][mode], [SET_MODE])
+    assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[autopilot_type][mode], [SET_MODE])
 
 
 @pytest.mark.parametrize("order", [Order.RESUME, Order.START])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_held_uav_goes_on_with_its_mission(flavour: str, order: Order):
-    vehicle = vehicle_of(flavour, mode="hold", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_held_uav_goes_on_with_its_mission(autopilot_type: str, order: Order):
+    vehicle = vehicle_of(autopilot_type, mode="hold", in_air=True)
     outcome, channel = reported(vehicle, order)
-    assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[flavour]["mission"], [SET_MODE])
+    assert (outcome, mode_of(vehicle), commands(channel)) == (APPLIED, MODES[autopilot_type]["mission"], [SET_MODE])
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_speed_is_changed_by_its_yes(flavour: str):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_speed_is_changed_by_its_yes(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type, mode="mission", in_air=True)
     outcome, channel = reported(vehicle, Order.CHANGE_SPEED)
     assert outcome == APPLIED
     assert (channel.to_vehicle[0].command, channel.to_vehicle[0].param1, channel.to_vehicle[0].param2) == (SPEED, 1.0, 4.5)
@@ -156,15 +156,15 @@ def test_speed_is_changed_by_its_yes(flavour: str):
         (Order.DISARM, "", False), (Order.TAKE_OFF, "hold", True), (Order.ABORT, "land", True),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_uav_that_is_so_already_is_told_nothing(flavour: str, order: Order, mode: str, in_air: bool):
-    outcome, channel = reported(vehicle_of(flavour, mode=mode, in_air=in_air), order)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_uav_that_is_so_already_is_told_nothing(autopilot_type: str, order: Order, mode: str, in_air: bool):
+    outcome, channel = reported(vehicle_of(autopilot_type, mode=mode, in_air=in_air), order)
     assert (outcome.state, outcome.code, channel.to_vehicle) == (CommandEnd.APPLIED, "already", [])
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_repeated_order_changes_nothing(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_repeated_order_changes_nothing(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     reported(vehicle, Order.START)
     taken = list(vehicle.taken)
     assert reported(vehicle, Order.START)[0].code == "already"
@@ -187,9 +187,9 @@ def test_state_of_before_the_last_command_is_not_taken_for_the_present_one():
         (mavlink.MAV_RESULT_TEMPORARILY_REJECTED, "temporarily-rejected"),
     ],
 )
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_refused_arming_is_told_in_the_vehicles_words(flavour: str, result: int, code: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_refused_arming_is_told_in_the_vehicles_words(autopilot_type: str, result: int, code: str):
+    vehicle = vehicle_of(autopilot_type)
     vehicle.denied = {ARM: result}
     vehicle.says = "Need Position Estimate"
     outcome, channel = reported(vehicle, Order.ARM)
@@ -199,18 +199,18 @@ def test_refused_arming_is_told_in_the_vehicles_words(flavour: str, result: int,
     assert not vehicle.is_armed
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_yes_without_an_effect_is_asked_for_again(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_yes_without_an_effect_is_asked_for_again(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     vehicle.deaf_commands = 2
     outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome, commands(channel)) == (APPLIED, [ARM] * 3)
     assert [message.confirmation for message in channel.to_vehicle] == [0, 1, 2]
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_yes_that_never_has_an_effect_is_a_failure(flavour: str):
-    vehicle = vehicle_of(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_yes_that_never_has_an_effect_is_a_failure(autopilot_type: str):
+    vehicle = vehicle_of(autopilot_type)
     vehicle.deaf_commands = 100
     outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome.state, outcome.code, len(channel.to_vehicle)) == (CommandEnd.FAILED, "no-effect", 1 + RULES.retries)
@@ -239,10 +239,10 @@ def test_abort_that_nobody_answers_is_not_turned_into_a_landing():
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("order", [Order.ARM, Order.START, Order.TAKE_OFF])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_orders_on_the_ground_get_through_a_bad_link(flavour: str, order: Order, seed: int):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_orders_on_the_ground_get_through_a_bad_link(autopilot_type: str, order: Order, seed: int):
     """Either it is done and said to be done, or it failed and says so; ArduCopter disarms itself meanwhile."""
-    vehicle = vehicle_of(flavour)
+    vehicle = vehicle_of(autopilot_type)
     outcome, _ = reported(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
     if outcome.state is CommandEnd.APPLIED:
         assert vehicle.is_in_air or order is Order.ARM
@@ -252,18 +252,18 @@ def test_orders_on_the_ground_get_through_a_bad_link(flavour: str, order: Order,
 
 @pytest.mark.parametrize("seed", range(20))
 @pytest.mark.parametrize("order", [Order.PAUSE, Order.RETURN, Order.LAND, Order.ABORT])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_orders_in_the_air_get_through_a_bad_link(flavour: str, order: Order, seed: int):
-    vehicle = vehicle_of(flavour, mode="mission", in_air=True)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_orders_in_the_air_get_through_a_bad_link(autopilot_type: str, order: Order, seed: int):
+    vehicle = vehicle_of(autopilot_type, mode="mission", in_air=True)
     outcome, _ = reported(vehicle, order, link=Link(0.3, duplicates=0.1, reordered=0.1), seed=seed)
     assert outcome == APPLIED
-    assert mode_of(vehicle) in (MODES[flavour]["hold"], MODES[flavour]["return"], MODES[flavour]["land"])
+    assert mode_of(vehicle) in (MODES[autopilot_type]["hold"], MODES[autopilot_type]["return"], MODES[autopilot_type]["land"])
 
 
 def fresh(order: Order = Order.ARM) -> tuple[CommandDriver, VehicleState]:
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), 0.0)
-    keeper = CommandDriver(order, state, ENDS, RULES, parameters=PARAMETERS)
+    keeper = CommandDriver(order, state, ADDRESSING, RULES, parameters=PARAMETERS)
     assert len(keeper.start(0.0)) == 1
     return keeper, state
 
@@ -310,7 +310,7 @@ def test_vehicle_at_work_is_waited_for_and_not_asked_again():
 def test_old_heartbeat_is_no_proof_of_being_so_already():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandDriver(Order.ARM, state, ENDS, RULES)
+    keeper = CommandDriver(Order.ARM, state, ADDRESSING, RULES)
     assert len(keeper.start(RULES.fresh_s + 0.1)) == 1
 
 
@@ -318,7 +318,7 @@ def test_heartbeat_of_before_the_order_is_no_proof_of_being_so_already():
     """It held, and was told otherwise by somebody else before it could report again."""
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
-    keeper = CommandDriver(Order.HOLD, state, ENDS, RULES)
+    keeper = CommandDriver(Order.HOLD, state, ADDRESSING, RULES)
     assert keeper.start(0.5) == []
     assert keeper.outcome is None
     flies = heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 4 << 24)
@@ -329,7 +329,7 @@ def test_heartbeat_of_before_the_order_is_no_proof_of_being_so_already():
 def test_order_is_sent_where_no_heartbeat_shows_that_it_is_needless():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
-    keeper = CommandDriver(Order.HOLD, state, ENDS, RULES)
+    keeper = CommandDriver(Order.HOLD, state, ADDRESSING, RULES)
     assert keeper.start(0.5) == []
     assert [message.command for message in keeper.tick(0.5 + RULES.fresh_s)] == [SET_MODE]
 
@@ -347,7 +347,7 @@ def test_order_is_sent_where_no_heartbeat_shows_that_it_is_needless():
 def test_order_that_says_too_little_is_refused(order: Order, parameters: dict[str, float], code: str):
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4), 0.0)
-    keeper = CommandDriver(order, state, ENDS, RULES, parameters=parameters)
+    keeper = CommandDriver(order, state, ADDRESSING, RULES, parameters=parameters)
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert (keeper.outcome.state, keeper.outcome.code) == (CommandEnd.FAILED, code)
@@ -361,8 +361,8 @@ def test_resuming_on_the_ground_is_refused():
 @pytest.mark.parametrize("order", list(Order))
 def test_other_autopilot_is_told_nothing(order: Order):
     state = VehicleState(7)
-    state.flavour = Flavour.OTHER
-    keeper = CommandDriver(order, state, ENDS, RULES, parameters=PARAMETERS)
+    state.autopilot_type = AutopilotType.OTHER
+    keeper = CommandDriver(order, state, ADDRESSING, RULES, parameters=PARAMETERS)
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert keeper.outcome.code == "autopilot"
@@ -371,7 +371,7 @@ def test_other_autopilot_is_told_nothing(order: Order):
 def test_effect_that_was_reported_before_the_command_is_no_effect():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandDriver(Order.ARM, state, ENDS, RULES, unsettled_until_s=1.0)
+    keeper = CommandDriver(Order.ARM, state, ADDRESSING, RULES, unsettled_until_s=1.0)
     assert len(keeper.start(0.5)) == 1
     answer(keeper, mavlink.MAV_RESULT_ACCEPTED, 0.6)
     assert keeper.outcome is None
@@ -384,7 +384,7 @@ def test_effect_that_was_reported_before_the_command_is_no_effect():
 def test_the_late_answer_to_an_earlier_speed_is_no_answer_to_a_later_one():
     state = VehicleState(7)
     state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129), 0.0)
-    keeper = CommandDriver(Order.CHANGE_SPEED, state, ENDS, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
+    keeper = CommandDriver(Order.CHANGE_SPEED, state, ADDRESSING, RULES, parameters=PARAMETERS, unsettled_until_s=2.0)
     assert keeper.start(0.5) == []
     message = received(mavlink.MAVLink_command_ack_message(SPEED, mavlink.MAV_RESULT_ACCEPTED, 0, 0, *GROUND))
     assert keeper.receive(message, 1.0) == [] and keeper.outcome is None

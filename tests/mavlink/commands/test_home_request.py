@@ -3,7 +3,7 @@
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends
+from mavlink.addressing import Addressing
 from mavlink.commands.home_request import HomeReading
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
@@ -23,7 +23,7 @@ def home(state: VehicleState, now_s: float) -> mavlink.MAVLink_message:
 def test_a_home_is_asked_for_by_either_command(answers):
     state = VehicleState(7)
     home(state, 1.0)
-    reading = HomeReading(state, Ends(7), TransferRules())
+    reading = HomeReading(state, Addressing(7), TransferRules())
     (asked,), now_s = reading.start(10.0), 10.0
     while asked.command != answers:
         assert reading.outcome is None, "the home that was told before is no answer"
@@ -35,7 +35,7 @@ def test_a_home_is_asked_for_by_either_command(answers):
 
 def test_a_vehicle_that_says_nothing_is_given_up():
     rules = TransferRules()
-    reading, asked = HomeReading(VehicleState(7), Ends(7), rules), 1
+    reading, asked = HomeReading(VehicleState(7), Addressing(7), rules), 1
     reading.start(0.0)
     while reading.wake_at_s is not None:
         asked += len(reading.tick(reading.wake_at_s))

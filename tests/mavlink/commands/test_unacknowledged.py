@@ -3,8 +3,8 @@
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends
-from mavlink.autopilot_type import Flavour
+from mavlink.addressing import Addressing
+from mavlink.autopilot_type import AutopilotType
 from mavlink.commands.actions import Order, pause_s, unacknowledged_message
 
 PX4_MODES = {Order.HOLD: 3, Order.RETURN: 5, Order.ABORT: 5, Order.LAND: 6}
@@ -13,8 +13,8 @@ COPTER_MODES = {Order.HOLD: 17, Order.RETURN: 6, Order.ABORT: 6, Order.LAND: 9}
 
 @pytest.mark.parametrize("order", PX4_MODES)
 def test_a_mode_is_asked_for_and_nothing_else(order):
-    px4 = unacknowledged_message(order, Flavour.PX4, Ends(7), 0)
-    copter = unacknowledged_message(order, Flavour.ARDUPILOT, Ends(7), 300)
+    px4 = unacknowledged_message(order, AutopilotType.PX4, Addressing(7), 0)
+    copter = unacknowledged_message(order, AutopilotType.ARDUPILOT, Addressing(7), 300)
     assert {px4.command, copter.command} == {mavlink.MAV_CMD_DO_SET_MODE}
     assert {px4.target_system, copter.target_system} == {7}
     assert (px4.param1, px4.param2, px4.param3) == (1.0, 4.0, PX4_MODES[order])

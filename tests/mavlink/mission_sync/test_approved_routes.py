@@ -15,12 +15,12 @@ from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import start_and_end, waypoint
 from tests.mavlink.test_fence import square
 from tests.telemetry.vehicles.channel import Channel
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known
 
 
 @pytest.mark.parametrize("end_action", END_ACTIONS)
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_approved_route_is_held_by_its_hash(flavour: str, end_action: str):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_approved_route_is_held_by_its_hash(autopilot_type: str, end_action: str):
     tasks = [Task(kind, hold_s) for kind in TaskKind for hold_s in (0.0, 3.4, 12.0)]
     points = [
         waypoint(number, WaypointKind.TARGET, task=task, target=number, relative_m=60.0 + 1.37 * number, speed_mps=3.3 + 0.1 * number)
@@ -31,6 +31,6 @@ def test_approved_route_is_held_by_its_hash(flavour: str, end_action: str):
     rally = rally_items([(LonLat(9.801, 55.401), 42.3)])
     (load,) = flight_loads(route, fence=fence.items, rally=rally)
     load = with_points_between(load, 50.0)
-    vehicle = FLAVOURS[flavour]()
-    outcome = Channel(MissionSync(load, known(vehicle), ENDS, TransferRules()), vehicle).run()
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
+    outcome = Channel(MissionSync(load, known(vehicle), ADDRESSING, TransferRules()), vehicle).run()
     assert (outcome.state, outcome.sha256) == (SyncState.READY, load.content_sha256), outcome.differences

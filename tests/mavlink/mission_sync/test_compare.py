@@ -8,15 +8,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.compare import Found, are_identical, differences, found, mix_in_words
-from mavlink.mission_sync.wire import Held, HeldItem, held_item
+from mavlink.mission_sync.wire import OnboardItem, OnboardList, onboard_item
 from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot
-from tests.telemetry.vehicles.loads import FLAVOURS, load, mission, polygon, rally, waypoint
+from tests.telemetry.vehicles.loads import AUTOPILOT_TYPES, load, mission, polygon, rally, waypoint
 from tests.telemetry.vehicles.vehicle import item_of
 
-PX4, ARDUPILOT = Flavour.PX4, Flavour.ARDUPILOT
+PX4, ARDUPILOT = AutopilotType.PX4, AutopilotType.ARDUPILOT
 altitudes = st.floats(-500, 9_000, width=32)
 
 
@@ -43,30 +43,32 @@ def sent_items(draw: st.DrawFn) -> MissionItem:
     return MissionItem(command, mavlink.MAV_FRAME_MISSION, values.get(command, (0.0,) * 4))
 
 
-def through(flavour: Flavour, items: list[MissionItem] | tuple[MissionItem, ...], kind: MissionType = MissionType.MISSION) -> Held:
+def through(
+    autopilot_type: AutopilotType, items: list[MissionItem] | tuple[MissionItem, ...], kind: MissionType = MissionType.MISSION
+) -> OnboardList:
     """As the vehicle gives back what it was given, over the wire both times."""
     frames = mavlink.MAVLink(None)
-    vehicle = FLAVOURS[flavour.value]()
+    vehicle = AUTOPILOT_TYPES[autopilot_type.value]()
     held = []
     for number, item in enumerate(items):
         sent = mavlink.MAVLink_mission_item_int_message(
             7, 1, number, item.frame, item.command, 0, 1, *item.parameters, item.latitude_e7, item.longitude_e7, item.altitude_m, kind
         )
         taken = item_of(mavlink.MAVLink(None).parse_char(sent.pack(frames)))
-        held.append(held_item(mavlink.MAVLink(None).parse_char(vehicle._as_read(taken, number, kind).pack(frames))))
+        held.append(onboard_item(mavlink.MAVLink(None).parse_char(vehicle._as_read(taken, number, kind).pack(frames))))
     return tuple(held)
 
 
 @given(st.lists(sent_items(), max_size=8))
 def test_what_the_vehicles_make_of_an_approved_list_is_no_difference(items: list[MissionItem]):
-    for flavour in (PX4, ARDUPILOT):
-        assert differences(items, through(flavour, items), flavour) == ()
+    for autopilot_type in (PX4, ARDUPILOT):
+        assert differences(items, through(autopilot_type, items), autopilot_type) == ()
 
 
-@pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
-def test_fence_and_rally_points_come_back_the_same(flavour: Flavour):
-    assert differences(polygon(0, 5), through(flavour, polygon(0, 5), MissionType.FENCE), flavour) == ()
-    assert differences(rally(), through(flavour, rally(), MissionType.RALLY), flavour) == ()
+@pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
+def test_fence_and_rally_points_come_back_the_same(autopilot_type: AutopilotType):
+    assert differences(polygon(0, 5), through(autopilot_type, polygon(0, 5), MissionType.FENCE), autopilot_type) == ()
+    assert differences(rally(), through(autopilot_type, rally(), MissionType.RALLY), autopilot_type) == ()
 
 
 CHANGES = [
@@ -85,13 +87,13 @@ CHANGES = [
 
 
 @pytest.mark.parametrize(("field", "change"), CHANGES)
-@pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
+@pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
 @given(place=st.integers(0, 9))
-def test_anything_else_is_a_difference_named_by_its_item(flavour: Flavour, field: str, change, place: int):
+def test_anything_else_is_a_difference_named_by_its_item(autopilot_type: AutopilotType, field: str, change, place: int):
     items = [waypoint(number, altitude_m=30.0 + number) for number in range(10)]
-    held = list(through(flavour, items))
-    held[place] = HeldItem(change(held[place].item))
-    (difference,) = differences(items, tuple(held), flavour)
+    held = list(through(autopilot_type, items))
+    held[place] = OnboardItem(change(held[place].item))
+    (difference,) = differences(items, tuple(held), autopilot_type)
     assert (difference.item, difference.field) == (place, field)
 
 
@@ -122,19 +124,19 @@ def test_yaw_that_px4_keeps_in_radians_is_no_difference():
     assert differences([item], through(PX4, [item]), PX4) == ()
 
 
-@pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
+@pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
 @given(lost=st.integers(0, 11))
-def test_missing_items_are_named(flavour: Flavour, lost: int):
+def test_missing_items_are_named(autopilot_type: AutopilotType, lost: int):
     items = mission(12)
-    reported = differences(items, through(flavour, items)[:lost], flavour)
+    reported = differences(items, through(autopilot_type, items)[:lost], autopilot_type)
     assert [difference.item for difference in reported] == list(range(lost, 12))
     assert all(difference.held == "missing" for difference in reported)
 
 
-@pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
-def test_items_too_many_are_named(flavour: Flavour):
+@pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
+def test_items_too_many_are_named(autopilot_type: AutopilotType):
     items = mission(12)
-    reported = differences(items[:10], through(flavour, items), flavour)
+    reported = differences(items[:10], through(autopilot_type, items), autopilot_type)
     assert [(difference.item, difference.wanted) for difference in reported] == [(10, "nothing"), (11, "nothing")]
 
 
@@ -175,9 +177,9 @@ NEW, OLD = load(9).mission, load(7, east=500).mission
         (NEW[:3] + load(7, east=9_000).mission[3:], Found.FOREIGN),
     ],
 )
-@pytest.mark.parametrize("flavour", [PX4, ARDUPILOT])
-def test_list_is_told_from_what_was_approved(flavour: Flavour, held: tuple[MissionItem, ...], reported: Found):
-    assert found(through(flavour, held), NEW, [OLD], flavour) is reported
+@pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
+def test_list_is_told_from_what_was_approved(autopilot_type: AutopilotType, held: tuple[MissionItem, ...], reported: Found):
+    assert found(through(autopilot_type, held), NEW, [OLD], autopilot_type) is reported
 
 
 def test_mix_is_told_by_items():

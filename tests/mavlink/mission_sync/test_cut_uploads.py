@@ -2,56 +2,56 @@
 
 import pytest
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.compare import Found, differences
 from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.mavlink.mission_sync.test_lossy_upload import stated_what_is_there
 from tests.telemetry.vehicles.channel import Channel
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, polygon
 from tests.telemetry.vehicles.vehicle import Vehicle
 
 NEW = load(12, fence=polygon(0, 5))
 OLD = load(9, east=40_000, fence=polygon(9_000))
 
 
-def vehicle_with_old(flavour: str) -> Vehicle:
-    vehicle = FLAVOURS[flavour]()
+def vehicle_with_old(autopilot_type: str) -> Vehicle:
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     for kind in MissionType:
         vehicle.lists[kind] += OLD.of(kind)
     return vehicle
 
 
 def keeper_for(vehicle: Vehicle) -> MissionSync:
-    return MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    return MissionSync(NEW, known(vehicle), ADDRESSING, TransferRules(), known=[OLD])
 
 
-def messages_in_all(flavour: str) -> int:
-    vehicle = vehicle_with_old(flavour)
+def messages_in_all(autopilot_type: str) -> int:
+    vehicle = vehicle_with_old(autopilot_type)
     channel = Channel(keeper_for(vehicle), vehicle)
     assert channel.run().state is SyncState.READY
     return len(channel.to_vehicle)
 
 
 def contents(vehicle: Vehicle, kind: MissionType) -> Found:
-    flavour = Flavour(type(vehicle).__name__.lower())
-    held = held_list(tuple(vehicle.held(kind)), kind, flavour)
-    if not differences(NEW.of(kind), held, flavour):
+    autopilot_type = AutopilotType(type(vehicle).__name__.lower())
+    held = onboard_list(tuple(vehicle.held(kind)), kind, autopilot_type)
+    if not differences(NEW.of(kind), held, autopilot_type):
         return Found.APPROVED
-    if not differences(OLD.of(kind), held, flavour):
+    if not differences(OLD.of(kind), held, autopilot_type):
         return Found.KNOWN
     return Found.MIXED if held else Found.NOTHING
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_ground_station_dies_at_each_message(flavour: str):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_ground_station_dies_at_each_message(autopilot_type: str):
     """PX4 holds a whole list of one or the other after each cut; ArduPilot may hold a mix, which the next ground station names."""
     mixes = 0
-    for sent in range(messages_in_all(flavour)):
-        vehicle = vehicle_with_old(flavour)
+    for sent in range(messages_in_all(autopilot_type)):
+        vehicle = vehicle_with_old(autopilot_type)
         channel = Channel(keeper_for(vehicle), vehicle, ground_dies_after=sent)
         channel.run()
         channel.let_pass(20.0)
@@ -59,27 +59,27 @@ def test_ground_station_dies_at_each_message(flavour: str):
         next_one = keeper_for(vehicle)
         outcome = Channel(next_one, vehicle).run()
         mixed = {kind for kind in MissionType if found[kind] is Found.MIXED}
-        assert not mixed or flavour == "ardupilot", sent
+        assert not mixed or autopilot_type == "ardupilot", sent
         assert {mix.kind for mix in outcome.mixes} == mixed, sent
         assert {kind: next_one.found_before[kind] for kind in (MissionType.MISSION, MissionType.FENCE)} == {
             kind: found[kind] for kind in (MissionType.MISSION, MissionType.FENCE)
         }, sent
         assert outcome.state is SyncState.READY
         mixes += len(mixed)
-    assert mixes > 0 if flavour == "ardupilot" else mixes == 0
+    assert mixes > 0 if autopilot_type == "ardupilot" else mixes == 0
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_vehicle_dies_at_each_message(flavour: str):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_vehicle_dies_at_each_message(autopilot_type: str):
     """What the ground station says of a vehicle that fell silent agrees with what is in its memory; back again, it is put right."""
     states = set()
-    for received in range(messages_in_all(flavour)):
-        vehicle = vehicle_with_old(flavour)
+    for received in range(messages_in_all(autopilot_type)):
+        vehicle = vehicle_with_old(autopilot_type)
         outcome = Channel(keeper_for(vehicle), vehicle, vehicle_dies_after=received).run()
         states.add(outcome.state)
         if outcome.state is SyncState.READY:
             continue  # only the last acknowledgement, of what was read, was lost
-        if flavour == "px4":
+        if autopilot_type == "px4":
             assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), received
         assert stated_what_is_there(outcome, vehicle, NEW, OLD), (received, outcome)
         vehicle.restart()
@@ -88,15 +88,15 @@ def test_vehicle_dies_at_each_message(flavour: str):
 
 
 @pytest.mark.parametrize("number", range(1, 12))
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(flavour: str, number: int):
-    vehicle = vehicle_with_old(flavour)
-    on_the_wire = number + 1 if flavour == "ardupilot" else number
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(autopilot_type: str, number: int):
+    vehicle = vehicle_with_old(autopilot_type)
+    on_the_wire = number + 1 if autopilot_type == "ardupilot" else number
     vehicle.refuses = {on_the_wire: 3}  # type: ignore[attr-defined]
-    keeper = MissionSync(load(12), known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(load(12), known(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     outcome = Channel(keeper, vehicle).run()
     assert outcome.code == "unsupported"
-    if flavour == "px4":
+    if autopilot_type == "px4":
         assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.INTACT, Found.KNOWN)
     else:
         assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.CLEARED, Found.NOTHING)

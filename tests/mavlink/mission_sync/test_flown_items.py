@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.mission_sync.flown_items import FlightWatch, Flown
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
-from tests.telemetry.vehicles.loads import FLAVOURS, mission
+from tests.telemetry.vehicles.loads import AUTOPILOT_TYPES, mission
 
 MODES = {"px4": (4 << 16 | 4 << 24, 4 << 16 | 3 << 24), "ardupilot": (3, 17)}  # the mission's, and another
 LAND = MissionItem(mavlink.MAV_CMD_NAV_LAND, 6, (0.0, 0.0, 0.0, 0.0))
@@ -17,9 +17,9 @@ HOVERING = FlightLoad(mission(8)[:-1])
 
 
 class Watched:
-    def __init__(self, flavour: str) -> None:
+    def __init__(self, autopilot_type: str) -> None:
         self.now_s = 1.0
-        self.flavour, self.offset = flavour, 1 if flavour == "ardupilot" else 0
+        self.autopilot_type, self.offset = autopilot_type, 1 if autopilot_type == "ardupilot" else 0
         self.state, self.watch, self.reported = VehicleState(7), FlightWatch(), []
         self._frames = mavlink.MAVLink(None, srcSystem=7, srcComponent=1)
 
@@ -29,9 +29,11 @@ class Watched:
         self.reported += self.watch.look(self.state, parsed.get_type())
 
     def is_seen(self, *, armed: bool, in_air: bool, in_mission: bool = True) -> None:
-        mode = MODES[self.flavour][0 if in_mission else 1]
+        mode = MODES[self.autopilot_type][0 if in_mission else 1]
         self.feed(mavlink.MAVLink_extended_sys_state_message(0, 2 if in_air else 1))
-        self.feed(mavlink.MAVLink_heartbeat_message(2, FLAVOURS[self.flavour].autopilot, 1 | (128 if armed else 0), mode, 4, 3))
+        self.feed(
+            mavlink.MAVLink_heartbeat_message(2, AUTOPILOT_TYPES[self.autopilot_type].autopilot, 1 | (128 if armed else 0), mode, 4, 3)
+        )
 
     def goes_to(self, item: int) -> None:
         self.feed(mavlink.MAVLink_mission_current_message(item + self.offset))
@@ -40,9 +42,9 @@ class Watched:
         self.feed(mavlink.MAVLink_mission_item_reached_message(item + self.offset))
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_flight_down_after_its_landing_was_flown(flavour):
-    uav = Watched(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_flight_down_after_its_landing_was_flown(autopilot_type):
+    uav = Watched(autopilot_type)
     uav.is_seen(armed=True, in_air=True)
     uav.goes_to(5)
     uav.reaches(5)
@@ -56,9 +58,9 @@ def test_a_flight_down_after_its_landing_was_flown(flavour):
     assert not down.is_whole(HOVERING), "whose last place was not reached"
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_flight_that_hovers_was_flown_once_it_is_down(flavour):
-    uav = Watched(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_flight_that_hovers_was_flown_once_it_is_down(autopilot_type):
+    uav = Watched(autopilot_type)
     uav.is_seen(armed=True, in_air=True)
     uav.goes_to(6)
     uav.reaches(6)
@@ -67,18 +69,18 @@ def test_a_flight_that_hovers_was_flown_once_it_is_down(flavour):
     assert uav.reported[-1] == Flown(6, is_down=True) and uav.reported[-1].is_whole(HOVERING)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_flight_that_was_broken_off_was_not_flown(flavour):
-    uav = Watched(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_flight_that_was_broken_off_was_not_flown(autopilot_type):
+    uav = Watched(autopilot_type)
     uav.is_seen(armed=True, in_air=True)
     uav.goes_to(3)
     uav.is_seen(armed=False, in_air=False, in_mission=False)
     assert not uav.reported[-1].is_whole(LANDING) and not uav.reported[-1].is_whole(HOVERING)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_flight_by_hand_tells_nothing_of_the_list(flavour):
-    uav = Watched(flavour)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_flight_by_hand_tells_nothing_of_the_list(autopilot_type):
+    uav = Watched(autopilot_type)
     uav.goes_to(6)
     uav.is_seen(armed=True, in_air=True, in_mission=False)
     uav.reaches(6)
@@ -99,7 +101,7 @@ def test_an_ardupilot_that_has_landed_has_flown_its_list_in_whatever_order_it_te
     uav.reaches(5)
     uav.goes_to(6)
     says = {
-        BEAT: mavlink.MAVLink_heartbeat_message(2, FLAVOURS["ardupilot"].autopilot, 1, 3, 3, 3),
+        BEAT: mavlink.MAVLink_heartbeat_message(2, AUTOPILOT_TYPES["ardupilot"].autopilot, 1, 3, 3, 3),
         ITEM: mavlink.MAVLink_mission_current_message(item),
         DOWN: mavlink.MAVLink_extended_sys_state_message(0, 1),
     }

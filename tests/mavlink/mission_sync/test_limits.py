@@ -7,7 +7,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.intermediate_waypoints import with_points_between
 from mavlink.mission_sync.limits import count_warnings, leg_warnings, too_many
 from mavlink.vehicle_plan import FlightLoad, MissionItem
@@ -56,14 +56,14 @@ def test_vehicle_without_limits_is_not_warned_of(parameters: dict[str, float]):
 
 
 def test_list_that_is_too_long_for_its_flavour_is_told():
-    assert too_many(load(649), Flavour.ARDUPILOT) is None
-    reported = too_many(load(650), Flavour.ARDUPILOT)
+    assert too_many(load(649), AutopilotType.ARDUPILOT) is None
+    reported = too_many(load(650), AutopilotType.ARDUPILOT)
     assert reported is not None
     assert reported.code == "too-many-items"
-    assert too_many(FlightLoad(mission(650)), Flavour.PX4) is None
+    assert too_many(FlightLoad(mission(650)), AutopilotType.PX4) is None
 
 
 def test_list_that_is_too_long_for_most_boards_is_warned_of():
     whole = load(501, fence=polygon(0, 65))
-    assert [warning.words.split()[1] for warning in count_warnings(whole, Flavour.PX4)] == ["mission", "fence"]
-    assert count_warnings(load(500, fence=polygon(0, 64)), Flavour.PX4) == ()
+    assert [warning.words.split()[1] for warning in count_warnings(whole, AutopilotType.PX4)] == ["mission", "fence"]
+    assert count_warnings(load(500, fence=polygon(0, 64)), AutopilotType.PX4) == ()

@@ -8,12 +8,12 @@ import pytest
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.outcome import SyncOutcome, SyncState
 from mavlink.mission_sync.sync import MissionSync
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from tests.cases import long
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, polygon, rally
 from tests.telemetry.vehicles.vehicle import Vehicle
 
 ITEMS = 200
@@ -29,16 +29,16 @@ class Run:
     seconds: float
 
 
-def with_old(flavour: str) -> Vehicle:
-    vehicle = FLAVOURS[flavour]()
+def with_old(autopilot_type: str) -> Vehicle:
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     for kind in MissionType:
         vehicle.lists[kind] += OLD.of(kind)
     return vehicle
 
 
-def run(flavour: str, loss: float, seed: int) -> Run:
-    vehicle = with_old(flavour)
-    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+def run(autopilot_type: str, loss: float, seed: int) -> Run:
+    vehicle = with_old(autopilot_type)
+    keeper = MissionSync(NEW, known(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, Link(loss, duplicates=0.1, reordered=0.1), seed)
     return Run(channel.run(until_s=7_200.0), vehicle, channel.now_s)
 
@@ -58,28 +58,28 @@ def on_the_wire(items: list[MissionItem] | tuple[MissionItem, ...]) -> list[byte
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("loss", [0.0, 0.1, 0.3])
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_upload_over_a_bad_link_arrives_byte_for_byte_and_is_the_only_one(flavour: str, loss: float, seed: int):
-    ran = run(flavour, loss, seed)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_upload_over_a_bad_link_arrives_byte_for_byte_and_is_the_only_one(autopilot_type: str, loss: float, seed: int):
+    ran = run(autopilot_type, loss, seed)
     assert (ran.outcome.state, ran.outcome.sha256) == (SyncState.READY, NEW.content_sha256), ran.outcome
     for kind in MissionType:
         assert on_the_wire(stored(ran.vehicle, kind)) == on_the_wire(NEW.of(kind))
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_upload_over_half_a_link_arrives_or_fails_and_says_what_is_there(flavour: str, seed: int):
-    ran = run(flavour, 0.5, seed)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_upload_over_half_a_link_arrives_or_fails_and_says_what_is_there(autopilot_type: str, seed: int):
+    ran = run(autopilot_type, 0.5, seed)
     assert stated_what_is_there(ran.outcome, ran.vehicle, NEW, OLD), ran.outcome
 
 
 def stated_what_is_there(outcome: SyncOutcome, vehicle: Vehicle, new: FlightLoad, old: FlightLoad) -> bool:
     """The outcome against the vehicle's memory: never ready with a list that is not whole, never called whole where it is mixed."""
     state = known(vehicle)
-    assert state.flavour is not None
-    lists = {kind: held_list(tuple(vehicle.held(kind)), kind, state.flavour) for kind in MissionType}
-    is_new = {kind: not differences(new.of(kind), held, state.flavour) for kind, held in lists.items()}
-    is_old = {kind: not differences(old.of(kind), held, state.flavour) for kind, held in lists.items()}
+    assert state.autopilot_type is not None
+    lists = {kind: onboard_list(tuple(vehicle.held(kind)), kind, state.autopilot_type) for kind in MissionType}
+    is_new = {kind: not differences(new.of(kind), held, state.autopilot_type) for kind, held in lists.items()}
+    is_old = {kind: not differences(old.of(kind), held, state.autopilot_type) for kind, held in lists.items()}
     if outcome.state is SyncState.READY:
         return all(is_new.values()) and outcome.sha256 == new.content_sha256
     assert outcome.sha256 == "" and outcome.code and outcome.words

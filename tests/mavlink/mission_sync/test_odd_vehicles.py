@@ -16,7 +16,7 @@ from mavlink.timeouts import CommandRules, TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.mavlink.mission_sync.test_lossy_upload import stated_what_is_there
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, polygon
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 
 NEW = load(12, fence=polygon(0, 5))
@@ -26,20 +26,20 @@ RESULTS = [*range(1, 16), 77, 255]
 
 @settings(max_examples=150, deadline=None)
 @given(
-    flavour=st.sampled_from(sorted(FLAVOURS)),
+    autopilot_type=st.sampled_from(sorted(AUTOPILOT_TYPES)),
     refuses=st.dictionaries(st.integers(1, 13), st.sampled_from(RESULTS), max_size=2),
     dies_after=st.none() | st.integers(1, 150),
     loss=st.sampled_from([0.0, 0.2, 0.5, 0.8]),
     seed=st.integers(0, 1_000),
 )
 def test_whatever_goes_wrong_the_outcome_says_what_is_on_the_vehicle(
-    flavour: str, refuses: dict[int, int], dies_after: int | None, loss: float, seed: int
+    autopilot_type: str, refuses: dict[int, int], dies_after: int | None, loss: float, seed: int
 ):
-    vehicle = FLAVOURS[flavour]()
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     for kind in MissionType:
         vehicle.lists[kind] += OLD.of(kind)
     vehicle.refuses = refuses  # type: ignore[attr-defined]
-    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, known(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     link = Link(loss, duplicates=0.1, reordered=0.1)
     outcome = Channel(keeper, vehicle, link, seed, vehicle_dies_after=dies_after).run(until_s=7_200.0)
     assert stated_what_is_there(outcome, vehicle, NEW, OLD), outcome
@@ -77,7 +77,7 @@ class Babbling(Vehicle):
 @pytest.mark.parametrize("seed", range(30))
 def test_babbling_vehicle_is_never_ready_and_does_not_hold_the_ground_station_up(seed: int):
     vehicle = Babbling(seed)
-    keeper = MissionSync(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(NEW, known(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, seed=seed)
     outcome = channel.run(until_s=7_200.0)
     assert outcome.state is not SyncState.READY
@@ -88,5 +88,5 @@ def test_babbling_vehicle_is_never_ready_and_does_not_hold_the_ground_station_up
 def test_order_to_a_babbling_vehicle_comes_to_an_end(seed: int):
     vehicle = Babbling(seed)
     state = known(vehicle)
-    channel = Channel(CommandDriver(Order.START, state, ENDS, CommandRules()), vehicle, seed=seed, listeners=[state])
+    channel = Channel(CommandDriver(Order.START, state, ADDRESSING, CommandRules()), vehicle, seed=seed, listeners=[state])
     assert channel.run(until_s=600.0) is not None

@@ -13,7 +13,7 @@ from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
-from tests.telemetry.vehicles.loads import ENDS, PLACELESS, RELATIVE, known, load, polygon, waypoint
+from tests.telemetry.vehicles.loads import ADDRESSING, PLACELESS, RELATIVE, known, load, polygon, waypoint
 from tests.telemetry.vehicles.px4 import Px4
 from tests.telemetry.vehicles.vehicle import Vehicle
 
@@ -27,7 +27,7 @@ LOOKING = FlightLoad((TAKE_OFF, waypoint(0), LOOK_AT, waypoint(1, hold_s=9.0), L
 def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | None = None) -> tuple[SyncOutcome, Channel]:
     state = known(vehicle)
     state.firmware = firmware
-    channel = Channel(MissionSync(new, state, ENDS, TransferRules()), vehicle)
+    channel = Channel(MissionSync(new, state, ADDRESSING, TransferRules()), vehicle)
     return channel.run(), channel
 
 

@@ -5,17 +5,17 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import PX4_AUTO, Flavour
+from mavlink.autopilot_type import PX4_AUTO, AutopilotType
 from mavlink.mission_sync.compare import Found, differences
 from mavlink.mission_sync.outcome import SyncOutcome, SyncState
 from mavlink.mission_sync.sync import MissionSync
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
 from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, mission, polygon, rally
+from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, mission, polygon, rally
 from tests.telemetry.vehicles.px4 import HOLD, MISSION, Px4
 from tests.telemetry.vehicles.vehicle import Vehicle
 
@@ -24,15 +24,15 @@ NEW = load(12, fence=polygon(0, 5), rally=rally())
 WRITES = {"MISSION_COUNT", "MISSION_ITEM_INT", "MISSION_CLEAR_ALL"}
 
 
-def holding(flavour: str, load: FlightLoad) -> Vehicle:
-    vehicle = FLAVOURS[flavour]()
+def holding(autopilot_type: str, load: FlightLoad) -> Vehicle:
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     for kind in MissionType:
         vehicle.lists[kind] += load.of(kind)
     return vehicle
 
 
 def keeper_for(vehicle: Vehicle, new: FlightLoad = NEW, *, known_loads: tuple[FlightLoad, ...] = (OLD,)) -> MissionSync:
-    return MissionSync(new, known(vehicle), ENDS, TransferRules(), known=known_loads)
+    return MissionSync(new, known(vehicle), ADDRESSING, TransferRules(), known=known_loads)
 
 
 def bring(vehicle: Vehicle, new: FlightLoad = NEW) -> tuple[SyncOutcome, Channel]:
@@ -45,39 +45,41 @@ def sent(channel: Channel) -> list[str]:
 
 
 def holds(vehicle: Vehicle, wanted: FlightLoad) -> bool:
-    flavour = Flavour(type(vehicle).__name__.lower())
-    return not any(differences(wanted.of(kind), held_list(tuple(vehicle.held(kind)), kind, flavour), flavour) for kind in MissionType)
+    autopilot_type = AutopilotType(type(vehicle).__name__.lower())
+    return not any(
+        differences(wanted.of(kind), onboard_list(tuple(vehicle.held(kind)), kind, autopilot_type), autopilot_type) for kind in MissionType
+    )
 
 
 def holds_no_mission(vehicle: Vehicle) -> bool:
     return len(vehicle.lists[MissionType.MISSION]) == (1 if isinstance(vehicle, ArduPilot) else 0)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_vehicle_is_ready_by_the_hash_of_what_it_holds(flavour: str):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_vehicle_is_ready_by_the_hash_of_what_it_holds(autopilot_type: str):
+    vehicle = holding(autopilot_type, OLD)
     outcome, _ = bring(vehicle)
     assert (outcome.state, outcome.sha256) == (SyncState.READY, NEW.content_sha256)
     assert holds(vehicle, NEW)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_fence_is_sent_before_the_mission_and_rally_points_last(flavour: str):
-    _, channel = bring(holding(flavour, OLD))
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_fence_is_sent_before_the_mission_and_rally_points_last(autopilot_type: str):
+    _, channel = bring(holding(autopilot_type, OLD))
     order = [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"]
     assert order == [MissionType.FENCE, MissionType.MISSION, MissionType.RALLY]
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_nothing_is_sent_to_a_vehicle_that_holds_it_already(flavour: str):
-    outcome, channel = bring(holding(flavour, NEW))
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_nothing_is_sent_to_a_vehicle_that_holds_it_already(autopilot_type: str):
+    outcome, channel = bring(holding(autopilot_type, NEW))
     assert outcome.state is SyncState.READY
     assert not WRITES & set(sent(channel))
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_empty_load_takes_everything_off(flavour: str):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_empty_load_takes_everything_off(autopilot_type: str):
+    vehicle = holding(autopilot_type, OLD)
     outcome, _ = bring(vehicle, FlightLoad(()))
     assert outcome.state is SyncState.READY
     assert holds(vehicle, FlightLoad(()))
@@ -99,31 +101,31 @@ def test_vehicle_without_fence_is_not_ready_for_a_mission_with_one():
 
 def test_other_autopilot_is_refused():
     state = VehicleState(7)
-    state.flavour = Flavour.OTHER
-    keeper = MissionSync(NEW, state, ENDS, TransferRules())
+    state.autopilot_type = AutopilotType.OTHER
+    keeper = MissionSync(NEW, state, ADDRESSING, TransferRules())
     assert keeper.start(0.0) == []
     assert keeper.outcome is not None
     assert (keeper.outcome.state, keeper.outcome.code) == (SyncState.INTACT, "autopilot")
 
 
 def test_vehicle_that_has_not_spoken_is_refused():
-    keeper = MissionSync(NEW, VehicleState(7), ENDS, TransferRules())
+    keeper = MissionSync(NEW, VehicleState(7), ADDRESSING, TransferRules())
     keeper.start(0.0)
     assert keeper.outcome is not None
     assert keeper.outcome.code == "not-heard"
 
 
-@pytest.mark.parametrize(("flavour", "mode"), [("ardupilot", AUTO), ("px4", MISSION << 24 | 4 << 16)])
-def test_nothing_is_sent_to_a_vehicle_in_its_mission(flavour: str, mode: int):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize(("autopilot_type", "mode"), [("ardupilot", AUTO), ("px4", MISSION << 24 | 4 << 16)])
+def test_nothing_is_sent_to_a_vehicle_in_its_mission(autopilot_type: str, mode: int):
+    vehicle = holding(autopilot_type, OLD)
     vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, mode
     outcome, channel = bring(vehicle)
     assert (outcome.code, channel.to_vehicle) == ("not-held", [])
 
 
-@pytest.mark.parametrize(("flavour", "mode"), [("ardupilot", BRAKE), ("px4", HOLD << 24 | 4 << 16)])
-def test_held_vehicle_in_the_air_gets_its_mission(flavour: str, mode: int):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize(("autopilot_type", "mode"), [("ardupilot", BRAKE), ("px4", HOLD << 24 | 4 << 16)])
+def test_held_vehicle_in_the_air_gets_its_mission(autopilot_type: str, mode: int):
+    vehicle = holding(autopilot_type, OLD)
     vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, mode
     assert bring(vehicle)[0].state is SyncState.READY
 
@@ -141,12 +143,12 @@ def test_count_that_the_vehicle_refuses_leaves_the_old_mission():
     assert holds(vehicle, OLD)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_silent_vehicle_is_not_blamed_for_a_mix(flavour: str):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_silent_vehicle_is_not_blamed_for_a_mix(autopilot_type: str):
+    vehicle = holding(autopilot_type, OLD)
     vehicle.is_alive = False
     state = known(vehicle)
-    outcome = Channel(MissionSync(NEW, state, ENDS, TransferRules()), vehicle).run()
+    outcome = Channel(MissionSync(NEW, state, ADDRESSING, TransferRules()), vehicle).run()
     assert (outcome.state, outcome.code, outcome.is_critical) == (SyncState.INTACT, "silent", False)
 
 
@@ -197,13 +199,13 @@ def test_mix_of_an_earlier_ground_station_is_named_from_the_beginning():
     assert (outcome.state, len(outcome.mixes)) == (SyncState.READY, 1)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_cancelling_at_any_message_leaves_the_old_mission_or_none(flavour: str):
-    vehicle = holding(flavour, OLD)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_cancelling_at_any_message_leaves_the_old_mission_or_none(autopilot_type: str):
+    vehicle = holding(autopilot_type, OLD)
     whole = Channel(keeper_for(vehicle), vehicle)
     whole.run()
     for number in range(len(whole.to_vehicle)):
-        vehicle = holding(flavour, OLD)
+        vehicle = holding(autopilot_type, OLD)
         keeper = keeper_for(vehicle)
         channel = Channel(keeper, vehicle, ground_dies_after=number)
         channel.run()
@@ -232,18 +234,18 @@ def test_cancelled_upload_gets_no_more_items_though_the_vehicle_asks_for_them():
     assert sent(channel).count("MISSION_ITEM_INT") == items > 0
 
 
-@pytest.mark.parametrize(("flavour", "mode"), [("px4", PX4_AUTO << 16 | MISSION << 24), ("ardupilot", AUTO)])
+@pytest.mark.parametrize(("autopilot_type", "mode"), [("px4", PX4_AUTO << 16 | MISSION << 24), ("ardupilot", AUTO)])
 @pytest.mark.parametrize("is_sending", [False, True])
-def test_a_vehicle_that_begins_to_fly_its_list_gets_none_or_a_whole_one(flavour: str, mode: int, is_sending: bool):
-    vehicle = holding(flavour, OLD)
+def test_a_vehicle_that_begins_to_fly_its_list_gets_none_or_a_whole_one(autopilot_type: str, mode: int, is_sending: bool):
+    vehicle = holding(autopilot_type, OLD)
     state = known(vehicle)
-    keeper = MissionSync(load(12, fence=OLD.fence), state, ENDS, TransferRules(), known=[OLD])
+    keeper = MissionSync(load(12, fence=OLD.fence), state, ADDRESSING, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, ground_dies_after=26 if is_sending else 4)
     channel.run()
     assert (keeper.progress.stage == "sending") == is_sending and not keeper.is_endangered
     state.is_armed, state.custom_mode = True, mode
     vehicle.is_armed, vehicle.custom_mode = True, mode
-    assert keeper.is_endangered != (is_sending and flavour == "ardupilot")
+    assert keeper.is_endangered != (is_sending and autopilot_type == "ardupilot")
     channel.ground_dies_after = None
     if keeper.is_endangered:
         channel.send(keeper.cancel(channel.now_s))
@@ -278,10 +280,10 @@ def test_progress_counts_the_items_that_the_vehicle_has():
     assert set(seen) == set(range(12))
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_reading_back_that_shows_something_else_twice_is_sent_again(flavour: str):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_reading_back_that_shows_something_else_twice_is_sent_again(autopilot_type: str):
     """A memory that loses a bit once."""
-    vehicle = holding(flavour, OLD)
+    vehicle = holding(autopilot_type, OLD)
     keeper = keeper_for(vehicle)
 
     class Fault:
@@ -298,11 +300,11 @@ def test_reading_back_that_shows_something_else_twice_is_sent_again(flavour: str
     assert holds(vehicle, NEW)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_two_ground_stations_after_one_another_do_not_confuse_each_other(flavour: str):
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_two_ground_stations_after_one_another_do_not_confuse_each_other(autopilot_type: str):
     """The second begins while messages of the first are still under way, both ways."""
     for cut in range(5, 60, 5):
-        vehicle = holding(flavour, OLD)
+        vehicle = holding(autopilot_type, OLD)
         first = Channel(
             keeper_for(vehicle, load(30, east=77)), vehicle, Link(duplicates=0.3, reordered=0.3), seed=cut, ground_dies_after=cut
         )
@@ -388,20 +390,20 @@ def test_mission_that_is_there_though_the_link_was_away_while_it_was_read_is_kep
     assert holds(vehicle, load(12, fence=OLD.fence))
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_fence_and_rally_points_of_somebody_else_are_left(flavour):
-    vehicle = holding(flavour, FlightLoad(mission(5), fence=polygon(50_000), rally=rally()))
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_fence_and_rally_points_of_somebody_else_are_left(autopilot_type):
+    vehicle = holding(autopilot_type, FlightLoad(mission(5), fence=polygon(50_000), rally=rally()))
     outcome, _ = bring(vehicle, load(12))
     assert outcome.state is SyncState.READY and outcome.mixes == ()
     assert (len(vehicle.lists[MissionType.FENCE]), len(vehicle.lists[MissionType.RALLY])) == (4, 2)
     assert "own fence 4 items" in outcome.left_alone and "own rally points 2 items" in outcome.left_alone
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 @pytest.mark.parametrize("wanted", [load(12), FlightLoad(())])
-def test_a_fence_and_rally_points_of_an_earlier_mission_are_taken_off(flavour, wanted):
+def test_a_fence_and_rally_points_of_an_earlier_mission_are_taken_off(autopilot_type, wanted):
     earlier = FlightLoad(mission(5), fence=polygon(9_000), rally=rally())
-    vehicle = holding(flavour, earlier)
+    vehicle = holding(autopilot_type, earlier)
     outcome = Channel(keeper_for(vehicle, wanted, known_loads=(earlier,)), vehicle).run()
     assert outcome.state is SyncState.READY and not outcome.left_alone
     assert not vehicle.lists[MissionType.FENCE] and not vehicle.lists[MissionType.RALLY]

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.mission_sync.upload import TransferState, Upload
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
-from tests.telemetry.vehicles.loads import ENDS, mission
+from tests.telemetry.vehicles.loads import ADDRESSING, mission
 from tests.telemetry.vehicles.vehicle import GROUND
 
 MISSION, FENCE = int(MissionType.MISSION), int(MissionType.FENCE)
@@ -31,7 +31,7 @@ def ack(result: int, kind: int = MISSION, to: tuple[int, int] = GROUND) -> Any:
 
 
 def begun(items: tuple[Any, ...] = ITEMS) -> Upload:
-    upload = Upload(items, MissionType.MISSION, ENDS, RULES)
+    upload = Upload(items, MissionType.MISSION, ADDRESSING, RULES)
     (count,) = upload.start(0.0)
     assert (count.get_type(), count.count, count.mission_type) == ("MISSION_COUNT", len(items), MISSION)
     return upload

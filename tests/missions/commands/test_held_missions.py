@@ -7,7 +7,7 @@ from django.db import connection, connections
 
 from missions.models import CommandKind, MissionState
 from missions.services.approval import checks
-from missions.services.approval.approval import held_mission
+from missions.services.approval.approval import locked_mission
 from missions.services.commands import dispatch
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
@@ -83,6 +83,6 @@ def test_what_stops_a_uav_does_not_wait_for_its_mission(kind):
     author, uav = an_operator(), a_uav("Tern", is_simulated=True)
     mission = dispatched(author, [uav], world().towers[:1])
     with dispatch.transaction.atomic():
-        held_mission(mission.pk, None)
+        locked_mission(mission.pk, None)
         beside(lambda: command_uav(uav=uav, kind=kind, actor=author))
     assert uav.commands.filter(kind=kind, mission=mission).exists()

@@ -6,7 +6,7 @@ import pytest
 from django.test import Client
 
 from missions.models import LinkKind, Mission, Uav
-from missions.services.commands.rtl_check import note_own_return
+from missions.services.commands.rtl_check import note_rtl_behaviour
 from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, fleet, ground, planned
@@ -35,7 +35,7 @@ def reported(mission: Mission) -> dict[str, Any]:
 
 
 def read(uav: Uav, **parameters: float) -> None:
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters | {"SYSID_THISMAV": 7.0})
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters | {"SYSID_THISMAV": 7.0})
 
 
 def test_a_height_that_was_never_read_is_not_known(mission):
@@ -99,11 +99,11 @@ def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, miss
 
 
 def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
-    note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
     found = reported(mission)
     assert found["state"] == "unknown" and "its autopilot has not reported how it returns" in found["warnings"][0]
     assert found["detail"] == "RTL_TYPE", "for whoever sets it up, and not in the sentence"
-    note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
     assert reported(mission)["state"] == "clear"
 
 

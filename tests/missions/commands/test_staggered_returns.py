@@ -8,7 +8,7 @@ from django.utils import timezone
 from missions.models import CommandKind, CommandState, LinkKind, Uav, UavCommand
 from missions.services.commands.commands import claim_commands, note_failed, note_sent, queue_command
 from missions.services.commands.refused import Refused
-from missions.services.commands.rtl_check import note_own_return
+from missions.services.commands.rtl_check import note_rtl_behaviour
 from missions.services.commands.staggered_returns import stuck_returns
 from missions.services.commands.steering import command_uav
 from tests.accounts.users import client_of
@@ -84,7 +84,7 @@ def test_a_hold_that_failed_is_followed_by_nothing(uav, user):
 
 
 def test_a_return_follows_its_height(uav, user):
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     uav.refresh_from_db()
     command = given(uav, user, CommandKind.SET_RETURN_HEIGHT, height_m=75.0, then_return=True)
     assert command.kind == CommandKind.SET_RETURN_HEIGHT
@@ -94,7 +94,7 @@ def test_a_return_follows_its_height(uav, user):
 
 
 def test_a_height_alone_is_followed_by_nothing_and_is_wanted_as_long_as_an_upload(uav, user):
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     uav.refresh_from_db()
     command = given(uav, user, CommandKind.SET_RETURN_HEIGHT, height_m=75.0)
     assert (command.expires_at - command.created_at) > timedelta(minutes=30)
@@ -105,7 +105,7 @@ def test_a_height_alone_is_followed_by_nothing_and_is_wanted_as_long_as_an_uploa
 def test_a_height_is_refused_that_is_out_of_bounds_or_of_a_uav_whose_parameter_is_not_known(uav, user):
     with pytest.raises(Refused, match="was never read"):
         given(uav, user, CommandKind.SET_RETURN_HEIGHT, height_m=75.0)
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     uav.refresh_from_db()
     for parameters in ({}, {"height_m": 0.0}, {"height_m": 500.0}, {"height_m": 75.0, "speed_mps": 3.0}):
         with pytest.raises(Refused):
@@ -118,7 +118,7 @@ def test_a_height_is_refused_that_is_out_of_bounds_or_of_a_uav_whose_parameter_i
 
 
 def test_a_return_holds_first_and_then_gets_its_height(uav, user):
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     uav.refresh_from_db()
     hold = given(uav, user, CommandKind.RETURN, wait_s=40.0, height_m=75.0)
     assert (hold.kind, hold.parameters["height_m"]) == (CommandKind.HOLD, 75.0)
@@ -131,7 +131,7 @@ def test_a_return_holds_first_and_then_gets_its_height(uav, user):
 
 
 def test_a_step_that_fails_is_stuck_until_another_command_about_its_flight(uav, user):
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     uav.refresh_from_db()
     height = given(uav, user, CommandKind.RETURN, height_m=75.0)
     (claimed,) = claim(uav)
@@ -165,7 +165,7 @@ def test_a_return_along_the_route_is_not_sent_to_one_that_is_not_heard(uav, user
 
 
 def test_the_api_takes_both(uav, user):
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
     notify = client_of(user).post
     address = f"/api/v1/uavs/{uav.pk}/commands"
     body = {"kind": "set-return-height", "parameters": {"height_m": 75, "then_return": True}}

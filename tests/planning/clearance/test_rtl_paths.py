@@ -122,5 +122,5 @@ def test_a_rally_point_has_ways_of_its_own():
     home = ways(zones=zone(400.0, -50.0, 500.0, 600.0), haven=haven)
     assert [(found.is_rally, found.first) for found in troubles(home, 50.0)] == [(True, 0)]
     reported = set()
-    home.levels_m(lambda current_m, away_m, haven_m: reported.add(haven_m) or 50.0)
+    home.levels_m(lambda current_m, away_m, goal_m: reported.add(goal_m) or 50.0)
     assert reported == {40.0}

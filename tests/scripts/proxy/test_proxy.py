@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from scripts.page_headers import content_security_policy
-from scripts.places import TELLING_PROGRAMS, CannotStart, Places
+from scripts.places import PROGRAMS_WITH_METRICS, CannotStart, Places
 from scripts.programs import web_programs
 from scripts.proxy import BASE_MAP_TILES, configuration
 from scripts.system_packages import find_program
@@ -76,7 +76,7 @@ def test_what_programs_tell_of_themselves_has_a_port_of_its_own_where_it_is_want
     text = configuration(Places(tmp_path), tmp_path, 8000)
     assert text.count("listen 127.0.0.1:9464;") == 1
     served_at = {program.environment.get("SPANWISE_METRICS") for program in web_programs(Places(tmp_path), tmp_path)} - {None}
-    assert len(served_at) == len(TELLING_PROGRAMS)
+    assert len(served_at) == len(PROGRAMS_WITH_METRICS)
     for place in served_at:
         assert f"{place}:/" in text
     test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path)

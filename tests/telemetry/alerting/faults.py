@@ -12,7 +12,7 @@ import shapely
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.limits import Limits
-from telemetry.alerting.surroundings import Held, NearZone, Order
+from telemetry.alerting.surroundings import NearZone, OnboardState, Order
 from tests.telemetry.alerting.truth import START_S, State, TrueFlight
 
 LIMITS = Limits()
@@ -229,10 +229,10 @@ def other_mission(flight: TrueFlight, random: np.random.Generator) -> Fault:
     kind = int(random.integers(4))
 
     def around(state: State, uav: WatchedUav) -> dict[str, Any]:
-        approved = Held(approval_id=uav.approval_id, is_approved=True, items=12)
+        approved = OnboardState(approval_id=uav.approval_id, is_approved=True, items=12)
         if state.seconds < begins:
             return {"held": approved}
-        return {"held": [Held(), replace(approved, is_approved=False), replace(approved, doubt="mission-changed"), approved][kind]}
+        return {"held": [OnboardState(), replace(approved, is_approved=False), replace(approved, doubt="mission-changed"), approved][kind]}
 
     def reported(state: State, values: dict[str, Any]) -> dict[str, Any]:
         return values | {"mission_item": 14 if kind == 3 and state.seconds >= begins else 3}

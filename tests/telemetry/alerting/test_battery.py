@@ -7,7 +7,7 @@ import pytest
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
-from mavlink.rtl import own_return
+from mavlink.rtl import rtl_behaviour
 from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
@@ -62,11 +62,11 @@ def test_the_climb_to_the_height_of_its_return_counts_in_the_way_home(flight):
         return watch.memory.battery
 
     level = home()
-    high = home(own_return=own_return("ardupilot", {"RTL_ALT": (height_m + 60.0) * 100.0, "RTL_ALT_TYPE": 0.0}))
+    high = home(rtl_behaviour=rtl_behaviour("ardupilot", {"RTL_ALT": (height_m + 60.0) * 100.0, "RTL_ALT_TYPE": 0.0}))
     per_s = flight.model.consumption.percent_per_s(0.0)
     assert high["home_s"] - level["home_s"] == pytest.approx(60.0 / flight.model.consumption.climb_mps + 60.0 / 1.5, abs=1.0)
     assert high["home_percent"] - level["home_percent"] > 0.9 * per_s * (60.0 / flight.model.consumption.climb_mps + 60.0 / 1.5)
-    low = home(own_return=own_return("ardupilot", {"RTL_ALT": 1_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}))
+    low = home(rtl_behaviour=rtl_behaviour("ardupilot", {"RTL_ALT": 1_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}))
     assert low["home_percent"] == level["home_percent"], "it never comes down first"
 
 

@@ -8,7 +8,7 @@ from telemetry.alerting.detector_state import Memory
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.state_machine import RANK, Closed, changes
-from telemetry.alerting.surroundings import Held
+from telemetry.alerting.surroundings import OnboardState
 
 
 @dataclass
@@ -34,7 +34,7 @@ class Watch:
     def situation(self, now_s: float, uav: WatchedUav, **around) -> Situation:
         model = around.get("model")
         self.memory.take(uav.newest, None if model is None else model.line)
-        around.setdefault("held", Held(approval_id=uav.approval_id, is_approved=True))
+        around.setdefault("held", OnboardState(approval_id=uav.approval_id, is_approved=True))
         return Situation(now_s=now_s, uav=uav, limits=self.limits, memory=self.memory, open_levels=dict(self.open_levels), **around)
 
     def look(self, situation: Situation, detectors=DETECTORS) -> None:

@@ -14,7 +14,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.commands.actions import Order
 from mavlink.frames import frames_of_datagram
 from mavlink.mission_sync.flown_items import Flown
@@ -168,10 +168,11 @@ def test_what_was_given_back_and_claimed_anew_is_carried_on():
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, position, home, home_m, code):
     state = VehicleState(
-        7, flavour=Flavour.PX4, landed_state=landed, landed_at_s=0.0, received_at_s=0.0, position=position, altitude_amsl_m=100.0,
-        altitude_relative_m=30.0, position_at_s=0.0, home=home, home_amsl_m=home_m, home_at_s=0.0, mission_item=1, mission_item_at_s=0.0,
+        7, autopilot_type=AutopilotType.PX4, landed_state=landed, landed_at_s=0.0, received_at_s=0.0, position=position,
+        altitude_amsl_m=100.0, altitude_relative_m=30.0, position_at_s=0.0,
+        home=home, home_amsl_m=home_m, home_at_s=0.0, mission_item=1, mission_item_at_s=0.0,
     )  # fmt: skip
-    found = reason_not_to(Task(order=order, aboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
+    found = reason_not_to(Task(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
     assert (found and found.code) == code
 
 
@@ -190,21 +191,21 @@ def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, po
         ({"position_at_s": -20.0}, "no-position"),
         ({"mission_item_at_s": -20.0}, "no-item"),
         ({"home_at_s": -20.0}, "no-home"),
-        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2}, "no-item"),
-        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 0.0}}, None),
-        ({"flavour": Flavour.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 1.0}}, "off-route"),
+        ({"autopilot_type": AutopilotType.ARDUPILOT, "mission_item": 2}, "no-item"),
+        ({"autopilot_type": AutopilotType.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 0.0}}, None),
+        ({"autopilot_type": AutopilotType.ARDUPILOT, "mission_item": 2, "parameters": {"MIS_RESTART": 1.0}}, "off-route"),
     ],
 )
 @pytest.mark.parametrize("order", [Order.START, Order.RESUME])
 def test_a_uav_in_the_air_goes_on_only_from_the_leg_that_was_approved(order, facts, code):
     """After a hold it may have been flown elsewhere by hand, or be on its way back: from there the way was looked at by nobody."""
     usual = {
-        "flavour": Flavour.PX4, "custom_mode": 0, "landed_state": IN_AIR, "landed_at_s": 0.0, "received_at_s": 0.0,
+        "autopilot_type": AutopilotType.PX4, "custom_mode": 0, "landed_state": IN_AIR, "landed_at_s": 0.0, "received_at_s": 0.0,
         "position": LonLat(10.01, 56.0), "altitude_relative_m": 50.0, "position_at_s": 0.0, "home": HERE, "home_amsl_m": 100.0,
         "home_at_s": 0.0, "mission_item": 1, "mission_item_at_s": 0.0,
     }  # fmt: skip
     state = VehicleState(7, **usual | facts)
-    found = reason_not_to(Task(order=order, aboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
+    found = reason_not_to(Task(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
     assert (found and found.code) == code
 
 

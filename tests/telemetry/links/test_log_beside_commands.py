@@ -8,7 +8,7 @@ from django.db import connections, transaction
 from django.utils import timezone
 
 from missions.models import Mission, MissionState, Uav
-from missions.services.approval.approval import held_mission
+from missions.services.approval.approval import locked_mission
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.telemetry.flown_missions import flies_route
@@ -28,7 +28,7 @@ def test_a_report_is_stored_while_its_mission_is_held():
         connections.close_all()
 
     with transaction.atomic():
-        held_mission(mission.pk, None)
+        locked_mission(mission.pk, None)
         thread = threading.Thread(target=report)
         thread.start()
         thread.join(TIMEOUT_S)

@@ -11,7 +11,7 @@ from missions.selectors.missions import mission_of_organisation
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.outbox import note_failed
 from missions.services.commands.refused import Refused
-from missions.services.commands.rtl_check import note_own_return
+from missions.services.commands.rtl_check import note_rtl_behaviour
 from missions.services.commands.steering import command_uav
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts.alerts import open_alert
@@ -193,7 +193,7 @@ def test_the_fence_is_active_off_or_not_known(
     towers = world().towers
     zone_around((10.010, 56.02), 0.001)
     mission, _approval = approved(person, [tern], [towers[0], towers[5]])
-    note_own_return(uav_id=tern.pk, autopilot=autopilot, parameters=parameters)
+    note_rtl_behaviour(uav_id=tern.pk, autopilot=autopilot, parameters=parameters)
     received(tern)
     [fence_check] = [check for check in checks(mission).uavs[0].checks if check.code == "fence"]
     assert fence_check.state == state

@@ -9,7 +9,7 @@ from django.utils import timezone
 
 from inspection.models import NoFlyZone
 from missions.models import Mission, Uav
-from missions.services.commands.rtl_check import note_own_return
+from missions.services.commands.rtl_check import note_rtl_behaviour
 from telemetry.models import UavLink, UavWatch
 from tests.accounts.users import client_of, somebody
 from tests.inspection import ground as things
@@ -35,7 +35,7 @@ def uav() -> Uav:
 
 
 def read(uav: Uav, **parameters: float) -> None:
-    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters)
+    note_rtl_behaviour(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER | parameters)
 
 
 def flies(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mavlink.frames import StreamParser, message_of
-from mavlink.mission_sync.wire import HeldItem
+from mavlink.mission_sync.wire import OnboardItem
 from mavlink.signing import FrameWriter
 from mavlink.vehicle_plan import MissionType
 from tests.missions.worlds import UAV_AT
@@ -88,7 +88,7 @@ class Emulated:
             assert name in self._vehicle.parameters, f"the scripted vehicle knows no {name}"
             self._vehicle.parameters[name] = value
 
-    def held(self, kind: MissionType) -> list[HeldItem]:
+    def held(self, kind: MissionType) -> list[OnboardItem]:
         with self._lock:
             return self._vehicle.held(kind)
 

@@ -16,7 +16,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import frames_of_datagram, message_of
-from mavlink.mission_sync.wire import HeldItem, held_item
+from mavlink.mission_sync.wire import OnboardItem, onboard_item
 from mavlink.signing import FrameWriter
 from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.missions.worlds import UAV_AT
@@ -148,14 +148,14 @@ class Firmware:
         reported = self.asked(message, "PARAM_VALUE", param_id=name)
         assert abs(reported.param_value - value) < 1e-3, reported
 
-    def held(self, kind: MissionType) -> list[HeldItem]:
+    def held(self, kind: MissionType) -> list[OnboardItem]:
         """A list as it is read by the second link."""
         ends = (self.system, 1)
         count = self.asked(mavlink.MAVLink_mission_request_list_message(*ends, kind), "MISSION_COUNT", mission_type=kind).count
         asked_for = (mavlink.MAVLink_mission_request_int_message(*ends, number, kind) for number in range(count))
         items = [self.asked(ask, "MISSION_ITEM_INT", seq=ask.seq, mission_type=kind) for ask in asked_for]
         self.send(mavlink.MAVLink_mission_ack_message(*ends, mavlink.MAV_MISSION_ACCEPTED, kind))
-        return [held_item(item) for item in items]
+        return [onboard_item(item) for item in items]
 
     def shorten(self) -> None:
         """Another ground station takes the last item off its mission."""

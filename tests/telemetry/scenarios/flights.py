@@ -1,9 +1,9 @@
 """A flight of a scenario: brought, started, and in the air."""
 
 from inspection.geodesy.wgs84 import short_distance_m
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands.commands import queue_command
@@ -19,8 +19,10 @@ READY_S = 120.0
 
 def holds(vehicle: ScenarioVehicle, load: FlightLoad) -> bool:
     """By its second link."""
-    flavour = Flavour.ARDUPILOT
-    return all(not differences(load.of(kind), held_list(vehicle.held(kind), kind, flavour), flavour) for kind in MissionType)
+    autopilot_type = AutopilotType.ARDUPILOT
+    return all(
+        not differences(load.of(kind), onboard_list(vehicle.held(kind), kind, autopilot_type), autopilot_type) for kind in MissionType
+    )
 
 
 def wait_until_ready(vehicle: ScenarioVehicle) -> None:

@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from inspection.geodesy import LonLat
-from mavlink.mission_sync.wire import HeldItem
+from mavlink.mission_sync.wire import OnboardItem
 from mavlink.vehicle_plan import MissionType
 from tests.missions.worlds import UAV_AT
 
@@ -22,7 +22,7 @@ class ScenarioVehicle(Protocol):
 
     def set(self, name: str, value: float) -> None: ...
 
-    def held(self, kind: MissionType) -> list[HeldItem]: ...
+    def held(self, kind: MissionType) -> list[OnboardItem]: ...
 
     def shorten(self) -> None: ...
 

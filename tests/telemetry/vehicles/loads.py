@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.addressing import Ends
+from mavlink.addressing import Addressing
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
 from tests.telemetry.vehicles.ardupilot import ArduPilot
@@ -13,8 +13,8 @@ from tests.telemetry.vehicles.px4 import Px4
 from tests.telemetry.vehicles.vehicle import Vehicle
 
 RELATIVE, PLACELESS = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, mavlink.MAV_FRAME_MISSION
-FLAVOURS = {"px4": Px4, "ardupilot": ArduPilot}
-ENDS = Ends(7)
+AUTOPILOT_TYPES = {"px4": Px4, "ardupilot": ArduPilot}
+ADDRESSING = Addressing(7)
 
 
 def waypoint(number: int, *, altitude_m: float = 60.0, hold_s: float = 0.0, east: int = 0) -> MissionItem:

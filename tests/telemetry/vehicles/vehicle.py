@@ -6,7 +6,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.mission_sync.wire import HeldItem, held_item
+from mavlink.mission_sync.wire import OnboardItem, onboard_item
 from mavlink.vehicle_plan import MissionItem, MissionType
 
 GROUND = (255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
@@ -148,9 +148,9 @@ class Vehicle:
     def carry_out(self, command: int, values: tuple[float, ...]) -> int:
         return int(mavlink.MAV_RESULT_UNSUPPORTED)
 
-    def held(self, kind: MissionType) -> list[HeldItem]:
+    def held(self, kind: MissionType) -> list[OnboardItem]:
         """As it would be read."""
-        return [held_item(self._as_read(item, number, kind)) for number, item in enumerate(self.lists[kind])]
+        return [onboard_item(self._as_read(item, number, kind)) for number, item in enumerate(self.lists[kind])]
 
     def _as_read(self, item: Any, number: int, kind: MissionType) -> Any:
         raise NotImplementedError
@@ -169,4 +169,4 @@ def item_int(
 
 
 def item_of(message: Any) -> MissionItem:
-    return held_item(message).item
+    return onboard_item(message).item

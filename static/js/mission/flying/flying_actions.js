@@ -2,7 +2,7 @@
 
 import { ApiError, freshKey, post, signInAddress } from "../../api.js";
 import { flyersOf, isFrozen, isOnItsWay } from "../../domain/flying.js";
-import { returnOf, warningsOfAll } from "../../domain/own_return.js";
+import { returnOf, warningsOfAll } from "../../domain/rtl_check.js";
 import { confirmAct } from "../../page/confirm.js";
 import { t, tn } from "../../text.js";
 import { lengthText } from "../../units.js";

@@ -13,9 +13,9 @@ import {
   stageWords,
   timesOf,
 } from "../../domain/flying.js";
-import { returnOf, returnStatus } from "../../domain/own_return.js";
 import { routeNumber } from "../../domain/palette.js";
 import { nextStep } from "../../domain/preflight_step.js";
+import { returnOf, returnStatus } from "../../domain/rtl_check.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";

@@ -3,8 +3,8 @@
 import { ApiError, freshKey, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { parametersText } from "../../domain/own_return.js";
 import { canUploadToAll, firstStep, nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
+import { parametersText } from "../../domain/rtl_check.js";
 import { commandUav } from "../../page/command_uav.js";
 import { beginStarts } from "../../page/planned_starts.js";
 import { announce, toast } from "../../page/toast.js";

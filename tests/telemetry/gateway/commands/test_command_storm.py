@@ -201,7 +201,7 @@ def test_what_is_urgent_hardly_waits_under_overload(tmp_path, settings, record_p
     settings.GATEWAY_MAX_COMMANDS = 4
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
     with gateway_at_work(tmp_path) as gateway, Fleet(port_of(gateway), [uav.mavlink_system_id for uav in uavs]):
-        wait_for(lambda: len(gateway.sessions) == UAVS and all(session.state.flavour for session in gateway.sessions.values()))
+        wait_for(lambda: len(gateway.sessions) == UAVS and all(session.state.autopilot_type for session in gateway.sessions.values()))
         for uav in uavs:
             queue_command(uav=uav, kind=CommandKind.CHANGE_SPEED, actor=None, parameters={"speed_mps": 5.0}, expires_in_s=WANTED_FOR_S)
         for uav in uavs[::4]:

@@ -4,9 +4,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
@@ -24,7 +24,7 @@ from tests.telemetry.vehicles.px4 import Px4
 
 pytestmark = pytest.mark.django_db(transaction=True)
 WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
-FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}
+AUTOPILOT_TYPES = {AutopilotType.PX4: Px4, AutopilotType.ARDUPILOT: ArduPilot}
 
 
 @pytest.fixture
@@ -53,22 +53,24 @@ def ended(command: UavCommand, *, patience_s: float = TIMEOUT_S) -> UavCommand:
     return command
 
 
-def holds(vehicle, load: FlightLoad, flavour: Flavour) -> bool:
-    return all(not differences(load.of(kind), held_list(vehicle.held(kind), kind, flavour), flavour) for kind in MissionType)
+def holds(vehicle, load: FlightLoad, autopilot_type: AutopilotType) -> bool:
+    return all(
+        not differences(load.of(kind), onboard_list(vehicle.held(kind), kind, autopilot_type), autopilot_type) for kind in MissionType
+    )
 
 
 def flyer(vehicle, gateway, **values) -> Flyer:
     return Flyer(vehicle, port_of(gateway), **{"at": UAV_AT, "altitude_amsl_m": 101.0, **values})
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_mission_is_brought_started_and_taken_off(flavour, uav, mission, tmp_path):
-    vehicle = FLAVOURS[flavour]()
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_mission_is_brought_started_and_taken_off(autopilot_type, uav, mission, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(mission))
         load = load_of(upload)
         assert upload.state == CommandState.APPLIED, upload.outcome
-        assert holds(vehicle, load.load, flavour)
+        assert holds(vehicle, load.load, autopilot_type)
         link = UavLink.objects.get(uav=uav)
         assert (link.loaded_sha256, link.loaded_approval, link.loaded_flight) == (load.content_sha256, upload.approval_id, 1)
         states = list(upload.events.values_list("state", flat=True))
@@ -86,9 +88,9 @@ def test_a_mission_is_brought_started_and_taken_off(flavour, uav, mission, tmp_p
         assert ended(hold).state == CommandState.APPLIED, hold.outcome
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp_path):
-    vehicle, offset = FLAVOURS[flavour](), 1 if flavour is Flavour.ARDUPILOT else 0
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_mission_is_flown_by_what_the_vehicle_tells(autopilot_type, uav, mission, tmp_path):
+    vehicle, offset = AUTOPILOT_TYPES[autopilot_type](), 1 if autopilot_type is AutopilotType.ARDUPILOT else 0
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway) as flying:
         upload = ended(dispatch(mission))
         start = begin(uav, mission, upload.approval)
@@ -173,9 +175,9 @@ def test_a_stopped_gateway_gives_its_commands_back(uav, tmp_path):
         assert ended(hold).state == CommandState.APPLIED
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_list_that_somebody_else_has_put_there_is_not_flown(flavour, uav, mission, tmp_path):
-    vehicle = FLAVOURS[flavour]()
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_list_that_somebody_else_has_put_there_is_not_flown(autopilot_type, uav, mission, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(mission))
         vehicle.lists[MissionType.MISSION] = vehicle.lists[MissionType.MISSION][:-1]
@@ -219,9 +221,9 @@ def test_a_mission_is_taken_off_once_the_vehicle_may_be_written_to(uav, mission,
     assert len(vehicle.lists[MissionType.MISSION]) == 1, "home alone"
 
 
-@pytest.mark.parametrize("flavour", [pytest.param(Flavour.PX4, marks=pytest.mark.long), Flavour.ARDUPILOT])
-def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_was_approved(flavour, uav, mission, tmp_path):
-    vehicle = FLAVOURS[flavour]()
+@pytest.mark.parametrize("autopilot_type", [pytest.param(AutopilotType.PX4, marks=pytest.mark.long), AutopilotType.ARDUPILOT])
+def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_was_approved(autopilot_type, uav, mission, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     with (
         gateway_at_work(tmp_path, name="one") as one,
         gateway_at_work(tmp_path, name="two") as two,
@@ -234,5 +236,5 @@ def test_a_vehicle_that_goes_over_to_another_gateway_in_mid_upload_holds_what_wa
         assert UavCommand.objects.get(pk=upload.pk).state == CommandState.SENT, "in mid-upload"
         assert ended(upload).state == CommandState.APPLIED, upload.outcome
         assert upload.holder.startswith("two/") and upload.attempts == 2
-        assert holds(vehicle, load_of(upload).load, flavour)
+        assert holds(vehicle, load_of(upload).load, autopilot_type)
         wait_for(lambda: not Alert.objects.filter(closed_at=None, level="critical").exists(), "no alert")

@@ -10,7 +10,7 @@ from django.db import connections, transaction
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
-from missions.services.approval.approval import held_mission
+from missions.services.approval.approval import locked_mission
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission
 from telemetry.gateway.process import Gateway
@@ -32,7 +32,7 @@ def held(mission: Mission) -> Iterator[None]:
 
     def hold() -> None:
         with transaction.atomic():
-            held_mission(mission.pk, None)
+            locked_mission(mission.pk, None)
             is_held.set()
             over.wait(30)
         connections.close_all()

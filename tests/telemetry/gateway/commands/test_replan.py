@@ -4,9 +4,9 @@ import pytest
 from django.utils import timezone
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.wire import held_list
+from mavlink.mission_sync.wire import onboard_list
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, OfferState, TargetState, Uav, UavCommand
 from missions.selectors.missions import mission_of_organisation
@@ -27,7 +27,7 @@ from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
 
 pytestmark = pytest.mark.django_db(transaction=True)
-FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}
+AUTOPILOT_TYPES = {AutopilotType.PX4: Px4, AutopilotType.ARDUPILOT: ArduPilot}
 HOME_M = 100.0
 
 
@@ -93,9 +93,9 @@ def in_the_air(mission: Mission, flying: list[InAir]) -> Flight:
     return flight
 
 
-@pytest.mark.parametrize("flavour", [Flavour.ARDUPILOT, *long(Flavour.PX4)])
-def test_what_one_uav_leaves_is_flown_by_the_other(flavour, mission, tmp_path):
-    vehicles = [FLAVOURS[flavour](system=7), FLAVOURS[flavour](system=8)]
+@pytest.mark.parametrize("autopilot_type", [AutopilotType.ARDUPILOT, *long(AutopilotType.PX4)])
+def test_what_one_uav_leaves_is_flown_by_the_other(autopilot_type, mission, tmp_path):
+    vehicles = [AUTOPILOT_TYPES[autopilot_type](system=7), AUTOPILOT_TYPES[autopilot_type](system=8)]
     with (
         gateway_at_work(tmp_path) as gateway,
         stand(vehicles[0], gateway, mission, 0) as tern,
@@ -118,15 +118,15 @@ def test_what_one_uav_leaves_is_flown_by_the_other(flavour, mission, tmp_path):
         upload = steps[1]
         load = load_of(upload).load
         for kind in MissionType:
-            assert not differences(load.of(kind), held_list(vehicles[1].held(kind), kind, flavour), flavour)
+            assert not differences(load.of(kind), onboard_list(vehicles[1].held(kind), kind, autopilot_type), autopilot_type)
         assert load.mission[0].command != mavlink.MAV_CMD_NAV_TAKEOFF
         assert UavLink.objects.get(uav=own).loaded_approval == upload.approval_id
-        begun = vehicles[1].current_item - (flavour is Flavour.ARDUPILOT)
+        begun = vehicles[1].current_item - (autopilot_type is AutopilotType.ARDUPILOT)
         assert load.mission[begun].waypoint == 1, "the end of the leg on which it was held"
         continuation = Mission.objects.get(pk=offer.continuation_id)
         assert continuation.state == MissionState.ACTIVE
 
-        offset = 1 if flavour is Flavour.ARDUPILOT else 0
+        offset = 1 if autopilot_type is AutopilotType.ARDUPILOT else 0
         session = gateway.sessions[8]
         wait_for(lambda: session.state.is_in_air, "that it is seen in the air")
         kite.report(mavlink.MAVLink_mission_current_message(len(load.mission) - 1 + offset))

@@ -5,7 +5,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from missions.models import CommandKind, CommandState, Mission, MissionState, Uav
 from missions.services.commands.dispatch import load_of
 from missions.services.commands.staggered_returns import stuck_returns
@@ -16,11 +16,11 @@ from telemetry.services.alerts.command_alerts import settle_command_alerts
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, begin, dispatch, ended, flyer
+from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, begin, dispatch, ended, flyer
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)
-HEIGHT = {Flavour.PX4: "RTL_RETURN_ALT", Flavour.ARDUPILOT: "RTL_ALT"}
+HEIGHT = {AutopilotType.PX4: "RTL_RETURN_ALT", AutopilotType.ARDUPILOT: "RTL_ALT"}
 
 
 @pytest.fixture
@@ -37,14 +37,14 @@ def half_way(mission: Mission, items) -> tuple[int, LonLat, float]:
     return number, LonLat(float(lon), float(lat)), (before.altitude_m + item.altitude_m) / 2
 
 
-def fly(vehicle, flying, gateway, uav: Uav, mission: Mission, flavour: Flavour):
+def fly(vehicle, flying, gateway, uav: Uav, mission: Mission, autopilot_type: AutopilotType):
     """Loaded, started, and half way along its list."""
     upload = ended(dispatch(mission))
     assert upload.state == CommandState.APPLIED, upload.outcome
     assert ended(begin(uav, mission, upload.approval)).state == CommandState.APPLIED
     items = load_of(upload).load.mission
     item, place, height_m = half_way(mission, items)
-    offset = 1 if flavour is Flavour.ARDUPILOT else 0
+    offset = 1 if autopilot_type is AutopilotType.ARDUPILOT else 0
     vehicle.current_item, flying.at, flying.height_m = item + offset, tuple(place), height_m
     state = gateway.sessions[uav.mavlink_system_id].state
     wait_for(lambda: state.mission_item == item + offset, "its item")
@@ -61,11 +61,11 @@ def along(uav: Uav, mission: Mission):
     return command_uav(uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.RETURN, actor=mission.author, parameters={"along_route": True})
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_it_goes_on_with_its_list_from_where_that_is_clear(flavour, uav, mission, tmp_path):
-    vehicle = FLAVOURS[flavour]()
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_it_goes_on_with_its_list_from_where_that_is_clear(autopilot_type, uav, mission, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway) as flying:
-        items, item, offset = fly(vehicle, flying, gateway, uav, mission, flavour)
+        items, item, offset = fly(vehicle, flying, gateway, uav, mission, autopilot_type)
         sent = uploads(flying)
         command = ended(along(uav, mission))
         assert command.state == CommandState.APPLIED, command.outcome
@@ -76,11 +76,11 @@ def test_it_goes_on_with_its_list_from_where_that_is_clear(flavour, uav, mission
         assert uploads(flying) == sent, "no list is sent in flight"
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(flavour, uav, mission, tmp_path):
-    vehicle = FLAVOURS[flavour]()
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(autopilot_type, uav, mission, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type]()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway) as flying:
-        items, item, offset = fly(vehicle, flying, gateway, uav, mission, flavour)
+        items, item, offset = fly(vehicle, flying, gateway, uav, mission, autopilot_type)
         zone_around((items[-1].longitude_e7 / 1e7, items[-1].latitude_e7 / 1e7), 0.0004, name="Fire brigade")
         rebuild()
         command = ended(along(uav, mission))
@@ -92,14 +92,16 @@ def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(flavour, uav,
     assert "does not return along its route" in alert_words(alert.message, alert.values)
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_ends_it(flavour, uav, mission, tmp_path):
-    name = HEIGHT[flavour]
-    straight = {Flavour.PX4: {"RTL_TYPE": 0.0}, Flavour.ARDUPILOT: {"RTL_ALT_TYPE": 0.0}}[flavour]
-    vehicle = FLAVOURS[flavour](parameters={name: 3_000.0 if flavour is Flavour.ARDUPILOT else 30.0, "MIS_RESTART": 0.0, **straight})
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_ends_it(autopilot_type, uav, mission, tmp_path):
+    name = HEIGHT[autopilot_type]
+    straight = {AutopilotType.PX4: {"RTL_TYPE": 0.0}, AutopilotType.ARDUPILOT: {"RTL_ALT_TYPE": 0.0}}[autopilot_type]
+    vehicle = AUTOPILOT_TYPES[autopilot_type](
+        parameters={name: 3_000.0 if autopilot_type is AutopilotType.ARDUPILOT else 30.0, "MIS_RESTART": 0.0, **straight}
+    )
     vehicle.parameters_kept = {name}
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway) as flying:
-        fly(vehicle, flying, gateway, uav, mission, flavour)
+        fly(vehicle, flying, gateway, uav, mission, autopilot_type)
         wait_for(lambda: bool(Uav.objects.get(pk=uav.pk).autopilot_return), "parameters that were told")
         command = command_uav(uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.RETURN, actor=mission.author, parameters={"height_m": 75.0})
         assert command.kind == CommandKind.SET_RETURN_HEIGHT

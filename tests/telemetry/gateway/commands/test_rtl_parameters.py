@@ -2,20 +2,20 @@
 
 import pytest
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from missions.models import CommandKind, CommandState, Mission, Uav
 from missions.services.commands.rtl_check import return_checks
 from missions.services.commands.steering import command_uav
 from tests.accounts.users import somebody
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, dispatch, ended, flyer
+from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, dispatch, ended, flyer
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)
 TOLD = {
-    Flavour.PX4: ({"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0, "RTL_MIN_DIST": 10.0}, {"RTL_RETURN_ALT": 85.0}, 85.0),
-    Flavour.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
+    AutopilotType.PX4: ({"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0, "RTL_MIN_DIST": 10.0}, {"RTL_RETURN_ALT": 85.0}, 85.0),
+    AutopilotType.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
 }
 
 
@@ -27,26 +27,26 @@ def mission(uav, settings, tmp_path) -> Mission:
     return approved(somebody(), [uav], world().towers[:2])[0]
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_the_height_of_its_return_is_read_and_read_anew(flavour, uav, mission, tmp_path):
-    first, later, height_m = TOLD[flavour]
-    vehicle = FLAVOURS[flavour](parameters=dict(first))
-    reported = {"autopilot": str(flavour), "parameters": first}
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_the_height_of_its_return_is_read_and_read_anew(autopilot_type, uav, mission, tmp_path):
+    first, later, height_m = TOLD[autopilot_type]
+    vehicle = AUTOPILOT_TYPES[autopilot_type](parameters=dict(first))
+    reported = {"autopilot": str(autopilot_type), "parameters": first}
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
         wait_for(lambda: Uav.objects.filter(pk=uav.pk, autopilot_return=reported).exists(), "parameters that were told")
         vehicle.parameters |= later  # somebody else sets it, and the vehicle tells nobody
         assert ended(dispatch(mission)).state == CommandState.APPLIED
-        now = {"autopilot": str(flavour), "parameters": first | later}
+        now = {"autopilot": str(autopilot_type), "parameters": first | later}
         wait_for(lambda: Uav.objects.filter(pk=uav.pk, autopilot_return=now).exists(), "parameters that were read anew")
     (check,) = return_checks(Mission.objects.get(pk=mission.pk))
     assert check.height_m == height_m
     assert check.read_at is not None
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
-def test_the_height_of_its_return_is_set_and_read_back(flavour, uav, mission, tmp_path):
-    first, _later, _height_m = TOLD[flavour]
-    vehicle = FLAVOURS[flavour](parameters=dict(first))
+@pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
+def test_the_height_of_its_return_is_set_and_read_back(autopilot_type, uav, mission, tmp_path):
+    first, _later, _height_m = TOLD[autopilot_type]
+    vehicle = AUTOPILOT_TYPES[autopilot_type](parameters=dict(first))
     name = next(iter(first))
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
         wait_for(lambda: name in Uav.objects.get(pk=uav.pk).autopilot_return.get("parameters", {}), "the parameter of its height")
@@ -54,5 +54,5 @@ def test_the_height_of_its_return_is_set_and_read_back(flavour, uav, mission, tm
             uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.SET_RETURN_HEIGHT, actor=mission.author, parameters={"height_m": 74.2}
         )
         assert ended(command).state == CommandState.APPLIED
-        assert vehicle.parameters[name] == (75.0 if flavour is Flavour.PX4 else 7_500.0)
+        assert vehicle.parameters[name] == (75.0 if autopilot_type is AutopilotType.PX4 else 7_500.0)
         wait_for(lambda: return_checks(Mission.objects.get(pk=mission.pk))[0].height_m == 75.0, "the height that was read back")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.frames import frames_of_datagram
 from mavlink.signing import FrameWriter
 from missions.command_rules import HAND_OVER
@@ -18,14 +18,14 @@ from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session
 from telemetry.models import UavLink
 from telemetry.services.links.links import Lease
-from tests.telemetry.gateway.commands.test_commands import FLAVOURS, ended
+from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, ended
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.outages.test_outages import database_away
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)
-IN_MISSION = {Flavour.PX4: 4 << 16 | 4 << 24, Flavour.ARDUPILOT: 3}
-RETURNING = {Flavour.PX4: 4 << 16 | 5 << 24, Flavour.ARDUPILOT: 6}
+IN_MISSION = {AutopilotType.PX4: 4 << 16 | 4 << 24, AutopilotType.ARDUPILOT: 3}
+RETURNING = {AutopilotType.PX4: 4 << 16 | 5 << 24, AutopilotType.ARDUPILOT: 6}
 
 
 @pytest.fixture(autouse=True)
@@ -46,13 +46,15 @@ def silenced(flying: Flyer, gateway) -> None:
     wait_for(lambda: not session.is_served(time.time(), 1.5), "silence")
 
 
-@pytest.mark.parametrize(("flavour", "kind"), [(Flavour.PX4, CommandKind.ABORT), (Flavour.ARDUPILOT, CommandKind.RETURN)])
-def test_a_return_reaches_a_uav_that_is_not_heard_and_counts_once_it_is(kind, flavour, uav, tmp_path):
-    vehicle = FLAVOURS[flavour](is_armed=True, is_in_air=True, custom_mode=IN_MISSION[flavour])
+@pytest.mark.parametrize(
+    ("autopilot_type", "kind"), [(AutopilotType.PX4, CommandKind.ABORT), (AutopilotType.ARDUPILOT, CommandKind.RETURN)]
+)
+def test_a_return_reaches_a_uav_that_is_not_heard_and_counts_once_it_is(kind, autopilot_type, uav, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type](is_armed=True, is_in_air=True, custom_mode=IN_MISSION[autopilot_type])
     with gateway_at_work(tmp_path) as gateway, Flyer(vehicle, port_of(gateway)) as flying:
         silenced(flying, gateway)
         command = queue_command(uav=uav, kind=kind, actor=None)
-        wait_for(lambda: vehicle.custom_mode == RETURNING[flavour], "that it returns")
+        wait_for(lambda: vehicle.custom_mode == RETURNING[autopilot_type], "that it returns")
         wait_for(lambda: sent_unacknowledged(command), "that it is told")
         time.sleep(1.5)
         assert sent_unacknowledged(command), "nobody has seen it done"
@@ -61,32 +63,32 @@ def test_a_return_reaches_a_uav_that_is_not_heard_and_counts_once_it_is(kind, fl
         assert (command.outcome_code, command.outcome) == ("", "")
 
 
-@pytest.mark.parametrize("flavour", [Flavour.PX4, pytest.param(Flavour.ARDUPILOT, marks=pytest.mark.long)])
-def test_what_stood_on_the_ground_when_it_was_heard_is_not_disarmed_unheard(flavour, uav, tmp_path):
-    vehicle = FLAVOURS[flavour](is_armed=True, custom_mode=IN_MISSION[flavour])
+@pytest.mark.parametrize("autopilot_type", [AutopilotType.PX4, pytest.param(AutopilotType.ARDUPILOT, marks=pytest.mark.long)])
+def test_what_stood_on_the_ground_when_it_was_heard_is_not_disarmed_unheard(autopilot_type, uav, tmp_path):
+    vehicle = AUTOPILOT_TYPES[autopilot_type](is_armed=True, custom_mode=IN_MISSION[autopilot_type])
     with gateway_at_work(tmp_path) as gateway, Flyer(vehicle, port_of(gateway)) as flying:
         silenced(flying, gateway)
         vehicle.is_in_air = True
         queue_command(uav=uav, kind=CommandKind.ABORT, actor=None)
-        wait_for(lambda: vehicle.custom_mode == RETURNING[flavour], "that it returns")
+        wait_for(lambda: vehicle.custom_mode == RETURNING[autopilot_type], "that it returns")
     assert {command for command, _ in vehicle.taken} == {mavlink.MAV_CMD_DO_SET_MODE}
 
 
 def test_it_ends_as_unconfirmed_and_a_firmer_one_takes_its_place(uav, tmp_path):
-    vehicle = FLAVOURS[Flavour.PX4](is_armed=True, is_in_air=True, custom_mode=IN_MISSION[Flavour.PX4])
+    vehicle = AUTOPILOT_TYPES[AutopilotType.PX4](is_armed=True, is_in_air=True, custom_mode=IN_MISSION[AutopilotType.PX4])
     with gateway_at_work(tmp_path) as gateway, Flyer(vehicle, port_of(gateway)) as flying:
         silenced(flying, gateway)
         hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
         wait_for(lambda: sent_unacknowledged(hold), "that it is told")
         back = queue_command(uav=uav, kind=CommandKind.RETURN, actor=None, expires_in_s=2.5)
-        wait_for(lambda: vehicle.custom_mode == RETURNING[Flavour.PX4], "that it returns")
+        wait_for(lambda: vehicle.custom_mode == RETURNING[AutopilotType.PX4], "that it returns")
         assert (ended(back).state, back.outcome_code) == (CommandState.EXPIRED, "unconfirmed")
     hold.refresh_from_db()
     assert (hold.state, hold.outcome_code) == (CommandState.EXPIRED, "superseded")
 
 
 def test_nothing_else_is_sent_unheard(uav, tmp_path):
-    vehicle = FLAVOURS[Flavour.PX4](custom_mode=IN_MISSION[Flavour.PX4])
+    vehicle = AUTOPILOT_TYPES[AutopilotType.PX4](custom_mode=IN_MISSION[AutopilotType.PX4])
     with gateway_at_work(tmp_path) as gateway, Flyer(vehicle, port_of(gateway)) as flying:
         silenced(flying, gateway)
         for kind in (CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.CHANGE_SPEED, CommandKind.PAUSE, CommandKind.RESUME):

@@ -3,7 +3,7 @@
 import pytest
 
 from inspection.geodesy import LonLat
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync import limits
 from mavlink.vehicle_plan import MissionType
 from missions.models import CommandState, Mission
@@ -72,7 +72,7 @@ def test_a_mission_approved_with_points_on_its_legs_is_within_the_limits(uav, pl
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(approve(plan, longest_leg_m=50.0)))
         assert upload.state == CommandState.APPLIED, upload.outcome
-        assert holds(vehicle, load_of(upload).load, Flavour.PX4)
+        assert holds(vehicle, load_of(upload).load, AutopilotType.PX4)
 
 
 def test_a_vehicle_that_tells_no_limits_is_given_its_mission_with_a_warning(uav, plan, tmp_path):
@@ -83,7 +83,7 @@ def test_a_vehicle_that_tells_no_limits_is_given_its_mission_with_a_warning(uav,
 
 
 def test_a_list_that_is_longer_than_usual_is_warned_of(uav, plan, tmp_path, monkeypatch):
-    monkeypatch.setitem(limits.USUAL_ITEMS, (Flavour.PX4, MissionType.MISSION), 2)
+    monkeypatch.setitem(limits.USUAL_ITEMS, (AutopilotType.PX4, MissionType.MISSION), 2)
     with gateway_at_work(tmp_path) as gateway, flyer(Px4(parameters=WIDE), gateway):
         upload = ended(dispatch(approve(plan)))
     assert upload.state == CommandState.APPLIED

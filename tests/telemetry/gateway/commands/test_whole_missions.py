@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from mavlink.autopilot_type import Flavour
+from mavlink.autopilot_type import AutopilotType
 from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.services import TargetRequest
 from missions.services.commands.commands import queue_command
@@ -40,7 +40,7 @@ def test_a_mission_with_a_fence_and_a_look_is_flown_to_its_end_by_an_arducopter(
         upload = ended(dispatch(mission))
         assert upload.state == CommandState.APPLIED, upload.outcome
         load = load_of(upload).load
-        assert load.fence and holds(vehicle, load, Flavour.ARDUPILOT)
+        assert load.fence and holds(vehicle, load, AutopilotType.ARDUPILOT)
         assert [item.command for item in vehicle.lists[0] if 190 < item.command < 202] == [201, 201]
         assert "The fence on the UAV does nothing: FENCE_ENABLE 0." in upload.outcome
         start = ended(begin(uav, mission, upload.approval))

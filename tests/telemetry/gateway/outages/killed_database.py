@@ -67,7 +67,7 @@ def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
     from tests.telemetry.gateway.station import unsigned_uav, wait_for  # noqa: PLC0415
     from tests.telemetry.vehicles.px4 import Px4  # noqa: PLC0415
 
-    class Telling(Flyer):
+    class Reporter(Flyer):
         """Remembers what it has told of its places."""
 
         def _reports(self, now_s: float) -> list[Any]:
@@ -79,7 +79,7 @@ def _played(cluster: Cluster, folder: Path) -> dict[str, Any]:
     uavs = [unsigned_uav(system) for system in range(1, UAVS + 1)]
     given, stored = [], set()
     with gateway_program(port, folder, name="killed") as program:
-        flyers = [Telling(Px4(uav.mavlink_system_id, is_armed=True, is_in_air=True), port) for uav in uavs]
+        flyers = [Reporter(Px4(uav.mavlink_system_id, is_armed=True, is_in_air=True), port) for uav in uavs]
         for flyer in flyers:
             flyer.__enter__()
         try:

@@ -15,7 +15,7 @@ import {
   separateReturns,
   togetherLine,
   warningsOfAll,
-} from "../../static/js/domain/own_return.js";
+} from "../../static/js/domain/rtl_check.js";
 
 const check = (state, warnings = [], more = {}) => ({
   place: 1,
