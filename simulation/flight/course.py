@@ -26,7 +26,7 @@ class Via:
 
 
 @dataclass(frozen=True, slots=True)
-class Pace:
+class SpeedLimits:
     """What the airframe may do on its way."""
 
     climb_mps: float
@@ -87,14 +87,14 @@ class _Corner:
     turn_rad: float
 
 
-def course(start: Vector, vias: Sequence[Via], pace: Pace) -> tuple[Piece, ...]:
+def course(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> tuple[Piece, ...]:
     """From `start` through all of `vias`, to a stand at the last. Points on one spot are passed together, and all their marks told."""
-    legs = _legs(start, vias, pace)
+    legs = _legs(start, vias, speed_limits)
     pieces: list[Piece] = []
     cut_m = 0.0  # what the corner before has taken of this leg
     for number, leg in enumerate(legs):
         follows = legs[number + 1] if number + 1 < len(legs) else None
-        corner = None if follows is None else _corner(leg, follows, pace)
+        corner = None if follows is None else _corner(leg, follows, speed_limits)
         taken_m = 0.0 if corner is None else corner.taken_m
         line_m = max(leg.length_m - cut_m - taken_m, 0.0)
         is_rounded = corner is not None and corner.radius_m > 0.0
@@ -107,10 +107,10 @@ def course(start: Vector, vias: Sequence[Via], pace: Pace) -> tuple[Piece, ...]:
             length_m = corner.radius_m * corner.turn_rad
             pieces.append(Piece(begin, leg.along, inward, corner.radius_m, length_m, corner.speed_mps, corner.speed_mps, leg.mark))
         cut_m = taken_m
-    return _slowed_in_time(pieces, pace.acceleration_mps2)
+    return _slowed_in_time(pieces, speed_limits.acceleration_mps2)
 
 
-def _legs(start: Vector, vias: Sequence[Via], pace: Pace) -> list[_Leg]:
+def _legs(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> list[_Leg]:
     legs: list[_Leg] = []
     here = start
     for via in vias:
@@ -120,7 +120,7 @@ def _legs(start: Vector, vias: Sequence[Via], pace: Pace) -> list[_Leg]:
         if length_m < MIN_LEG_M:
             legs.append(_Leg(here, legs[-1].along if legs else (0.0, 0.0, 1.0), 0.0, via.speed_mps, via.mark))
             continue
-        limits = [(pace.climb_mps if away[2] > 0 else pace.descent_mps) * length_m / abs(away[2])] if away[2] else []
+        limits = [(speed_limits.climb_mps if away[2] > 0 else speed_limits.descent_mps) * length_m / abs(away[2])] if away[2] else []
         if level_m > 1e-3 * length_m:
             limits.append(via.speed_mps * length_m / level_m)
         along = (away[0] / length_m, away[1] / length_m, away[2] / length_m)
@@ -129,7 +129,7 @@ def _legs(start: Vector, vias: Sequence[Via], pace: Pace) -> list[_Leg]:
     return legs
 
 
-def _corner(leg: _Leg, follows: _Leg, pace: Pace) -> _Corner:
+def _corner(leg: _Leg, follows: _Leg, speed_limits: SpeedLimits) -> _Corner:
     cosine = sum(one * other for one, other in zip(leg.along, follows.along, strict=True))
     turn = math.acos(min(1.0, max(-1.0, cosine)))
     slower_mps = min(leg.fastest_mps, follows.fastest_mps)
@@ -141,10 +141,10 @@ def _corner(leg: _Leg, follows: _Leg, pace: Pace) -> _Corner:
     # As wide as the speed needs, and as the waypoint and the legs leave room for.
     radius_m = min(
         CORNER_M / (1.0 / math.cos(turn / 2.0) - 1.0),
-        slower_mps**2 / pace.corner_mps2,
+        slower_mps**2 / speed_limits.corner_mps2,
         0.5 * min(leg.length_m, follows.length_m) / tangent,
     )
-    return _Corner(radius_m * tangent, radius_m, min(slower_mps, math.sqrt(pace.corner_mps2 * radius_m)), turn)
+    return _Corner(radius_m * tangent, radius_m, min(slower_mps, math.sqrt(speed_limits.corner_mps2 * radius_m)), turn)
 
 
 def _inward(before: Vector, after: Vector, turn: float) -> Vector:

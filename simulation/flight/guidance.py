@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from simulation.flight.airframe import Airframe
-from simulation.flight.course import Pace, Piece, Vector
+from simulation.flight.course import Piece, SpeedLimits, Vector
 
 NEAR_ENOUGH_M = 0.01
 MIN_SPEED_MPS = 0.1  # so that an end is reached and not only approached
@@ -176,9 +176,9 @@ class Guidance:
         self.off_m = 0.0
 
     @property
-    def pace(self) -> Pace:
+    def speed_limits(self) -> SpeedLimits:
         airframe = self._airframe
-        return Pace(airframe.climb_mps, airframe.descent_mps, airframe.acceleration_mps2, airframe.corner_mps2)
+        return SpeedLimits(airframe.climb_mps, airframe.descent_mps, airframe.acceleration_mps2, airframe.corner_mps2)
 
     def follow(self, pieces: Sequence[Piece], velocity: Vector, gates: Mapping[int, Gate] | None = None) -> None:
         """`velocity` is what the UAV has; `gates` are those of the marks."""

@@ -77,7 +77,7 @@ class Cockpit:
 
     def fly_through(self, vias: list[Via], gates: dict[int, Gate] | None = None) -> None:
         """From here through these points to a stand at the last."""
-        self.guidance.follow(course(self.here, vias, self.guidance.pace), self.velocity, gates)
+        self.guidance.follow(course(self.here, vias, self.guidance.speed_limits), self.velocity, gates)
 
     def fly_to(self, place: Vector) -> None:
         self.fly_through([Via(place, self.speed_mps)])

@@ -35,7 +35,7 @@ from simulation.services.simulator_leases import (
 )
 from simulation.simulator.flight import Flight, flight_of
 from simulation.simulator.options import Options
-from simulation.vehicle_endpoint.fleet import Change, WrongPace
+from simulation.vehicle_endpoint.fleet import Change, InvalidSpeed
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import Flavour
 from workspace.api.errors import DATABASE_UNAVAILABLE
@@ -184,7 +184,7 @@ class Simulator:
                     speed=change.speed,
                 )
             )
-        except (WrongFaults, WrongPace, KeyError, ValueError):
+        except (WrongFaults, InvalidSpeed, KeyError, ValueError):
             logger.exception("a change of simulation %s cannot be made", change.simulation_id)
 
     def _go_on_without_database(self, error: Exception) -> None:

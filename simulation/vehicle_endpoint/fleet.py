@@ -19,7 +19,7 @@ SLOWEST, FASTEST = 0.1, 60.0
 
 
 @dataclass
-class Pace:
+class StepTimer:
     """`speed` simulated seconds a second of the wall. Times are monotonic wall seconds.
 
     A step is late when it begins more than a whole step after it was due. Behind by more than RESYNC_AFTER_S the rest is not made up for:
@@ -60,7 +60,7 @@ class Pace:
         self.next_s = now_s + self.interval_s
 
 
-class WrongPace(ValueError):
+class InvalidSpeed(ValueError):
     """A pace that nothing is flown at."""
 
 
@@ -108,10 +108,10 @@ class Fleet:
     def __post_init__(self) -> None:
         _check_speed(self.speed)
         self._began_s = time.monotonic()
-        self._pace = Pace(STEP_S, self.speed, self._began_s)
+        self._step_timer = StepTimer(STEP_S, self.speed, self._began_s)
 
     def post(self, change: Change) -> None:
-        """At the next step. Raises WrongPace."""
+        """At the next step. Raises InvalidSpeed."""
         if change.speed is not None:
             _check_speed(change.speed)
         self._changes.put(change)
@@ -123,20 +123,22 @@ class Fleet:
     def run(self, until: Callable[[], bool] = lambda: False) -> FleetReport:
         """Until told to end or `until` says so, which is asked before each step."""
         self._began_s = time.monotonic()
-        self._pace = Pace(STEP_S, self._pace.speed, self._began_s)
+        self._step_timer = StepTimer(STEP_S, self._step_timer.speed, self._began_s)
         with selectors.DefaultSelector() as selector:
             for uav in self._flying():
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
                 now_s = time.monotonic()
-                self._pace.limit = UNACKNOWLEDGED_SPEED if any(uav.radio.is_station_silent(now_s) for uav in self._flying()) else math.inf
-                if self._pace.begin(now_s):
+                self._step_timer.limit = (
+                    UNACKNOWLEDGED_SPEED if any(uav.radio.is_station_silent(now_s) for uav in self._flying()) else math.inf
+                )
+                if self._step_timer.begin(now_s):
                     if until():
                         break
                     self._make_changes(selector)
                     for uav in self._flying():
                         self._guarded(uav, uav.step)
-                for key, _ in selector.select(max(self._pace.next_s - time.monotonic(), 0.0)):
+                for key, _ in selector.select(max(self._step_timer.next_s - time.monotonic(), 0.0)):
                     if not self._guarded(key.data, key.data.receive_frames):
                         selector.unregister(key.fileobj)
         return self.report()
@@ -146,15 +148,15 @@ class Fleet:
             uav.radio.close()
 
     def report(self) -> FleetReport:
-        pace = self._pace
+        step_timer = self._step_timer
         return FleetReport(
             uavs=len(self.uavs),
-            simulated_s=round(pace.steps * STEP_S, 3),
+            simulated_s=round(step_timer.steps * STEP_S, 3),
             wall_s=round(time.monotonic() - self._began_s, 3),
-            steps=pace.steps,
-            late_steps=pace.late_steps,
-            latest_s=round(pace.latest_s, 4),
-            slipped_s=round(pace.slipped_s, 3),
+            steps=step_timer.steps,
+            late_steps=step_timer.late_steps,
+            latest_s=round(step_timer.latest_s, 4),
+            slipped_s=round(step_timer.slipped_s, 3),
             sent=sum(uav.sent for uav in self.uavs),
             received_count=sum(uav.received_count for uav in self.uavs),
             failed=len(self._failed),
@@ -183,7 +185,7 @@ class Fleet:
             except Empty:
                 return
             if change.speed is not None:
-                self._pace.change(change.speed, time.monotonic())
+                self._step_timer.change(change.speed, time.monotonic())
             for uav in self._flying():
                 if change.system in (None, uav.system):
                     faults = None if change.faults is None else change.faults(uav.uav.faults, uav.uav.now_s)
@@ -196,4 +198,4 @@ class Fleet:
 
 def _check_speed(speed: float) -> None:
     if not SLOWEST <= speed <= FASTEST:
-        raise WrongPace(f"The pace must be from {SLOWEST:g} to {FASTEST:g} times real time, not {speed:g}.")
+        raise InvalidSpeed(f"The pace must be from {SLOWEST:g} to {FASTEST:g} times real time, not {speed:g}.")

@@ -1,8 +1,8 @@
 """How far along its profile a UAV is: a distribution over the profile's clock, moved by time and narrowed by reports.
 
-The clock of a flight is its profile's, with the time in motion divided by the UAV's pace (what it flies for what the profile says). It
-shows real seconds: a UAV that flies by the book at its pace is one second further on it each second. What it is off by grows with the
-time in motion (pace, gusts) and with each turn, stop and climb. It never goes back.
+The clock of a flight is its profile's, with the time in motion divided by the UAV's speed factor (flown over planned speed). It shows
+real seconds: a UAV that flies its profile at this factor is one second further on it each second. What it is off by grows with the
+time in motion (speed factor, gusts) and with each turn, stop and climb. It never goes back.
 """
 
 import math
@@ -20,10 +20,10 @@ SPREAD = np.linspace(-2.8, 2.8, 15)
 SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
 # Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
-PACE_SD = 0.06  # of a UAV that has not flown yet
-PACE_WANDERS = 0.008  # in a second
-SUREST_SD = 0.02  # of a pace, however long it was seen
-MIN_PACE, MAX_PACE = 0.4, 1.8
+SPEED_FACTOR_SD = 0.06  # of a UAV that has not flown yet
+SPEED_FACTOR_DRIFT = 0.008  # in a second
+SUREST_SD = 0.02  # of a speed factor, however long it was observed
+MIN_SPEED_FACTOR, MAX_SPEED_FACTOR = 0.4, 1.8
 GUST_SD, GUST_S = 0.025, 25.0  # of speed, and for how long one lasts
 MIN_S = 0.04
 NOW_S = 25.0  # for how long the speed of this moment tells of what comes
@@ -34,19 +34,19 @@ ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, a
 NOT_EVEN = 0.03  # how often it is off along it as well
 FAR_M = 40.0
 OFF_MPS = 2.0
-NOT_SAID = 0.02  # likelihood where the vehicle says that it flies to another waypoint
+NOT_STATED = 0.02  # likelihood where the vehicle says that it flies to another waypoint
 
 
 @dataclass(frozen=True, eq=False)
-class Pace:
-    """Equally likely places on the profile, in its own seconds, shape (PLACES,), and the pace with its variance.
+class AlongTrack:
+    """Equally likely places on the profile, in its own seconds, shape (PLACES,), and the speed factor with its variance.
 
-    `now` is the share by which the speed of the moment differs from the pace.
+    `now` is the share by which the speed of the moment differs from the speed factor.
     """
 
     nominal_s: FloatArray
-    pace: float = 1.0
-    variance: float = PACE_SD**2
+    speed_factor: float = 1.0
+    variance: float = SPEED_FACTOR_SD**2
     now: float = 0.0
 
 
@@ -60,7 +60,7 @@ class Ahead:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class Observation:
     """What a report shows of it; in the profile's frame. None is not told."""
 
     east_m: float | None
@@ -71,71 +71,77 @@ class Seen:
     sequence: int | None
 
 
-def at_start() -> Pace:
-    return Pace(np.zeros(PLACES))
+def at_start() -> AlongTrack:
+    return AlongTrack(np.zeros(PLACES))
 
 
-def anywhere(profile: Profile, sight: Seen) -> Pace | None:
+def anywhere(profile: Profile, observation: Observation) -> AlongTrack | None:
     """Of a flight of which nothing was heard before."""
     start = at_start()
-    return _found_anew(profile, start, clock_of(profile, start), 0.0, sight, within_s=math.inf)
+    return _found_anew(profile, start, clock_of(profile, start), 0.0, observation, within_s=math.inf)
 
 
-def clock_of(profile: Profile, pace: Pace) -> FloatArray:
+def clock_of(profile: Profile, along_track: AlongTrack) -> FloatArray:
     """Of each knot."""
-    return profile.moving_s / pace.pace + profile.standing_s
+    return profile.moving_s / along_track.speed_factor + profile.standing_s
 
 
-def ahead(profile: Profile, pace: Pace, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
+def ahead(profile: Profile, along_track: AlongTrack, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
     """after_s: since the places were right, at least 0. Without is_surely_under_way it may have stood still for any part of it."""
-    clock = clock_of(profile, pace)
-    from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
-    middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
+    clock = clock_of(profile, along_track)
+    from_s = np.interp(along_track.nominal_s, profile.nominal_s, clock)
+    middle_s, uncertainty_s = _moved(profile, along_track, clock, from_s, after_s)
     if not is_surely_under_way:
-        middle_s, doubt_s = _at_any_time(from_s, doubt_s, after_s)
-    reading_s = np.maximum(middle_s[:, None] + doubt_s[:, None] * SPREAD, from_s[:, None]).ravel()
+        middle_s, uncertainty_s = _at_any_time(from_s, uncertainty_s, after_s)
+    reading_s = np.maximum(middle_s[:, None] + uncertainty_s[:, None] * SPREAD, from_s[:, None]).ravel()
     return Ahead(clock, reading_s, np.tile(SPREAD_WEIGHT / PLACES, PLACES))
 
 
-def seen(profile: Profile, pace: Pace, after_s: float, sight: Seen, *, is_surely_under_way: bool = True) -> Pace | None:
+def updated(
+    profile: Profile, along_track: AlongTrack, after_s: float, observation: Observation, *, is_surely_under_way: bool = True
+) -> AlongTrack | None:
     """The places that are left after a report, and a better pace. None where it is nowhere near the profile.
 
     Without is_surely_under_way it may have stood still for any part of the time.
     """
-    clock = clock_of(profile, pace)
-    from_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
-    middle_s, doubt_s = _moved(profile, pace, clock, from_s, after_s)
+    clock = clock_of(profile, along_track)
+    from_s = np.interp(along_track.nominal_s, profile.nominal_s, clock)
+    middle_s, uncertainty_s = _moved(profile, along_track, clock, from_s, after_s)
     if not is_surely_under_way:
-        middle_s, doubt_s = _at_any_time(from_s, doubt_s, after_s)
-    low_s, high_s = float((middle_s - 4.5 * doubt_s).min()), float((middle_s + 4.5 * doubt_s).max())
+        middle_s, uncertainty_s = _at_any_time(from_s, uncertainty_s, after_s)
+    low_s, high_s = float((middle_s - 4.5 * uncertainty_s).min()), float((middle_s + 4.5 * uncertainty_s).max())
     grid_s = np.linspace(max(low_s, float(from_s.min()) - 0.5, float(clock[0])), min(high_s, float(clock[-1])) + 1e-3, GRID)
-    prior = np.exp(-0.5 * ((grid_s[:, None] - middle_s) / doubt_s) ** 2) / doubt_s
-    weight = prior.sum(axis=1) * _likelihood(profile, clock, grid_s, sight)
-    if sight.east_m is not None and sight.north_m is not None:
-        gap_m = np.hypot(_at(grid_s, clock, profile.east_m) - sight.east_m, _at(grid_s, clock, profile.north_m) - sight.north_m)
+    prior = np.exp(-0.5 * ((grid_s[:, None] - middle_s) / uncertainty_s) ** 2) / uncertainty_s
+    weight = prior.sum(axis=1) * _likelihood(profile, clock, grid_s, observation)
+    if observation.east_m is not None and observation.north_m is not None:
+        gap_m = np.hypot(_at(grid_s, clock, profile.east_m) - observation.east_m, _at(grid_s, clock, profile.north_m) - observation.north_m)
         if not weight.max() > 0 or gap_m[int(weight.argmax())] > FAR_M:
-            return _found_anew(profile, pace, clock, float(middle_s.mean()), sight)
+            return _found_anew(profile, along_track, clock, float(middle_s.mean()), observation)
     places_s = _places(grid_s, weight)
     if places_s is None:
-        return replace(pace, nominal_s=np.interp(np.sort(middle_s), clock, profile.nominal_s))
+        return replace(along_track, nominal_s=np.interp(np.sort(middle_s), clock, profile.nominal_s))
     if not is_surely_under_way:
-        return replace(pace, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=_now(profile, clock, places_s, sight))
-    return _learnt(profile, pace, clock, from_s, middle_s, places_s, after_s, sight)
+        return replace(
+            along_track, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=_now(profile, clock, places_s, observation)
+        )
+    return _learnt(profile, along_track, clock, from_s, middle_s, places_s, after_s, observation)
 
 
-def _moved(profile: Profile, pace: Pace, clock: FloatArray, from_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
+def _moved(
+    profile: Profile, along_track: AlongTrack, clock: FloatArray, from_s: FloatArray, after_s: float
+) -> tuple[FloatArray, FloatArray]:
     """Mean and standard deviation of the clock after some time, for each place."""
     plain_s = from_s + after_s
-    moving_s = (_at(plain_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)) / pace.pace
-    slack_s2 = _at(plain_s, clock, profile.doubt_s2) - _at(from_s, clock, profile.doubt_s2)
-    middle_s = plain_s + pace.now * NOW_S * -np.expm1(-moving_s / NOW_S)
+    moving_s = (_at(plain_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)) / along_track.speed_factor
+    slack_s2 = _at(plain_s, clock, profile.variance_s2) - _at(from_s, clock, profile.variance_s2)
+    middle_s = plain_s + along_track.now * NOW_S * -np.expm1(-moving_s / NOW_S)
     gusts_s2 = 2.0 * GUST_SD**2 * GUST_S**2 * (moving_s / GUST_S + np.expm1(-moving_s / GUST_S))
-    return middle_s, np.sqrt(MIN_S**2 + gusts_s2 + pace.variance * moving_s**2 + slack_s2)
+    return middle_s, np.sqrt(MIN_S**2 + gusts_s2 + along_track.variance * moving_s**2 + slack_s2)
 
 
-def _at_any_time(from_s: FloatArray, doubt_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
+def _at_any_time(from_s: FloatArray, uncertainty_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
     """Mean and standard deviation of the clock of one that sets out at some moment of the time, or not yet."""
-    return from_s + 0.5 * after_s, np.hypot(doubt_s, 0.4 * after_s)
+    return from_s + 0.5 * after_s, np.hypot(uncertainty_s, 0.4 * after_s)
 
 
 def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatArray:
@@ -150,36 +156,43 @@ def velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray) -> tupl
     return east, north, up
 
 
-def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, sight: Seen) -> FloatArray:
+def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, observation: Observation) -> FloatArray:
     found = np.ones_like(grid_s)
-    if sight.east_m is not None and sight.north_m is not None:
-        off_east, off_north = _at(grid_s, clock, profile.east_m) - sight.east_m, _at(grid_s, clock, profile.north_m) - sight.north_m
+    if observation.east_m is not None and observation.north_m is not None:
+        off_east, off_north = (
+            _at(grid_s, clock, profile.east_m) - observation.east_m,
+            _at(grid_s, clock, profile.north_m) - observation.north_m,
+        )
         gap_m2 = off_east**2 + off_north**2
         east, north, _ = velocity(profile, clock, grid_s)
         along_m2 = (off_east * east + off_north * north) ** 2 / np.maximum(east**2 + north**2, 1.0)
         near = np.exp(-0.5 * (along_m2 / ALONG_M**2 + np.maximum(gap_m2 - along_m2, 0.0) / OFF_M**2))
         found *= near + NOT_EVEN * np.exp(-0.5 * gap_m2 / OFF_M**2) + 1e-5 * np.exp(-0.5 * gap_m2 / FAR_M**2)
-    if sight.east_mps is not None and sight.north_mps is not None:
+    if observation.east_mps is not None and observation.north_mps is not None:
         east, north, _ = velocity(profile, clock, grid_s)
-        gap_mps2 = (east - sight.east_mps) ** 2 + (north - sight.north_mps) ** 2
+        gap_mps2 = (east - observation.east_mps) ** 2 + (north - observation.north_mps) ** 2
         found *= np.exp(-0.5 * gap_mps2 / OFF_MPS**2) + 1e-3
-    if sight.sequence is not None and len(profile.sequence):
+    if observation.sequence is not None and len(profile.sequence):
         leg = profile.leg[np.minimum(np.searchsorted(clock, grid_s), len(profile.leg) - 1)]
-        found *= np.where(np.abs(profile.sequence[leg] - sight.sequence) <= 0, 1.0, NOT_SAID)
+        found *= np.where(np.abs(profile.sequence[leg] - observation.sequence) <= 0, 1.0, NOT_STATED)
     return found
 
 
-def _found_anew(profile: Profile, pace: Pace, clock: FloatArray, expected_s: float, sight: Seen, *, within_s: float = 120.0) -> Pace | None:
+def _found_anew(
+    profile: Profile, along_track: AlongTrack, clock: FloatArray, expected_s: float, observation: Observation, *, within_s: float = 120.0
+) -> AlongTrack | None:
     """It is not where it was expected: looked for along the whole profile."""
     grid_s = np.unique(np.concatenate([clock, np.linspace(clock[0], clock[-1], max(GRID, int(clock[-1] - clock[0])))]))
-    weight = _likelihood(profile, clock, grid_s, sight) * (1e-3 + np.exp(-np.abs(grid_s - expected_s) / within_s)) * np.gradient(grid_s)
+    weight = (
+        _likelihood(profile, clock, grid_s, observation) * (1e-3 + np.exp(-np.abs(grid_s - expected_s) / within_s)) * np.gradient(grid_s)
+    )
     best = int(weight.argmax())
-    gap_m = math.hypot(_one(grid_s[best], clock, profile.east_m) - (sight.east_m or 0.0),
-                       _one(grid_s[best], clock, profile.north_m) - (sight.north_m or 0.0))  # fmt: skip
+    gap_m = math.hypot(_one(grid_s[best], clock, profile.east_m) - (observation.east_m or 0.0),
+                       _one(grid_s[best], clock, profile.north_m) - (observation.north_m or 0.0))  # fmt: skip
     places_s = _places(grid_s, weight)
     if gap_m > FAR_M or places_s is None:
         return None
-    return replace(pace, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=0.0)
+    return replace(along_track, nominal_s=np.interp(places_s, clock, profile.nominal_s), now=0.0)
 
 
 def _one(reading_s: float, clock: FloatArray, column: FloatArray) -> float:
@@ -195,39 +208,39 @@ def _places(grid_s: FloatArray, weight: FloatArray) -> FloatArray | None:
 
 def _learnt(
     profile: Profile,
-    pace: Pace,
+    along_track: AlongTrack,
     clock: FloatArray,
     from_s: FloatArray,
     middle_s: FloatArray,
     places_s: FloatArray,
     after_s: float,
-    sight: Seen,
-) -> Pace:
+    observation: Observation,
+) -> AlongTrack:
     """Only from time in motion, and where it was seen."""
     nominal_s = np.interp(places_s, clock, profile.nominal_s)
-    variance = pace.variance + PACE_WANDERS**2 * after_s
-    if sight.east_m is None:
-        return replace(pace, nominal_s=nominal_s, variance=min(variance, PACE_SD**2))
-    moving_s = float((_at(middle_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)).mean()) / pace.pace
-    better = pace.pace
+    variance = along_track.variance + SPEED_FACTOR_DRIFT**2 * after_s
+    if observation.east_m is None:
+        return replace(along_track, nominal_s=nominal_s, variance=min(variance, SPEED_FACTOR_SD**2))
+    moving_s = float((_at(middle_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)).mean()) / along_track.speed_factor
+    better = along_track.speed_factor
     if moving_s > 0.5 * after_s:
-        slack_s2 = float((_at(middle_s, clock, profile.doubt_s2) - _at(from_s, clock, profile.doubt_s2)).mean())
-        seen_s2 = 2.0 * GUST_SD**2 * GUST_S * moving_s + slack_s2 + float(places_s.var()) + float(middle_s.var()) + 0.2**2
-        gain = variance / (variance + seen_s2 / moving_s**2)
-        better = pace.pace * (1.0 + gain * float(places_s.mean() - middle_s.mean()) / moving_s)
+        slack_s2 = float((_at(middle_s, clock, profile.variance_s2) - _at(from_s, clock, profile.variance_s2)).mean())
+        observed_s2 = 2.0 * GUST_SD**2 * GUST_S * moving_s + slack_s2 + float(places_s.var()) + float(middle_s.var()) + 0.2**2
+        gain = variance / (variance + observed_s2 / moving_s**2)
+        better = along_track.speed_factor * (1.0 + gain * float(places_s.mean() - middle_s.mean()) / moving_s)
         variance *= 1.0 - gain
-    better, variance = min(max(better, MIN_PACE), MAX_PACE), min(max(variance, SUREST_SD**2), PACE_SD**2)
-    return Pace(nominal_s, better, variance, _now(profile, clock, places_s, sight))
+    better, variance = min(max(better, MIN_SPEED_FACTOR), MAX_SPEED_FACTOR), min(max(variance, SUREST_SD**2), SPEED_FACTOR_SD**2)
+    return AlongTrack(nominal_s, better, variance, _now(profile, clock, places_s, observation))
 
 
-def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, sight: Seen) -> float:
+def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, observation: Observation) -> float:
     """By the speed that was told, where it flies evenly: 0 near corners and stops."""
-    if sight.east_mps is None or sight.north_mps is None:
+    if observation.east_mps is None or observation.north_mps is None:
         return 0.0
     here_s = float(places_s.mean())
     each = np.array(velocity(profile, clock, here_s + np.array([0.0, *EVEN_S])))
     by_profile_mps = float(np.linalg.norm(each[:, 0]))
     if by_profile_mps < MIN_EVEN_MPS or np.linalg.norm(each[:, 1:] - each[:, :1], axis=0).max() > 0.1 * by_profile_mps:
         return 0.0
-    reported_mps = math.sqrt(sight.east_mps**2 + sight.north_mps**2 + (sight.up_mps or 0.0) ** 2)
+    reported_mps = math.sqrt(observation.east_mps**2 + observation.north_mps**2 + (observation.up_mps or 0.0) ** 2)
     return NOW_SHARE * min(max(reported_mps / by_profile_mps - 1.0, -0.5), 0.5)

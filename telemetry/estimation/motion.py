@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from telemetry.estimation.along_track_filter import Pace, ahead, velocity
+from telemetry.estimation.along_track_filter import AlongTrack, ahead, velocity
 from telemetry.estimation.phases import Phase
 from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, Profile
-from telemetry.estimation.state_estimate import CHI2_95, Belief, reach2_of, round_covariance
+from telemetry.estimation.state_estimate import CHI2_95, StateEstimate, gate2_of, isotropic_covariance
 
 FloatArray = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ class Track:
     """A profile and the place on it."""
 
     profile: Profile
-    pace: Pace
+    along_track: AlongTrack
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,13 +72,13 @@ class State:
         return self.home if self.phase is Phase.RETURN else None
 
 
-def after(state: State, after_s: float, *, with_reach: bool = True) -> Belief:
+def after(state: State, after_s: float, *, with_gate: bool = True) -> StateEstimate:
     """after_s: since the report, at least 0. Without its reach, which takes long, a belief's is that of a normal distribution."""
     followed = state.followed
     if followed is not None:
-        return _along(state, followed, after_s, with_reach=with_reach)
+        return _along(state, followed, after_s, with_gate=with_gate)
     if state.phase is Phase.GROUND and state.is_about_to_start and state.route is not None:
-        return _along(state, state.route, after_s, with_reach=with_reach, is_surely_under_way=False)
+        return _along(state, state.route, after_s, with_gate=with_gate, is_surely_under_way=False)
     if state.phase is Phase.GROUND:
         return _plain(state, after_s, 0.0, 0.0, 0.02 * after_s, 0.0)
     if state.phase is Phase.HOLD or state.phase is Phase.LAND:
@@ -95,7 +95,7 @@ def state_speed(state: State) -> float:
     return math.hypot(state.east_mps, state.north_mps)
 
 
-def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking_m: float, up_sd_mps: float) -> Belief:
+def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking_m: float, up_sd_mps: float) -> StateEstimate:
     """A velocity that dies away, and a doubt that is alike all around."""
     gone = -math.expm1(-after_s / keeps_s) if keeps_s else 0.0
     left = 1.0 - gone if keeps_s else 0.0
@@ -108,14 +108,14 @@ def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking
         height_m += state.up_mps * kept_s
     height_sd_m = math.sqrt(SHARED_HEIGHT_M**2 + state.height_variance_m2 + OFF_HEIGHT_M**2 * gone + (up_sd_mps * kept_s) ** 2)
     speed_sd_mps = math.hypot(SPEED_SD_MPS, drift_m / max(after_s, 1.0) + 0.3 * state_speed(state) * gone * left)
-    return Belief(
+    return StateEstimate(
         state.east_m + state.east_mps * keeps_s * gone,
         state.north_m + state.north_mps * keeps_s * gone,
         height_m,
         state.east_mps * left,
         state.north_mps * left,
         up_mps,
-        round_covariance(variance_m2),
+        isotropic_covariance(variance_m2),
         CHI2_95,
         height_sd_m,
         speed_sd_mps,
@@ -132,21 +132,21 @@ def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, flo
     return below_m, -fast_mps if fast_s == after_s else -LANDING_MPS
 
 
-def _along(state: State, track: Track, after_s: float, *, with_reach: bool, is_surely_under_way: bool = True) -> Belief:
+def _along(state: State, track: Track, after_s: float, *, with_gate: bool, is_surely_under_way: bool = True) -> StateEstimate:
     """On its profile, with what it was beside it dying away: from each place on it, it is at the place where it was seen."""
     profile = track.profile
-    later = ahead(profile, track.pace, after_s, is_surely_under_way=is_surely_under_way)
+    later = ahead(profile, track.along_track, after_s, is_surely_under_way=is_surely_under_way)
     weight, clock = later.weight, later.clock
     aside, turning = math.exp(-after_s / ASIDE_S), math.exp(-after_s / TURNS_S)
     turned_s = TURNS_S * (1.0 - turning)
-    at_report = np.interp(track.pace.nominal_s, profile.nominal_s, clock)
-    seen = (state.east_m, state.north_m, state.height_m)
+    at_report = np.interp(track.along_track.nominal_s, profile.nominal_s, clock)
+    reported_position = (state.east_m, state.north_m, state.height_m)
     columns = (profile.east_m, profile.north_m, profile.height_m)
     velocity_now = velocity(profile, clock, at_report)
     each_mps = velocity(profile, clock, later.reading_s)
     places, speeds, beside_mps = [], [], []
     for place, column, reported_mps, then, now_mps in zip(
-        seen, columns, (state.east_mps, state.north_mps, state.up_mps), each_mps, velocity_now, strict=True
+        reported_position, columns, (state.east_mps, state.north_mps, state.up_mps), each_mps, velocity_now, strict=True
     ):
         besides_mps = reported_mps - float(now_mps.mean())
         each = np.interp(later.reading_s, clock, column) + besides_mps * turned_s
@@ -158,15 +158,15 @@ def _along(state: State, track: Track, after_s: float, *, with_reach: bool, is_s
     middle = [float(weight @ each) for each in places]
     wandered = -math.expm1(-after_s / OFF_ROUTE_S)
     turning_m = BESIDE_SHARE * math.hypot(*beside_mps[:2]) * turned_s
-    round_m2 = SHARED_M**2 + state.variance_m2 + OFF_ROUTE_M**2 * wandered + turning_m**2
+    isotropic_variance_m2 = SHARED_M**2 + state.variance_m2 + OFF_ROUTE_M**2 * wandered + turning_m**2
     off_east, off_north = places[0] - middle[0], places[1] - middle[1]
     across = float(weight @ (off_east * off_north))
-    covariance = np.array([[weight @ off_east**2, across], [across, weight @ off_north**2]]) + round_covariance(round_m2)
+    covariance = np.array([[weight @ off_east**2, across], [across, weight @ off_north**2]]) + isotropic_covariance(isotropic_variance_m2)
     level_mps = np.hypot(each_mps[0], each_mps[1])
     mean_mps = float(weight @ level_mps)
     settled = -math.expm1(-after_s / SPEED_S)
     height_m2 = SHARED_HEIGHT_M**2 + state.height_variance_m2 + OFF_HEIGHT_M**2 * wandered + (BESIDE_SHARE * beside_mps[2] * turned_s) ** 2
-    return Belief(
+    return StateEstimate(
         middle[0],
         middle[1],
         None if state.height_m is None else middle[2],
@@ -174,7 +174,7 @@ def _along(state: State, track: Track, after_s: float, *, with_reach: bool, is_s
         speeds[1],
         speeds[2],
         covariance,
-        reach2_of(off_east, off_north, weight, round_m2, covariance, _held(after_s)) if with_reach else CHI2_95,
+        gate2_of(off_east, off_north, weight, isotropic_variance_m2, covariance, _held(after_s)) if with_gate else CHI2_95,
         math.sqrt(height_m2 + float(weight @ (places[2] - middle[2]) ** 2)),
         math.sqrt(SPEED_SD_MPS**2 + float(weight @ (level_mps - mean_mps) ** 2) + (SPEED_SHARE * mean_mps * settled) ** 2),
         float(np.interp(float(weight @ later.reading_s), clock, profile.nominal_s)),

@@ -39,7 +39,7 @@ class Profile:
 
     moving_s      time in motion so far, and
     standing_s    time at tasks: what the clock shows is both together
-    doubt_s2      variance of the clock so far, of turns, stops and climbs
+    variance_s2      variance of the clock so far, of turns, stops and climbs
     east_m, north_m, height_m (above take-off), along_m (of the route, horizontally)
     leg           node that is flown to, or stood at: 0 is the first waypoint
     Of the nodes: sequence (-1 for the landing), target (-1 for none), knot at which each is reached.
@@ -48,7 +48,7 @@ class Profile:
     frame: LocalFrame
     moving_s: FloatArray
     standing_s: FloatArray
-    doubt_s2: FloatArray
+    variance_s2: FloatArray
     east_m: FloatArray
     north_m: FloatArray
     height_m: FloatArray
@@ -148,7 +148,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
     wanted_mps = np.maximum(length_m / wanted_s, 1e-3)
     bend = _bends(step, length_m)
     corner_mps = _corner_speeds(nodes, bend, length_m, wanted_mps, start_mps)
-    moving, standing, doubt, along, leg, points = [0.0], [0.0], [0.0], [0.0], [0], [place[0]]
+    moving, standing, uncertainty, along, leg, points = [0.0], [0.0], [0.0], [0.0], [0], [place[0]]
     reached = []
     share = 0.5 * (1.0 - np.cos(np.linspace(0.0, math.pi, STEPS + 1)))
     for number, node in enumerate(nodes[1:]):
@@ -165,18 +165,18 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
             for part in range(STEPS):
                 moving.append(moving[-1] + float(taken_s[part]))
                 standing.append(standing[-1])
-                doubt.append(doubt[-1] + climbing_s2 * float(taken_s[part]) / total_s)
+                uncertainty.append(uncertainty[-1] + climbing_s2 * float(taken_s[part]) / total_s)
                 along.append(along[-1] + float(share[part + 1] - share[part]) * float(level_m[number]))
                 points.append(place[number] + share[part + 1] * step[number])
                 leg.append(number)
         reached.append(len(moving) - 1)
         is_last = number == len(nodes) - 2
         stops = node.hold_s is not None
-        doubt[-1] += 0.0 if stops or is_last else (STRAIGHT_S + TURN_S * math.sin(0.5 * bend[number + 1])) ** 2
+        uncertainty[-1] += 0.0 if stops or is_last else (STRAIGHT_S + TURN_S * math.sin(0.5 * bend[number + 1])) ** 2
         if stops and not is_last:
             moving.append(moving[-1])
             standing.append(standing[-1] + SETTLE_S + (node.hold_s or 0.0))
-            doubt.append(doubt[-1] + STOP_S**2)
+            uncertainty.append(uncertainty[-1] + STOP_S**2)
             along.append(along[-1])
             points.append(place[number + 1])
             leg.append(number)
@@ -185,7 +185,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
         frame=frame,
         moving_s=np.array(moving),
         standing_s=np.array(standing),
-        doubt_s2=np.array(doubt),
+        variance_s2=np.array(uncertainty),
         east_m=columns[:, 0].copy(),
         north_m=columns[:, 1].copy(),
         height_m=columns[:, 2].copy(),

@@ -14,8 +14,8 @@ _RINGS = np.sqrt(-2.0 * np.log(1.0 - np.array([0.1, 0.3, 0.5, 0.7, 0.92])))
 
 
 @dataclass(frozen=True, eq=False)
-class Belief:
-    """Means, and how sure they are. `covariance` (2, 2) of east and north [m2]; `reach2` the squared Mahalanobis distance that 95 % keep
+class StateEstimate:
+    """Means, and how sure they are. `covariance` (2, 2) of east and north [m2]; `gate2` the squared Mahalanobis distance that 95 % keep
     within; the others are standard deviations. `reading_s` is where it is on its profile's clock, None off a route."""
 
     east_m: float
@@ -25,7 +25,7 @@ class Belief:
     north_mps: float
     up_mps: float
     covariance: FloatArray
-    reach2: float
+    gate2: float
     height_sd_m: float
     speed_sd_mps: float
     nominal_s: float | None = None
@@ -35,12 +35,12 @@ class Belief:
         return float(np.hypot(self.east_mps, self.north_mps))
 
 
-def round_covariance(variance_m2: float) -> FloatArray:
+def isotropic_covariance(variance_m2: float) -> FloatArray:
     return np.eye(2) * variance_m2
 
 
-def reach2_of(
-    east_m: FloatArray, north_m: FloatArray, weight: FloatArray, round_m2: float, covariance: FloatArray, held: float = 0.95
+def gate2_of(
+    east_m: FloatArray, north_m: FloatArray, weight: FloatArray, isotropic_variance_m2: float, covariance: FloatArray, held: float = 0.95
 ) -> float:
     """How far, as a squared Mahalanobis distance, a share `held` lies: of places around the mean, each with a round doubt of its own."""
     inverse = np.linalg.inv(covariance)
@@ -48,8 +48,8 @@ def reach2_of(
     found, parts = [], []
     for number, ring in enumerate(_RINGS):
         lie = angle + number * 1.256_637
-        east = east_m + ring * np.sqrt(round_m2) * np.cos(lie)
-        north = north_m + ring * np.sqrt(round_m2) * np.sin(lie)
+        east = east_m + ring * np.sqrt(isotropic_variance_m2) * np.cos(lie)
+        north = north_m + ring * np.sqrt(isotropic_variance_m2) * np.sin(lie)
         found.append(inverse[0, 0] * east**2 + 2.0 * inverse[0, 1] * east * north + inverse[1, 1] * north**2)
         parts.append(weight)
     distance2, share = np.concatenate(found), np.concatenate(parts)

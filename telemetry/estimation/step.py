@@ -8,13 +8,13 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.decoding.measurement import Measurement
-from telemetry.estimation.along_track_filter import PLACES, Pace, Seen, anywhere, at_start, seen
+from telemetry.estimation.along_track_filter import PLACES, AlongTrack, Observation, anywhere, at_start, updated
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after
 from telemetry.estimation.phases import Phase, phase_of
 from telemetry.estimation.profile import Profile, way_home
 from telemetry.estimation.report import Report
-from telemetry.estimation.state_estimate import Belief
+from telemetry.estimation.state_estimate import StateEstimate
 
 GPS_VARIANCE_M2 = 0.45**2  # each way, of what no two reports share
 BARO_VARIANCE_M2 = 0.25**2
@@ -22,7 +22,7 @@ MAX_DIFFERENCE_S = 15.0  # between two positions, for a velocity
 STANDS_BELOW_MPS = 0.7
 CLIMBS_ABOVE_MPS = 0.5
 AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it comes down there
-RETURN_PACE_SD = 0.15
+RETURN_SPEED_FACTOR_SD = 0.15
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +44,8 @@ def first_state(course: Course, report: Report) -> State | None:
     east_mps, north_mps, up_mps = _velocity(reported) or (0.0, 0.0, 0.0)
     route = None
     if course.profile is not None:
-        pace = at_start() if phase is Phase.GROUND else anywhere(course.profile, _sight(phase, reported, place))
-        route = None if pace is None else Track(course.profile, pace)
+        along_track = at_start() if phase is Phase.GROUND else anywhere(course.profile, _observation(phase, reported, place))
+        route = None if along_track is None else Track(course.profile, along_track)
     return _with_way(
         course,
         State(
@@ -60,15 +60,15 @@ def first_state(course: Course, report: Report) -> State | None:
 def next_state(course: Course, state: State, report: Report) -> State:
     """report: measured no earlier than the state's."""
     reported, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
-    belief = after(state, after_s, with_reach=False)
+    state_estimate = after(state, after_s, with_gate=False)
     stated = phase_of(reported.mode, is_armed=reported.is_armed, is_in_air=reported.is_in_air)
     phase = stated or state.phase
     place = _place(course, reported)
-    east_m, north_m, variance_m2 = _fused(belief, place)
-    height_m, height_variance_m2 = _fused_height(belief, reported.altitude_relative_m)
-    east_mps, north_mps, up_mps = _velocity(reported) or _velocity_from(state, belief, place, report.measured_s)
+    east_m, north_m, variance_m2 = _fused(state_estimate, place)
+    height_m, height_variance_m2 = _fused_height(state_estimate, reported.altitude_relative_m)
+    east_mps, north_mps, up_mps = _velocity(reported) or _velocity_from(state, state_estimate, place, report.measured_s)
     sequence = reported.waypoint_sequence if reported.waypoint_sequence is not None else state.sequence
-    route = _route(course, state, phase, after_s, _sight(phase, reported, place))
+    route = _route(course, state, phase, after_s, _observation(phase, reported, place))
     if phase is Phase.FREE and stated is None and route is not None:
         phase = Phase.MISSION
     return _with_way(
@@ -96,43 +96,48 @@ def _velocity(reported: Measurement) -> tuple[float, float, float] | None:
     return reported.velocity_east_mps, reported.velocity_north_mps, -(reported.velocity_down_mps or 0.0)
 
 
-def _sight(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> Seen:
+def _observation(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> Observation:
     """The velocity only where it tells of the place on the route."""
     velocity = _velocity(reported) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
     east_m, north_m = place or (None, None)
     east_mps, north_mps, up_mps = velocity or (None, None, None)
-    return Seen(east_m, north_m, east_mps, north_mps, up_mps, reported.waypoint_sequence)
+    return Observation(east_m, north_m, east_mps, north_mps, up_mps, reported.waypoint_sequence)
 
 
-def _velocity_from(state: State, belief: Belief, place: tuple[float, float] | None, at_s: float) -> tuple[float, float, float]:
+def _velocity_from(
+    state: State, state_estimate: StateEstimate, place: tuple[float, float] | None, at_s: float
+) -> tuple[float, float, float]:
     """Where none was told: from two positions, or as believed."""
     past_s = at_s - state.placed_s
     if place is None or not 0.5 <= past_s <= MAX_DIFFERENCE_S:
-        return belief.east_mps, belief.north_mps, belief.up_mps
-    return (place[0] - state.east_m) / past_s, (place[1] - state.north_m) / past_s, belief.up_mps
+        return state_estimate.east_mps, state_estimate.north_mps, state_estimate.up_mps
+    return (place[0] - state.east_m) / past_s, (place[1] - state.north_m) / past_s, state_estimate.up_mps
 
 
-def _fused(belief: Belief, place: tuple[float, float] | None) -> tuple[float, float, float]:
+def _fused(state_estimate: StateEstimate, place: tuple[float, float] | None) -> tuple[float, float, float]:
     """A measured position and the believed one, each by its variance."""
-    own_m2 = max(0.5 * float(np.trace(belief.covariance)) - SHARED_M**2, 0.01)
+    predicted_m2 = max(0.5 * float(np.trace(state_estimate.covariance)) - SHARED_M**2, 0.01)
     if place is None:
-        return belief.east_m, belief.north_m, own_m2
-    gain = own_m2 / (own_m2 + GPS_VARIANCE_M2)
-    east_m, north_m = belief.east_m + gain * (place[0] - belief.east_m), belief.north_m + gain * (place[1] - belief.north_m)
+        return state_estimate.east_m, state_estimate.north_m, predicted_m2
+    gain = predicted_m2 / (predicted_m2 + GPS_VARIANCE_M2)
+    east_m, north_m = (
+        state_estimate.east_m + gain * (place[0] - state_estimate.east_m),
+        state_estimate.north_m + gain * (place[1] - state_estimate.north_m),
+    )
     return east_m, north_m, gain * GPS_VARIANCE_M2
 
 
-def _fused_height(belief: Belief, reported_m: float | None) -> tuple[float | None, float]:
-    own_m2 = max(belief.height_sd_m**2 - SHARED_HEIGHT_M**2, 0.01)
+def _fused_height(state_estimate: StateEstimate, reported_m: float | None) -> tuple[float | None, float]:
+    predicted_m2 = max(state_estimate.height_sd_m**2 - SHARED_HEIGHT_M**2, 0.01)
     if reported_m is None:
-        return belief.height_m, own_m2
-    if belief.height_m is None:
+        return state_estimate.height_m, predicted_m2
+    if state_estimate.height_m is None:
         return reported_m, BARO_VARIANCE_M2
-    gain = own_m2 / (own_m2 + BARO_VARIANCE_M2)
-    return belief.height_m + gain * (reported_m - belief.height_m), gain * BARO_VARIANCE_M2
+    gain = predicted_m2 / (predicted_m2 + BARO_VARIANCE_M2)
+    return state_estimate.height_m + gain * (reported_m - state_estimate.height_m), gain * BARO_VARIANCE_M2
 
 
-def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Seen) -> Track | None:
+def _route(course: Course, state: State, phase: Phase, after_s: float, observation: Observation) -> Track | None:
     """The place on the approved route, followed also where it is left for a while."""
     if course.profile is None:
         return None
@@ -142,19 +147,19 @@ def _route(course: Course, state: State, phase: Phase, after_s: float, sight: Se
         return state.route
     before = state.route
     if before is None:
-        pace = None if sight.east_m is None else anywhere(course.profile, sight)
+        along_track = None if observation.east_m is None else anywhere(course.profile, observation)
     elif phase in {Phase.MISSION, Phase.TAKE_OFF} or state.phase in {Phase.MISSION, Phase.TAKE_OFF}:
         is_under_way = state.phase in {Phase.MISSION, Phase.TAKE_OFF} and phase in {Phase.MISSION, Phase.TAKE_OFF}
-        pace = seen(course.profile, before.pace, after_s, sight, is_surely_under_way=is_under_way)
+        along_track = updated(course.profile, before.along_track, after_s, observation, is_surely_under_way=is_under_way)
     else:
-        pace = before.pace  # it stands where it left the route
-    return None if pace is None else Track(course.profile, pace)
+        along_track = before.along_track  # it stands where it left the route
+    return None if along_track is None else Track(course.profile, along_track)
 
 
 def _is_about_to_start(reported: Measurement, phase: Phase, route: Track | None) -> bool:
     flies_when_up = phase_of(reported.mode, is_armed=None, is_in_air=None)
     stands_ready = phase is Phase.GROUND and reported.is_armed is True and flies_when_up in {Phase.MISSION, Phase.TAKE_OFF}
-    return stands_ready and route is not None and not route.pace.nominal_s.any()
+    return stands_ready and route is not None and not route.along_track.nominal_s.any()
 
 
 def _on_route(phase: Phase, route: Track | None) -> Phase:
@@ -175,7 +180,7 @@ def _with_way(course: Course, state: State) -> State:
         return _changed(state, Phase.LAND, None)
     towards_mps = 0.0 if far_m < 1.0 else max((state.east_mps * east_m + state.north_mps * north_m) / far_m, 0.0)
     profile = way_home(course.frame, (state.east_m, state.north_m, state.height_m), towards_mps, LonLat(*home), course.knowledge)
-    return _changed(state, Phase.RETURN, Track(profile, Pace(np.zeros(PLACES), variance=RETURN_PACE_SD**2)))
+    return _changed(state, Phase.RETURN, Track(profile, AlongTrack(np.zeros(PLACES), variance=RETURN_SPEED_FACTOR_SD**2)))
 
 
 def _changed(state: State, phase: Phase, home: Track | None) -> State:

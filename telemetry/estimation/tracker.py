@@ -12,23 +12,23 @@ import numpy as np
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from telemetry.estimation.contact import PROMPT_S, SILENT_INTERVALS, SILENT_S, Hearing
 from telemetry.estimation.estimate import Arrival, Ellipse, Estimate
+from telemetry.estimation.eta import arrivals_of, end_of
 from telemetry.estimation.knowledge import Knowledge
+from telemetry.estimation.link_model import PROMPT_S, SILENT_INTERVALS, SILENT_S, LinkModel
 from telemetry.estimation.motion import State, after
-from telemetry.estimation.outlook import arrivals_of, end_of
-from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.phases import Phase
 from telemetry.estimation.profile import profile_of
 from telemetry.estimation.report import Report, sound
-from telemetry.estimation.state_estimate import Belief
+from telemetry.estimation.state_estimate import StateEstimate
 from telemetry.estimation.step import Course, first_state, next_state
+from telemetry.estimation.uav_clock import UavClock
 
 KEPT_S = 300.0  # of reports: one that comes later than that changes nothing
 KEPT = 400
-VOUCHED_M = 400.0  # a bound that is wider says nothing any more
-VOUCHED_S = 900.0
-VOUCHED_AWAY_S = 30.0  # of one that would leave its route without a link
+MAX_CONFIDENT_BOUND_M = 400.0  # a bound that is wider says nothing any more
+CONFIDENCE_HORIZON_S = 900.0
+CONFIDENCE_HORIZON_AWAY_S = 30.0  # of one that would leave its route without a link
 MEASURED_WITHIN_S = 1.0
 ARRIVALS_KEPT = 6
 TOGETHER_S = 0.2  # what comes within so long comes in one parcel
@@ -45,12 +45,12 @@ class Tracker:
     """
 
     knowledge: Knowledge
-    time: OwnTime = field(default_factory=OwnTime)
+    time: UavClock = field(default_factory=UavClock)
     _course: Course | None = None
     _reports: list[Report] = field(default_factory=list)
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
-    _outlook: tuple[tuple[float, float], tuple[Arrival, ...], Arrival | None] | None = None
-    _hearing: Hearing | None = None
+    _etas: tuple[tuple[float, float], tuple[Arrival, ...], Arrival | None] | None = None
+    _link_model: LinkModel | None = None
     _contact: tuple[float, float | None] | None = None  # report that a silence began with, and when it is expected to end
     _arrivals_s: deque[float] = field(default_factory=lambda: deque(maxlen=ARRIVALS_KEPT))
 
@@ -72,8 +72,8 @@ class Tracker:
 
     def learn(self, places: Sequence[LonLat]) -> None:
         """Where on earlier flights something was heard promptly."""
-        if self._hearing is not None and places:
-            self._hearing.learn(self._frame.to_metres(np.array(places)))
+        if self._link_model is not None and places:
+            self._link_model.learn(self._frame.to_metres(np.array(places)))
             self._contact = None
 
     def take(self, report: Report) -> None:
@@ -92,7 +92,7 @@ class Tracker:
             self._reports.insert(place, read)
             self._states.insert(place, None)
         self._go_through(place)
-        self._outlook = None
+        self._etas = None
         self._note_received(read)
         self._forget()
 
@@ -102,18 +102,18 @@ class Tracker:
         state = self._states[place] if place >= 0 else None
         if state is None or self._course is None:
             return None
-        belief = after(state, self.time.own_s(at_s) - state.report_s)
-        return self._reported(state, belief, at_s)
+        state_estimate = after(state, self.time.uav_s(at_s) - state.report_s)
+        return self._reported(state, state_estimate, at_s)
 
     def _go_through(self, place: int) -> None:
         state = self._states[place - 1] if place else None
         for number in range(place, len(self._reports)):
-            report = self._by_own_time(self._reports[number])
+            report = self._by_uav_clock(self._reports[number])
             state = self._begin(report) if state is None or self._course is None else next_state(self._course, state, report)
             self._states[number] = state
 
-    def _by_own_time(self, report: Report) -> Report:
-        return replace(report, measured_s=self.time.own_s(report.measured_s), received_s=self.time.own_s(report.received_s))
+    def _by_uav_clock(self, report: Report) -> Report:
+        return replace(report, measured_s=self.time.uav_s(report.measured_s), received_s=self.time.uav_s(report.received_s))
 
     def _begin(self, report: Report) -> State | None:
         reported = report.measurement
@@ -123,15 +123,15 @@ class Tracker:
             profile = profile_of(self.knowledge)
             frame = LocalFrame.around(reported.longitude_deg, reported.latitude_deg) if profile is None else profile.frame
             self._course = Course(self.knowledge, frame, profile)
-            self._hearing = None if profile is None else Hearing(profile)
+            self._link_model = None if profile is None else LinkModel(profile)
         return first_state(self._course, report)
 
     def _note_received(self, report: Report) -> None:
         reported = report.measurement
-        if self._hearing is None or reported.longitude_deg is None or reported.latitude_deg is None:
+        if self._link_model is None or reported.longitude_deg is None or reported.latitude_deg is None:
             return
         if report.received_s - report.measured_s < PROMPT_S:
-            self._hearing.learn(self._frame.to_metres(np.array([[reported.longitude_deg, reported.latitude_deg]])))
+            self._link_model.learn(self._frame.to_metres(np.array([[reported.longitude_deg, reported.latitude_deg]])))
 
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
@@ -140,30 +140,30 @@ class Tracker:
         if gone > 0:
             del self._reports[:gone], self._states[:gone]
 
-    def _reported(self, state: State, belief: Belief, at_s: float) -> Estimate:
-        bound = _ellipse(belief)
-        since_s = self.time.own_s(at_s) - state.placed_s
-        lon, lat = self._frame.to_degrees(np.array([[belief.east_m, belief.north_m]]))[0]
-        height_m = None if belief.height_m is None else float(belief.height_m)
+    def _reported(self, state: State, state_estimate: StateEstimate, at_s: float) -> Estimate:
+        bound = _ellipse(state_estimate)
+        since_s = self.time.uav_s(at_s) - state.placed_s
+        lon, lat = self._frame.to_degrees(np.array([[state_estimate.east_m, state_estimate.north_m]]))[0]
+        height_m = None if state_estimate.height_m is None else float(state_estimate.height_m)
         amsl_m = None if height_m is None or state.amsl_above_m is None else height_m + state.amsl_above_m
-        vouched_s = VOUCHED_S if self.knowledge.is_to_go_on else VOUCHED_AWAY_S
+        horizon_s = CONFIDENCE_HORIZON_S if self.knowledge.is_to_go_on else CONFIDENCE_HORIZON_AWAY_S
         estimate = Estimate(
             at_s=at_s,
             position=LonLat(float(lon), float(lat)),
             altitude_relative_m=height_m,
             altitude_amsl_m=amsl_m,
-            speed_mps=belief.speed_mps,
-            heading_deg=_heading_deg(state, belief),
+            speed_mps=state_estimate.speed_mps,
+            heading_deg=_heading_deg(state, state_estimate),
             bound=bound,
-            bound_height_m=1.96 * belief.height_sd_m,
-            bound_speed_mps=1.96 * belief.speed_sd_mps,
+            bound_height_m=1.96 * state_estimate.height_sd_m,
+            bound_speed_mps=1.96 * state_estimate.speed_sd_mps,
             report_s=self.time.server_s(state.report_s),
             is_measured=at_s - self.time.server_s(state.placed_s) < MEASURED_WITHIN_S,
-            is_lost=since_s > vouched_s or bound.along_m > VOUCHED_M,
+            is_lost=since_s > horizon_s or bound.along_m > MAX_CONFIDENT_BOUND_M,
             waypoint_sequence=state.sequence,
             report_interval_s=self.report_interval_s,
         )
-        return estimate if belief.nominal_s is None else self._with_route(estimate, state, belief.nominal_s)
+        return estimate if state_estimate.nominal_s is None else self._with_route(estimate, state, state_estimate.nominal_s)
 
     @property
     def _frame(self) -> LocalFrame:
@@ -195,22 +195,22 @@ class Tracker:
 
     def _contact_expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
         """Worked out once a silence: a time that passes is overdue, and is not moved on."""
-        if self._hearing is None or not self.is_silent(at_s):
+        if self._link_model is None or not self.is_silent(at_s):
             return None
         if self._contact is None or self._contact[0] != state.report_s:
-            expected_s = self._hearing.expected_s(state, along_m, self.time.own_s(at_s))
+            expected_s = self._link_model.expected_s(state, along_m, self.time.uav_s(at_s))
             self._contact = (state.report_s, None if expected_s is None else self.time.server_s(expected_s))
         return self._contact[1]
 
     def _foreseen(self, state: State) -> tuple[tuple[Arrival, ...], Arrival | None]:
         """By the server's clock; worked out once a report."""
-        if self._outlook is None or self._outlook[0] != (state.report_s, self.time.rate):
+        if self._etas is None or self._etas[0] != (state.report_s, self.time.rate):
             followed = state.followed
             arrivals = () if state.route is None or followed is not state.route else arrivals_of(state, state.route)
             end = None if followed is None else end_of(state, followed)
             reported = tuple(self._by_server(arrival) for arrival in arrivals)
-            self._outlook = ((state.report_s, self.time.rate), reported, None if end is None else self._by_server(end))
-        return self._outlook[1:]
+            self._etas = ((state.report_s, self.time.rate), reported, None if end is None else self._by_server(end))
+        return self._etas[1:]
 
     def _by_server(self, arrival: Arrival) -> Arrival:
         at_s, earliest_s, latest_s = map(self.time.server_s, (arrival.at_s, arrival.earliest_s, arrival.latest_s))
@@ -221,15 +221,15 @@ def _not_past(arrival: Arrival, at_s: float) -> Arrival:
     return replace(arrival, at_s=max(arrival.at_s, at_s), earliest_s=max(arrival.earliest_s, at_s))
 
 
-def _heading_deg(state: State, belief: Belief) -> float | None:
+def _heading_deg(state: State, state_estimate: StateEstimate) -> float | None:
     """The course while it moves, as the nose goes along with it; else as last told."""
-    if belief.speed_mps < 1.0 or state.phase in {Phase.GROUND, Phase.FREE}:
+    if state_estimate.speed_mps < 1.0 or state.phase in {Phase.GROUND, Phase.FREE}:
         return state.heading_deg
-    return math.degrees(math.atan2(belief.east_mps, belief.north_mps)) % 360.0
+    return math.degrees(math.atan2(state_estimate.east_mps, state_estimate.north_mps)) % 360.0
 
 
-def _ellipse(belief: Belief) -> Ellipse:
-    values, vectors = np.linalg.eigh(belief.covariance)
-    long_m, short_m = (float(np.sqrt(belief.reach2 * max(value, 0.0))) for value in (values[1], values[0]))
+def _ellipse(state_estimate: StateEstimate) -> Ellipse:
+    values, vectors = np.linalg.eigh(state_estimate.covariance)
+    long_m, short_m = (float(np.sqrt(state_estimate.gate2 * max(value, 0.0))) for value in (values[1], values[0]))
     bearing_deg = math.degrees(math.atan2(vectors[0, 1], vectors[1, 1])) % 180.0
     return Ellipse(long_m, short_m, bearing_deg)

@@ -46,16 +46,16 @@ class Reporter:
         """Two who bear one system id, or bring the same signed frames: which of them is the UAV nobody can know."""
         now_s = time.time()
         for session in self.sessions():
-            if session.belief.second_sender is None or session.peer is None:
+            if session.authentication.second_sender is None or session.peer is None:
                 continue
-            other, last_s = session.belief.second_sender
+            other, last_s = session.authentication.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
-                is_signed = session.belief.addresses.copied is not None
+                is_signed = session.authentication.addresses.copied is not None
                 await self.database.run(
                     raise_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other, is_signed=is_signed
                 )
             else:
-                session.belief.second_sender = None
+                session.authentication.second_sender = None
                 await self.database.run(raise_second_sender, uav_id=session.uav.uav_id)
 
     async def flown(self) -> None:
@@ -89,8 +89,8 @@ class Reporter:
         """A key's first use at once, as it ends those before it; later ones now and then."""
         now_s, used = time.monotonic(), set()
         for session in self.sessions():
-            used |= {key for key in session.belief.used if now_s - self._keys_noted_s.get(key, -math.inf) >= KEY_AGAIN_S}
-            session.belief.used = set()
+            used |= {key for key in session.authentication.used if now_s - self._keys_noted_s.get(key, -math.inf) >= KEY_AGAIN_S}
+            session.authentication.used = set()
         if used:
             await self.database.run(note_mavlink_key_use, credential_ids=used)
             self._keys_noted_s |= dict.fromkeys(used, now_s)

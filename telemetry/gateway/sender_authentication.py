@@ -84,7 +84,7 @@ class UnknownSenders:
 
 
 @dataclass
-class Belief:
+class SenderAuthentication:
     """Times are seconds since 1970. The last frame was believed at `last_message_s`, of `addresses.main` unless it was a second one's.
 
     `credential_id` is that of the key by which the last one was signed, `used` those since somebody asked last, and `ahead_s` by how much

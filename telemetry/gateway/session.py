@@ -29,7 +29,7 @@ from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.message_requests import MessageRequests
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
-from telemetry.gateway.sender_authentication import SENDER_SILENT_S, Belief, is_within
+from telemetry.gateway.sender_authentication import SENDER_SILENT_S, SenderAuthentication, is_within
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links.links import Lease, LinkState
 from telemetry.services.links.onboard_lists import Doubt
@@ -132,7 +132,7 @@ class Session:
     lost_here: Counter[str] = field(default_factory=Counter)  # of all sessions of this gateway
     texts: list[StatusText] = field(default_factory=list)
     flown: list[FlownItem] = field(default_factory=list)
-    belief: Belief = field(init=False)
+    authentication: SenderAuthentication = field(init=False)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
     listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
@@ -153,7 +153,7 @@ class Session:
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
-        self.belief = Belief(self.uav)
+        self.authentication = SenderAuthentication(self.uav)
         self._writer = FrameWriter(OWN_SYSTEM, OWN_COMPONENT, self.link_id, self.uav.key)
 
     # Frames in
@@ -161,10 +161,10 @@ class Session:
     def receive(self, frame: Frame, peer: Peer, now_s: float) -> None:
         """now_s: seconds since 1970, as all times here but those of the vehicle's state and the listener, which are monotonic."""
         if self.lease is None:
-            if self.belief.could_be(frame, now_s):
+            if self.authentication.could_be(frame, now_s):
                 self.waiting.append((frame, peer, now_s))
             return
-        refusal = self.belief.refusal(frame, peer, now_s)
+        refusal = self.authentication.refusal(frame, peer, now_s)
         if refusal is not None:
             self._count_loss(refusal)
             if refusal in LATE:
@@ -206,13 +206,13 @@ class Session:
         self._flight.take_up(was_in_mission=lease.mode_in_air in MISSION_MODES, mission_item=lease.mission_item)
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
-        self.belief.take_up(lease.signing, waiting[0][2] if waiting else time.time())
+        self.authentication.take_up(lease.signing, waiting[0][2] if waiting else time.time())
         self._writer.last_timestamp = max(self._writer.last_timestamp, lease.signing.get("sent", 0))
         return waiting
 
     def change(self, uav: KnownUav) -> None:
         """The UAV's row or key was changed."""
-        self.belief.change(uav)
+        self.authentication.change(uav)
         self.uav = uav
 
     def lose(self) -> None:
@@ -221,11 +221,11 @@ class Session:
 
     @property
     def peer(self) -> Peer | None:
-        return self.belief.peer
+        return self.authentication.peer
 
     @property
     def last_message_s(self) -> float:
-        return self.belief.last_message_s
+        return self.authentication.last_message_s
 
     @property
     def is_held(self) -> bool:
@@ -255,10 +255,10 @@ class Session:
             self._send(messages, time.time() if now_s is None else now_s)
 
     def _send(self, messages: list[Message], now_s: float) -> None:
-        peers = self.belief.addresses.answered(now_s)
+        peers = self.authentication.addresses.answered(now_s)
         if not peers:
             return
-        self._writer.key = self.belief.key
+        self._writer.key = self.authentication.key
         for message in messages:
             raw = self._writer.frame_of(message, now_s)
             if self.log is not None:
@@ -315,7 +315,7 @@ class Session:
         )
 
     def _signing(self) -> dict[str, Any]:
-        signing = self.belief.to_json()
+        signing = self.authentication.to_json()
         return signing and signing | {"sent": self._writer.last_timestamp}
 
     def _answer_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
@@ -323,7 +323,7 @@ class Session:
         self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, HEARTBEAT_AGAIN_S)}
         if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
             self._greeted[peer.name] = now_s
-            self._writer.key = self.belief.key_of(frame)
+            self._writer.key = self.authentication.key_of(frame)
             peer.send(self._writer.frame_of(heartbeat.heartbeat(), now_s))
 
     def _take(self, message: Message, now_s: float) -> None:

@@ -10,7 +10,7 @@ from missions.selectors.commands import route_commands
 from missions.services.commands.call_signs import colour_of
 from telemetry.alerting.detectors.link import late_after_s
 from telemetry.alerting.limits import sound_limits
-from telemetry.estimation.contact import SILENT_INTERVALS, SILENT_S
+from telemetry.estimation.link_model import SILENT_INTERVALS, SILENT_S
 from telemetry.models import UavLink
 
 FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)

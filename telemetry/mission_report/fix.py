@@ -27,7 +27,7 @@ class Fix:
     clock_s: float | None = None
 
 
-def own_s(before: Fix, after: Fix) -> float:
+def uav_s(before: Fix, after: Fix) -> float:
     """From one to a later one by the vehicle's clock, which runs faster than ours where it is flown faster than real time."""
     if before.clock_s is not None and after.clock_s is not None and before.boot == after.boot and after.clock_s > before.clock_s:
         return after.clock_s - before.clock_s
@@ -58,12 +58,12 @@ def airborne(fixes: Sequence[Fix]) -> list[Fix]:
     return found
 
 
-def own_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
+def uav_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
     """From the first of all fixes to the last [s]; each track in order.
 
     Each stretch counts by the clock of a vehicle that was heard before and after it, by ours where none was.
     """
-    pairs = sorted((before.at_s, after.at_s, own_s(before, after)) for track in tracks for before, after in pairwise(track))
+    pairs = sorted((before.at_s, after.at_s, uav_s(before, after)) for track in tracks for before, after in pairwise(track))
     total_s, until_s = 0.0, pairs[0][0] if pairs else 0.0
     for began_s, ended_s, length_s in pairs:
         total_s += max(began_s - until_s, 0.0)
@@ -74,7 +74,7 @@ def own_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
     return total_s
 
 
-def own_after_s(track: Sequence[Fix], at_s: float) -> float:
+def uav_after_s(track: Sequence[Fix], at_s: float) -> float:
     """From the first fix of a track to a moment [Unix s], by the vehicle's clock [s]."""
-    passed_s = list(accumulate((own_s(before, after) for before, after in pairwise(track)), initial=0.0))
+    passed_s = list(accumulate((uav_s(before, after) for before, after in pairwise(track)), initial=0.0))
     return float(np.interp(at_s, [fix.at_s for fix in track], passed_s))

@@ -10,7 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat, path_length_m
 from mavlink.approved_route import Flight, FrozenRoute
 from telemetry.alerting.route_line import Place, RouteLine
-from telemetry.mission_report.fix import Fix, airborne, own_span_s
+from telemetry.mission_report.fix import Fix, airborne, uav_span_s
 
 PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
 MAX_GAP_S = 60.0  # between two reports that are joined to a flown line
@@ -104,7 +104,7 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
         stages += _stages(flight, line, by_leg)
     across_m, height_m = _errors(seen)
     batteries = [fix.battery_percent for fix in in_air if fix.battery_percent is not None]
-    duration_s = own_span_s([in_air]) if in_air else None
+    duration_s = uav_span_s([in_air]) if in_air else None
     lasted_s = in_air[-1].at_s - in_air[0].at_s if in_air else 0.0
     return FlownRoute(
         legs=tuple(legs),

@@ -16,7 +16,7 @@ from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute, FrozenWaypoint
 from telemetry.alerting.route_line import Place, RouteLine
-from telemetry.mission_report.fix import Fix, airborne, own_s
+from telemetry.mission_report.fix import Fix, airborne, uav_s
 
 REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
 HOLD_SLACK_S = 3.0  # slowing down and setting out are part of a hold
@@ -93,7 +93,7 @@ def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_m
     held_s, first_between_s = 0.0, None
     for (earlier, earlier_m), (later, later_m) in pairwise(zip(near, away_m, strict=True)):
         to_fly_m = max(earlier_m - REACHED_M, 0.0) + max(later_m - REACHED_M, 0.0)
-        between_s = own_s(earlier, later)
+        between_s = uav_s(earlier, later)
         spare_s = between_s - to_fly_m / fastest_mps
         if spare_s < 0.0:
             continue
@@ -150,7 +150,7 @@ def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[
     """The distance of a track: of its reports, and of straight lines between those that are at most JOINED_S apart."""
     frame = LocalFrame.around(*waypoint.position)
     metres = frame.to_metres(np.array([fix.position for fix in fixes]))
-    joined = [own_s(before, after) <= JOINED_S for before, after in pairwise(fixes)]
+    joined = [uav_s(before, after) <= JOINED_S for before, after in pairwise(fixes)]
     if not any(joined):
         return min(away_m)
     start, along = metres[:-1][joined], np.diff(metres, axis=0)[joined]

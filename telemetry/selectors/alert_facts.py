@@ -17,7 +17,7 @@ from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandStat
 from telemetry.alerting.modes import RETURN_ALONG
 from telemetry.alerting.status_texts import KEPT_S, StatusText
 from telemetry.alerting.surroundings import LinkFacts, Order
-from telemetry.estimation.own_time import believed_rate
+from telemetry.estimation.uav_clock import plausible_rate
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alerts import BY_PERSON
 
@@ -46,7 +46,7 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     for row in rows:
         uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
         sha256, approval, flight, doubt, autopilot, battery, reported = row[7:]
-        rate = believed_rate(clock_rate if is_simulated else None)
+        rate = plausible_rate(clock_rate if is_simulated else None)
         last_message_s = None if heard_at is None else heard_at.timestamp()
         facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _rtl_behaviour(reported))
         found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
@@ -142,5 +142,5 @@ def estimated_by_other_watches(
     found: dict[int, list[tuple[int, str, Any, float, bool]]] = defaultdict(list)
     for uav_id, name, organisation_id, estimated, clock_rate, is_twin in rows:
         read = json.loads(estimated) if isinstance(estimated, str) else estimated
-        found[organisation_id].append((uav_id, name, read, believed_rate(clock_rate), is_twin))
+        found[organisation_id].append((uav_id, name, read, plausible_rate(clock_rate), is_twin))
     return found

@@ -12,7 +12,7 @@ from django.db.models import Count, F
 from inspection.geodesy import LonLat
 from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import ENDED_STATES, Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
-from telemetry.mission_report.fix import Fix, airborne, in_order, own_after_s, own_span_s
+from telemetry.mission_report.fix import Fix, airborne, in_order, uav_after_s, uav_span_s
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, Reason, Result, TargetFacts, outcome_of
 from telemetry.mission_report.visits import Visit, visits_of
@@ -214,7 +214,7 @@ def _summary(whole: WholeRecord) -> dict[str, Any]:
         },
         "flown": {
             "length_m": sum(route.flown_m for route in flown),
-            "duration_s": own_span_s([route.in_air for route in routes]) if flown else None,
+            "duration_s": uav_span_s([route.in_air for route in routes]) if flown else None,
             "energy_wh": _sum([_used_wh(route) for route in routes]),
             "unreported_m": sum(gap.length_m for route in flown for gap in route.gaps),
             "unreported_s": sum(gap.ended_s - gap.began_s for route in flown for gap in route.gaps),
@@ -331,7 +331,7 @@ def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incide
             TargetOnRecord(
                 target, route, visit, outcome,
                 planned_after_s=None if route is None or arrival_s is None else arrival_s - route.route.departs_s,
-                reached_after_s=None if route is None or reached_s is None or not route.in_air else own_after_s(route.in_air, reached_s),
+                reached_after_s=None if route is None or reached_s is None or not route.in_air else uav_after_s(route.in_air, reached_s),
             )
         )  # fmt: skip
     return found

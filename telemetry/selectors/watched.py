@@ -12,7 +12,7 @@ from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from missions.models import ENDED_STATES, MissionState
 from missions.selectors.commands import SENT_LAST
-from telemetry.estimation.contact import PROMPT_S
+from telemetry.estimation.link_model import PROMPT_S
 from telemetry.estimation.report import Boot, Report
 from telemetry.exports.logged_record import REPORTED
 

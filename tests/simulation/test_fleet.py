@@ -18,7 +18,7 @@ from inspection.geodesy import LonLat
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.signing import FrameWriter, SignatureCheck
 from simulation.flight.faults import Faults
-from simulation.vehicle_endpoint.fleet import Change, WrongPace
+from simulation.vehicle_endpoint.fleet import Change, InvalidSpeed
 from simulation.vehicle_endpoint.launch import Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of
 from simulation.vehicle_endpoint.radio import Radio, WrongAddress, address_of
@@ -122,7 +122,7 @@ def test_weather_faults_and_pace_change_in_flight_for_one_or_all():
         fleet.post(change_of('{"pace": 10}'))
         wait_for(lambda: one.now_s - before_s > 5.0)
         assert time.monotonic() - began_s < 4.0
-        with pytest.raises(WrongPace):
+        with pytest.raises(InvalidSpeed):
             fleet.post(Change(speed=1_000.0))
 
 

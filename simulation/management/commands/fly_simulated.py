@@ -15,7 +15,7 @@ from django.core.management.base import BaseCommand, CommandError
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import FlatGround
-from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, WrongPace
+from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, InvalidSpeed
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.radio import WrongAddress, address_of
@@ -63,7 +63,7 @@ class Command(BaseCommand):
     def handle(self, **options: Any) -> None:
         try:
             fleet = fleet_of(_launches(options), speed=options["pace"])
-        except (WrongAddress, WrongOrder, WrongPace, ValueError) as error:
+        except (WrongAddress, WrongOrder, InvalidSpeed, ValueError) as error:
             raise CommandError(str(error)) from error
         except OSError as error:
             raise CommandError(f"No socket: {error}") from error
@@ -87,7 +87,7 @@ class Command(BaseCommand):
                 continue
             try:
                 fleet.post(change_of(line))
-            except (WrongOrder, WrongPace) as error:
+            except (WrongOrder, InvalidSpeed) as error:
                 self.stderr.write(f"not done: {error}")
 
 

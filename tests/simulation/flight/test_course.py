@@ -7,16 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulation.flight.course import CORNER_M, Pace, Piece, Vector, Via, course
+from simulation.flight.course import CORNER_M, Piece, SpeedLimits, Vector, Via, course
 from simulation.flight.guidance import Reference
 
-PACE = Pace(climb_mps=2.0, descent_mps=1.5, acceleration_mps2=2.0, corner_mps2=2.5)
+SPEED_LIMITS = SpeedLimits(climb_mps=2.0, descent_mps=1.5, acceleration_mps2=2.0, corner_mps2=2.5)
 NUMBER = st.floats(-300.0, 300.0).map(lambda value: round(value, 2))
 POINTS = st.lists(st.tuples(NUMBER, NUMBER, NUMBER), min_size=1, max_size=8)
 
 
 def drawn(points: list[Vector], speed_mps: float = 5.0) -> tuple[Piece, ...]:
-    return course((0.0, 0.0, 0.0), [Via(point, speed_mps, mark) for mark, point in enumerate(points)], PACE)
+    return course((0.0, 0.0, 0.0), [Via(point, speed_mps, mark) for mark, point in enumerate(points)], SPEED_LIMITS)
 
 
 @settings(max_examples=150, deadline=None)
@@ -40,12 +40,12 @@ def test_no_piece_is_left_faster_than_the_rest_allows(points: list[Vector], spee
     pieces = drawn(points, speed_mps)
     assert pieces[-1].end_mps == 0.0
     for piece, follows in pairwise(pieces):
-        slowed = math.sqrt(follows.end_mps**2 + 2.0 * PACE.acceleration_mps2 * follows.length_m)
+        slowed = math.sqrt(follows.end_mps**2 + 2.0 * SPEED_LIMITS.acceleration_mps2 * follows.length_m)
         assert piece.end_mps <= min(piece.fastest_mps, follows.fastest_mps, slowed) + 1e-9
         if piece.radius_m:
-            assert piece.fastest_mps**2 / piece.radius_m <= PACE.corner_mps2 + 1e-9
+            assert piece.fastest_mps**2 / piece.radius_m <= SPEED_LIMITS.corner_mps2 + 1e-9
         elif piece.length_m > 0.1:
-            assert -PACE.descent_mps - 1e-6 <= piece.along[2] * piece.fastest_mps <= PACE.climb_mps + 1e-6
+            assert -SPEED_LIMITS.descent_mps - 1e-6 <= piece.along[2] * piece.fastest_mps <= SPEED_LIMITS.climb_mps + 1e-6
             assert math.hypot(*piece.along[:2]) * piece.fastest_mps <= speed_mps + 1e-6
 
 
@@ -53,7 +53,7 @@ def test_no_piece_is_left_faster_than_the_rest_allows(points: list[Vector], spee
 @given(POINTS, st.integers(0, 1000))
 def test_reference_comes_to_the_end_and_tells_each_mark_once(points: list[Vector], seed: int) -> None:
     pieces = drawn(points)
-    reference = Reference(pieces, 0.0, PACE.acceleration_mps2)
+    reference = Reference(pieces, 0.0, SPEED_LIMITS.acceleration_mps2)
     marks, before = [], reference.place
     for number in range(60_000):
         marks += reference.step(0.04, 0.4 + 0.6 * ((number * 7919 + seed) % 100) / 100)

@@ -23,9 +23,9 @@ from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge
-from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.report import Report
-from telemetry.estimation.tracker import VOUCHED_S, Tracker
+from telemetry.estimation.tracker import CONFIDENCE_HORIZON_S, Tracker
+from telemetry.estimation.uav_clock import UavClock
 from telemetry.services.watches import estimate_to_json
 
 HOME = LonLat(10.0, 56.0)
@@ -132,14 +132,14 @@ def test_what_was_measured_before_it_became_faster_stays_where_it_was(knowledge)
     tracker.take(replace(eastwards(range(5, 6))[0], received_s=T0 + 10.1))
     assert metres(at(tracker, 10.5))[0] == pytest.approx(340.0, abs=5.0)
     assert metres(at(tracker, 7.5))[0] == pytest.approx(175.0, abs=5.0)
-    assert tracker.time.server_s(tracker.time.own_s(T0 + 4.0)) == T0 + 4.0
+    assert tracker.time.server_s(tracker.time.uav_s(T0 + 4.0)) == T0 + 4.0
 
 
 @pytest.mark.parametrize("rate", [None, 0.0, -1.0, float("nan"), float("inf"), 1e9])
 def test_a_clock_that_cannot_be_is_taken_for_the_servers(rate):
-    time = OwnTime()
+    time = UavClock()
     time.run_at(rate, T0)
-    assert time.own_s(T0 + 3.25) == T0 + 3.25
+    assert time.uav_s(T0 + 3.25) == T0 + 3.25
     assert time.server_s(T0 + 3.25) == T0 + 3.25
 
 
@@ -170,7 +170,7 @@ def test_the_bound_grows_and_says_at_last_that_it_is_lost(knowledge):
     lengths = [at(tracker, second).bound.along_m for second in (9.0, 12.0, 20.0, 35.0)]
     assert lengths == sorted(lengths)
     assert not at(tracker, 35.0).is_lost
-    assert at(tracker, 12.0 + VOUCHED_S).is_lost
+    assert at(tracker, 12.0 + CONFIDENCE_HORIZON_S).is_lost
 
 
 def test_one_that_may_leave_its_route_without_a_link_is_lost_soon(knowledge):

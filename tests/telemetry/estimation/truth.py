@@ -116,7 +116,7 @@ class _Pilot:
             chance.uniform(0.5, 1.0),
             chance.uniform(0.1, 0.5),
         )
-        self.pace = chance.gauss(1.0, 0.04)
+        self.along_track = chance.gauss(1.0, 0.04)
         self.radius_m = chance.uniform(1.5, 8.0)
         self.corner = chance.uniform(0.25, 0.75)
         self.slow_below_m = chance.uniform(5.0, 10.0)
@@ -186,7 +186,7 @@ class _Pilot:
         start = (0.0, 0.0, 0.0) if number == 0 else (*self.places[number - 1], self.flight.waypoints[number - 1].altitude_relative_m)
         stops = number == len(self.places) - 1 or (waypoint.task is not None and waypoint.task.hold_s > 0)
         passing = 0.0 if stops else self._passing_mps(number)
-        wished = (waypoint.speed_mps or self.knowledge.cruise_speed_mps) * self.pace
+        wished = (waypoint.speed_mps or self.knowledge.cruise_speed_mps) * self.along_track
         length_m = math.hypot(east - start[0], north - start[1])
         rise_m = waypoint.altitude_relative_m - start[2]
         while self.now_s < MAX_DURATION_S:

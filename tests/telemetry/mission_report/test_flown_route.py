@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from telemetry.mission_report.fix import Fix, in_order, own_after_s, own_span_s
+from telemetry.mission_report.fix import Fix, in_order, uav_after_s, uav_span_s
 from telemetry.mission_report.flown_route import flown_route, track_of
 from tests.telemetry.mission_report.flights import SECOND, flown, flown_twice, place, route, route_of_two_flights
 
@@ -122,7 +122,7 @@ def test_a_flight_faster_than_real_time_lasts_as_long_as_by_its_own_clock() -> N
     fast = [replace(fix, at_s=1_000.0 + (fix.at_s - 1_000.0) / 2.0, boot=1, clock_s=fix.at_s) for fix in flown()]
     found = flown_route(route(), fast)
     assert found.duration_s == pytest.approx(119.0) and found.clock_rate == pytest.approx(2.0)
-    assert own_after_s(fast, fast[-1].at_s) == pytest.approx(119.0) and own_after_s(fast, 1_030.5) == pytest.approx(60.0)
+    assert uav_after_s(fast, fast[-1].at_s) == pytest.approx(119.0) and uav_after_s(fast, 1_030.5) == pytest.approx(60.0)
     later = [replace(fix, at_s=fix.at_s + 100.0) for fix in fast]
-    assert own_span_s([fast, later]) == pytest.approx(119.0 + 40.5 + 119.0), "between them nobody was heard"
-    assert own_span_s([fast, [replace(fix, at_s=fix.at_s + 30.0) for fix in fast]]) == pytest.approx(119.0 + 60.0)
+    assert uav_span_s([fast, later]) == pytest.approx(119.0 + 40.5 + 119.0), "between them nobody was heard"
+    assert uav_span_s([fast, [replace(fix, at_s=fix.at_s + 30.0) for fix in fast]]) == pytest.approx(119.0 + 60.0)

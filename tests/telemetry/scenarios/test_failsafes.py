@@ -13,7 +13,7 @@ from tests.telemetry.scenarios.flights import FLIGHT_S, from_home_m, lands, take
 from tests.telemetry.watch.program import watch_program
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
-WATCHED_PACE = 5.0  # at which alerts have time to open before the vehicle is down
+WATCHED_SPEED = 5.0  # at which alerts have time to open before the vehicle is down
 SETTLED_S = 3.0  # in which an end that was seen is stored
 FAR_M = 100.0  # more than a UAV may be away from where it was planned to stand
 RETURNS = {"BATT_MONITOR": 4.0, "BATT_LOW_VOLT": 11.0, "BATT_LOW_TIMER": 3.0, "BATT_FS_LOW_ACT": 2.0}
@@ -30,7 +30,7 @@ def words_of(code: str, uav) -> str:
 
 def test_a_battery_that_is_low_by_its_voltage_raises_an_alert_and_its_return_is_told(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway, watch_program(tmp_path, name="watch"):
-        vehicle = new_vehicle(port_of(gateway), parameters=RETURNS, speed=WATCHED_PACE)
+        vehicle = new_vehicle(port_of(gateway), parameters=RETURNS, speed=WATCHED_SPEED)
         take_off(vehicle, uav, mission)
         wait_until_watched(uav)
         vehicle.set("SIM_BATT_VOLTAGE", 10.8)
@@ -42,7 +42,7 @@ def test_a_battery_that_is_low_by_its_voltage_raises_an_alert_and_its_return_is_
 
 def test_a_landing_without_gps_is_told(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway, watch_program(tmp_path, name="watch"):
-        vehicle = new_vehicle(port_of(gateway), speed=WATCHED_PACE)
+        vehicle = new_vehicle(port_of(gateway), speed=WATCHED_SPEED)
         take_off(vehicle, uav, mission)
         wait_until_watched(uav)
         wait_for(lambda: from_home_m(vehicle) > FAR_M, "that it is on its way", patience_s=FLIGHT_S)
@@ -72,7 +72,7 @@ def test_a_mission_is_flown_in_wind_and_a_copter_without_airspeed_measures_none(
 @pytest.mark.parametrize("cause", ["reboot", "lose_power"])
 def test_a_reboot_in_flight_is_no_end_of_the_flight(cause, uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway, watch_program(tmp_path, name="watch"):
-        vehicle = new_vehicle(port_of(gateway), speed=WATCHED_PACE)
+        vehicle = new_vehicle(port_of(gateway), speed=WATCHED_SPEED)
         take_off(vehicle, uav, mission)
         wait_until_watched(uav)
         getattr(vehicle, cause)()

@@ -19,7 +19,7 @@ from tests.telemetry.scenarios.flights import FLIGHT_S, holds, lands, order, tak
 from tests.telemetry.scenarios.vehicle import RALLY_AT
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
-PACE = 5.0
+SPEED = 5.0
 
 
 @pytest.mark.parametrize(("transport", "loss"), [("udp", 0.0), ("tcp", 0.0), ("udp", 0.3), ("tcp", 0.3)])
@@ -55,7 +55,7 @@ def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_
         start = ended(begin(uav, mission, upload.approval))
         assert start.state == CommandState.APPLIED, start.outcome
         order(uav, CommandKind.RETURN)
-        vehicle.set("SIM_SPEEDUP", PACE)
+        vehicle.set("SIM_SPEEDUP", SPEED)
         lands(vehicle)
     assert link.lost > 20
 

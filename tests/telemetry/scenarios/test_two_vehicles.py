@@ -32,7 +32,7 @@ from tests.telemetry.watch.program import watch_program
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 LOOK_S = 0.05
-CROSSING_PACE, MEETING_PACE = 4.0, 2.0
+CROSSING_SPEED, CONFLICT_SPEED = 4.0, 2.0
 REPORTED_BEFORE_S = 12.0  # of the 20 s that the alert looks ahead; the watch looks each second, which is 2 s of the UAVs
 PASSED_S = 8.0
 APART_DEG = 0.004  # of longitude, as the plan has them
@@ -114,7 +114,7 @@ def test_two_uavs_of_one_mission_are_flown_to_its_end_apart(uavs, region, new_ve
 
 
 def test_routes_that_cross_in_layers_alarm_nobody(uavs, crossing, new_vehicle, tmp_path):
-    with two_ready([crossing], new_vehicle, tmp_path, speed=CROSSING_PACE) as vehicles, watch_program(tmp_path, name="watch"):
+    with two_ready([crossing], new_vehicle, tmp_path, speed=CROSSING_SPEED) as vehicles, watch_program(tmp_path, name="watch"):
         for uav in uavs:
             start(uav, crossing)
         fly_apart(crossing, vehicles)
@@ -127,7 +127,7 @@ def test_two_missions_begun_together_that_meet_are_told_in_time(uavs, region, ne
         alone(uav, tower, east_deg)
         for uav, tower, east_deg in zip(uavs, (region.towers[5], region.towers[4]), (0.0, APART_DEG), strict=True)
     ]
-    with two_ready(missions, new_vehicle, tmp_path, speed=MEETING_PACE) as vehicles, watch_program(tmp_path, name="watch"):
+    with two_ready(missions, new_vehicle, tmp_path, speed=CONFLICT_SPEED) as vehicles, watch_program(tmp_path, name="watch"):
         for uav, mission in zip(uavs, missions, strict=True):
             start(uav, mission)
         began_s, reported_s, nearest_s, nearest_m = time.monotonic(), None, 0.0, math.inf
@@ -140,5 +140,5 @@ def test_two_missions_begun_together_that_meet_are_told_in_time(uavs, region, ne
                 reported_s = time.monotonic()
             time.sleep(LOOK_S)
     assert nearest_m < settings.SEPARATION_RULES.vertical_m  # they did meet
-    assert (nearest_s - reported_s) * MEETING_PACE >= REPORTED_BEFORE_S
+    assert (nearest_s - reported_s) * CONFLICT_SPEED >= REPORTED_BEFORE_S
     assert Alert.objects.filter(code=CODE, uav__in=uavs, level="critical").exists()  # from 12 s before on

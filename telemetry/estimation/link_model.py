@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from telemetry.estimation.along_track_filter import clock_of
+from telemetry.estimation.eta import end_of
 from telemetry.estimation.motion import State
-from telemetry.estimation.outlook import end_of
 from telemetry.estimation.profile import Profile
 
 FloatArray = NDArray[np.float64]
@@ -27,7 +27,7 @@ AT_ONCE = 500  # places
 
 
 @dataclass(eq=False)
-class Hearing:
+class LinkModel:
     """What is known of a profile's cells; `received` (cells,) grows."""
 
     profile: Profile
@@ -55,8 +55,8 @@ class Hearing:
         track = state.route
         if track is None:
             return None
-        clock = clock_of(self.profile, track.pace)
-        middle_s = float(np.interp(track.pace.nominal_s, self.profile.nominal_s, clock).mean())
+        clock = clock_of(self.profile, track.along_track)
+        middle_s = float(np.interp(track.along_track.nominal_s, self.profile.nominal_s, clock).mean())
         ahead = np.flatnonzero(self.received & (self._along_m - 0.5 * CELL_M > along_m))
         if len(ahead):
             begins_m = float(self._along_m[ahead[0]]) - 0.5 * CELL_M

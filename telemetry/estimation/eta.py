@@ -30,28 +30,31 @@ def end_of(state: State, track: Track) -> Arrival | None:
 
 def at_reading(state: State, track: Track, knot: int) -> float:
     """When it is at a knot of the profile, as foreseen; in the past for one that lies behind it."""
-    clock = clock_of(track.profile, track.pace)
-    return state.report_s + float(clock[knot]) - float(np.interp(track.pace.nominal_s, track.profile.nominal_s, clock).mean())
+    clock = clock_of(track.profile, track.along_track)
+    return state.report_s + float(clock[knot]) - float(np.interp(track.along_track.nominal_s, track.profile.nominal_s, clock).mean())
 
 
 def _arrivals(state: State, track: Track, nodes: list[int]) -> list[Arrival]:
-    profile, pace = track.profile, track.pace
-    clock = clock_of(profile, pace)
-    here_s = np.interp(pace.nominal_s, profile.nominal_s, clock)
+    profile, along_track = track.profile, track.along_track
+    clock = clock_of(profile, along_track)
+    here_s = np.interp(along_track.nominal_s, profile.nominal_s, clock)
     middle_s = float(here_s.mean())
     reached = profile.reached[nodes]
     to_go_s = clock[reached] - middle_s
-    moving_s = (profile.moving_s[reached] - float(np.interp(middle_s, clock, profile.moving_s))) / pace.pace
-    slack_s2 = profile.doubt_s2[reached] - float(np.interp(middle_s, clock, profile.doubt_s2))
-    doubt_s = np.sqrt(
-        SURE_S**2 + float(here_s.var()) + np.maximum(slack_s2, 0.0) + (pace.variance + LASTS_SHARE**2) * np.maximum(moving_s, 0.0) ** 2
+    moving_s = (profile.moving_s[reached] - float(np.interp(middle_s, clock, profile.moving_s))) / along_track.speed_factor
+    slack_s2 = profile.variance_s2[reached] - float(np.interp(middle_s, clock, profile.variance_s2))
+    uncertainty_s = np.sqrt(
+        SURE_S**2
+        + float(here_s.var())
+        + np.maximum(slack_s2, 0.0)
+        + (along_track.variance + LASTS_SHARE**2) * np.maximum(moving_s, 0.0) ** 2
     )
     found = []
-    for number, to_go, doubt in zip(nodes, to_go_s.tolist(), doubt_s.tolist(), strict=True):
+    for number, to_go, uncertainty in zip(nodes, to_go_s.tolist(), uncertainty_s.tolist(), strict=True):
         if to_go <= 0.0 or not math.isfinite(to_go):
             continue
         at_s, target = state.report_s + to_go, int(profile.target[number])
-        within_s = NORMAL_95 * doubt
+        within_s = NORMAL_95 * uncertainty
         sequence = int(profile.sequence[number])
         found.append(Arrival(sequence, None if target < 0 else target, at_s, max(at_s - within_s, state.report_s), at_s + within_s))
     return found

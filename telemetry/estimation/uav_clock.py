@@ -15,15 +15,15 @@ RATES_KEPT = 32
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """From `server_s` on, when its own clock showed `own_s`."""
+    """From `server_s` on, when its own clock showed `uav_s`."""
 
     server_s: float
-    own_s: float
+    uav_s: float
     rate: float
 
 
 @dataclass
-class OwnTime:
+class UavClock:
     """Both clocks show the same until the rate is another one, and go on from there; what was before stays as it was."""
 
     _stretches: list[_Stretch] = field(default_factory=lambda: [_Stretch(0.0, 0.0, 1.0)])
@@ -35,24 +35,24 @@ class OwnTime:
 
     def run_at(self, rate: float | None, from_s: float) -> None:
         """From a moment of the server's clock on. None, and what cannot be: as the server's."""
-        rate = believed_rate(rate)
+        rate = plausible_rate(rate)
         if abs(rate - self.rate) <= SAME_RATE * self.rate:
             return
         last = self._stretches[-1]
         from_s = max(from_s, last.server_s)
-        self._stretches.append(_Stretch(from_s, self.own_s(from_s), rate))
+        self._stretches.append(_Stretch(from_s, self.uav_s(from_s), rate))
         del self._stretches[:-RATES_KEPT]
 
-    def own_s(self, server_s: float) -> float:
+    def uav_s(self, server_s: float) -> float:
         place = bisect_right(self._stretches, server_s, key=lambda stretch: stretch.server_s) - 1
         stretch = self._stretches[max(place, 0)]
-        return stretch.own_s + (server_s - stretch.server_s) * stretch.rate
+        return stretch.uav_s + (server_s - stretch.server_s) * stretch.rate
 
-    def server_s(self, own_s: float) -> float:
-        place = bisect_right(self._stretches, own_s, key=lambda stretch: stretch.own_s) - 1
+    def server_s(self, uav_s: float) -> float:
+        place = bisect_right(self._stretches, uav_s, key=lambda stretch: stretch.uav_s) - 1
         stretch = self._stretches[max(place, 0)]
-        return stretch.server_s + (own_s - stretch.own_s) / stretch.rate
+        return stretch.server_s + (uav_s - stretch.uav_s) / stretch.rate
 
 
-def believed_rate(rate: float | None) -> float:
+def plausible_rate(rate: float | None) -> float:
     return rate if rate is not None and math.isfinite(rate) and SLOWEST <= rate <= FASTEST else 1.0
