@@ -52,7 +52,7 @@ class InstallationState:
     def __init__(self, celery: Celery) -> None:
         self._celery = celery
         self._lock = threading.Lock()
-        self._looked_s = -GOOD_FOR_S
+        self._checked_s = -GOOD_FOR_S
         self._values: dict[str, Values] = {}
 
     def snapshot(self) -> Snapshot:
@@ -60,9 +60,9 @@ class InstallationState:
 
     def read(self) -> Mapping[str, Values]:
         with self._lock:
-            if time.monotonic() - self._looked_s >= GOOD_FOR_S:
+            if time.monotonic() - self._checked_s >= GOOD_FOR_S:
                 self._values = {**self._of_database(), **self._of_redis()}
-                self._looked_s = time.monotonic()
+                self._checked_s = time.monotonic()
             return self._values
 
     def _of_database(self) -> dict[str, Values]:

@@ -42,14 +42,14 @@ class Readiness:
     def __init__(self, *checks: Check) -> None:
         self._checks = checks or (database_faults, redis_faults)
         self._lock = threading.Lock()
-        self._looked_s = -GOOD_FOR_S
+        self._checked_s = -GOOD_FOR_S
         self._faults: list[str] = []
 
     def faults(self) -> list[str]:
         with self._lock:
-            if time.monotonic() - self._looked_s >= GOOD_FOR_S:
+            if time.monotonic() - self._checked_s >= GOOD_FOR_S:
                 self._faults = [fault for check in self._checks for fault in check()]
-                self._looked_s = time.monotonic()
+                self._checked_s = time.monotonic()
             return self._faults
 
 

@@ -38,7 +38,7 @@ class Rules:
     up_window_s: float
     down: tuple[Policy, ...]
     down_window_s: float
-    looks_every_s: float = POLL_INTERVAL_S
+    poll_interval_s: float = POLL_INTERVAL_S
 
     def faster(self, seconds: float) -> "Rules":
         """The same with all times as a share."""
@@ -52,7 +52,7 @@ class Rules:
             down=shorter(self.down),
             up_window_s=self.up_window_s * seconds,
             down_window_s=self.down_window_s * seconds,
-            looks_every_s=self.looks_every_s * seconds,
+            poll_interval_s=self.poll_interval_s * seconds,
         )
 
 

@@ -33,7 +33,7 @@ SHOWN = 5
 
 
 @dataclass(frozen=True)
-class Looked:
+class InvariantCheck:
     """One invariant and what violates it, in words."""
 
     name: str
@@ -44,21 +44,21 @@ class Looked:
         return f"VIOLATED: {len(self.violations)}" if self.violations else "holds"
 
 
-def look(promised: Promises) -> list[Looked]:
+def check_invariants(promised: Promises) -> list[InvariantCheck]:
     """Every invariant, in one view of the database that changes nothing. Not inside a transaction."""
     with transaction.atomic():
         with connection.cursor() as cursor:
             cursor.execute("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
-        return look_here(promised)
+        return check_invariants_here(promised)
 
 
-def look_here(promised: Promises) -> list[Looked]:
+def check_invariants_here(promised: Promises) -> list[InvariantCheck]:
     """The same in the transaction that is open."""
     checks: list[tuple[str, Callable[[], list[str]]]] = [
         *((name, lambda check=check: check(promised)) for name, check in kept_promises.CHECKS.items()),
         *sound_books.CHECKS.items(),
     ]
-    return [Looked(name, check()) for name, check in checks]
+    return [InvariantCheck(name, check()) for name, check in checks]
 
 
 def settle(patience_s: float) -> None:
@@ -78,7 +78,7 @@ def main() -> int:
     options = parser.parse_args()
     settle(options.settle_s)
     promised = promises_of(lines(options.day))
-    looked = look(promised)
+    looked = check_invariants(promised)
     print(table(["invariant", "verdict"], [[one.name, one.verdict] for one in looked]))
     print(
         f"\n{promised.count:,} acknowledged items; {promised.retried} tries that failed and were made again, "

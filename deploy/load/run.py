@@ -83,14 +83,14 @@ def run_scenario(
         locust = subprocess.Popen(
             locust_command(installation.address), env=installation.environment() | reported, stdout=words, stderr=words, cwd=PROJECT_DIR
         )
-        began_s, next_look_s = time.time(), 0.0
+        began_s, next_poll_s = time.time(), 0.0
         while locust.poll() is None:
             at_s = time.time() - began_s
             if at_s > scaled.lasts_s + LOCUST_STOPS_S:
                 locust.kill()
                 raise TimeoutError(f"Locust did not end; see {log}")
-            if at_s >= next_look_s:
-                next_look_s += POLL_INTERVAL_S
+            if at_s >= next_poll_s:
+                next_poll_s += POLL_INTERVAL_S
                 looks.append((time.time(), _cpu_s(installation, locust.pid)))
             meanwhile(at_s)
             time.sleep(1.0)

@@ -51,7 +51,7 @@ class LocalScaler:
         self._serving = set(installation.names(kind))
         self._starting: set[str] = set()
         self._leaving: set[str] = set()
-        self._next_look_s = 0.0
+        self._next_poll_s = 0.0
         self._last: tuple[float, dict[str, float]] = (0.0, {})
         self._queue = Redis.from_url(installation.settings["REDIS_URL"])
         self._threads = ThreadPoolExecutor(4)
@@ -61,9 +61,9 @@ class LocalScaler:
         """Once a second with the run's time; does something when the rules say that it is time."""
         if not self.steps or self.steps[-1][1] != len(self._serving):
             self.steps.append((at_s, len(self._serving)))
-        if at_s < self._next_look_s:
+        if at_s < self._next_poll_s:
             return
-        self._next_look_s = at_s + self.rules.looks_every_s
+        self._next_poll_s = at_s + self.rules.poll_interval_s
         total = float(self._queue.llen(self.rules.queue)) if self.rules.queue else self._cores()  # type: ignore[arg-type]
         self.signals.append((at_s, total / (self.rules.target * self._wanted)))
         wanted, self._book = decide(self.rules, self._book, now_s=at_s, replicas=self._wanted, total=total)

@@ -54,7 +54,7 @@ class FlightWatch:
         """Another list was put on it: nothing of that one is flown yet."""
         self.has_flown_list, self._reached, self._bound_for, self._back_at_s = False, -1, -1, None
 
-    def look(self, state: VehicleState, kind: str) -> list[Flown]:
+    def check(self, state: VehicleState, kind: str) -> list[Flown]:
         """kind: the message's type."""
         if state.is_armed and state.is_in_air and state.is_in(Mode.MISSION):
             self.has_flown_list = True

@@ -8,7 +8,7 @@ from missions.fields import AboveZeroField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_SPEED_MPS
 from missions.serializers.shapes import WaypointSerializer
-from missions.services.manual_edits.checks import HandLook
+from missions.services.manual_edits.checks import ManualEditCheck
 from missions.services.manual_edits.points import MAX_WAYPOINTS, HandPoint
 from planning.plan_json import column_to_json, timing_to_json, waypoints_to_json
 from workspace.api import strict_serializers as serializers
@@ -78,10 +78,10 @@ class HandLookSerializer(serializers.Serializer):
     flown = HandRouteFlownSerializer(allow_null=True)
 
 
-def hand_look_json(look: HandLook) -> dict[str, Any]:
-    flown, clock = look.flown, None if look.flown is None else look.flown.timing
+def manual_edit_check_json(check: ManualEditCheck) -> dict[str, Any]:
+    flown, clock = check.flown, None if check.flown is None else check.flown.timing
     return {
-        "faults": look.faults,
+        "faults": check.faults,
         "length_m": None if flown is None else round(flown.length_m, 3),
         "duration_s": None if flown is None else round(flown.duration_s, 1),
         "energy_wh": None if clock is None or clock.total_wh is None else round(clock.total_wh, 2),
@@ -92,7 +92,7 @@ def hand_look_json(look: HandLook) -> dict[str, Any]:
                 "battery_left_percent": None if point.battery_left_percent is None else round(point.battery_left_percent, 1),
                 "speed_mps": None if point.speed_mps is None else round(point.speed_mps, 2),
             }
-            for point in look.points
+            for point in check.points
         ],
         "flown": None
         if flown is None or flown.waypoints is None

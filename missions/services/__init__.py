@@ -15,7 +15,7 @@ from missions.services.fleet.types_and_bases import (
     restore_uav_type,
 )
 from missions.services.fleet.uavs import change_uav, create_uav, delete_uav, restore_uav
-from missions.services.manual_edits.checks import look_by_hand
+from missions.services.manual_edits.checks import check_manual_edit
 from missions.services.manual_edits.edits import change_route, take_back_change
 from missions.services.manual_edits.points import HandPoint
 from missions.services.mission_copies import duplicate_mission
@@ -83,6 +83,7 @@ __all__ = [
     "change_route",
     "change_uav",
     "change_uav_type",
+    "check_manual_edit",
     "create_base",
     "create_mission",
     "create_uav",
@@ -96,7 +97,6 @@ __all__ = [
     "explain_unreached_target",
     "lock_to_json",
     "locked_targets",
-    "look_by_hand",
     "make_credential",
     "make_plan",
     "mavlink_signing_key",

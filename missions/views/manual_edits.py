@@ -62,8 +62,8 @@ class RouteWaypointsLook(APIView):
         body = by_hand.HandRouteSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with api_problems():
-            look = services.look_by_hand(mission=mission, uav=uav, points=body.points())
-        return Response(by_hand.hand_look_json(look))
+            check = services.check_manual_edit(mission=mission, uav=uav, points=body.points())
+        return Response(by_hand.manual_edit_check_json(check))
 
 
 class RouteWaypointsUndo(APIView):

@@ -109,7 +109,7 @@ class RehearsedRouteSerializer(serializers.Serializer):
     reasons = serializers.ListField(child=serializers.CharField())
 
 
-class MeetingSerializer(serializers.Serializer):
+class ClosestApproachSerializer(serializers.Serializer):
     uavs = serializers.ListField(child=serializers.IntegerField(), min_length=2, max_length=2, help_text="places in the mission")
     beside_m = serializers.FloatField()
     height_m = serializers.FloatField()
@@ -120,7 +120,7 @@ class VerdictSerializer(serializers.Serializer):
     level = serializers.ChoiceField(choices=LEVELS)
     findings = FindingSerializer(many=True)
     routes = RehearsedRouteSerializer(many=True)
-    meetings = MeetingSerializer(many=True, help_text="the nearest that two UAVs came to each other in the air")
+    closest_approaches = ClosestApproachSerializer(many=True, help_text="the nearest that two UAVs came to each other in the air")
 
 
 class RehearsalRunSerializer(serializers.Serializer):

@@ -161,7 +161,7 @@ class Endpoint:
         return int(mavlink.MAV_MISSION_ACCEPTED)
 
     def _mind_fence(self, state: UavState) -> list[Message]:
-        action = self._fence.look(state.position, state.at_s, is_in_air=state.is_in_air)
+        action = self._fence.check(state.position, state.at_s, is_in_air=state.is_in_air)
         if action is FenceAction.NONE:
             return []
         if action in MODES:

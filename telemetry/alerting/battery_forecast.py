@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
-from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.consumption import Consumption, DrainState, FlightKind, Wind, east_north_m, kind_of
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import NEAR_VERTEX_M
@@ -59,28 +59,28 @@ class BatteryForecast:
         }
 
 
-def battery_forecast(situation: Situation, fresh: Report, left_percent: float) -> BatteryForecast:
+def battery_forecast(inputs: DetectorInput, fresh: Report, left_percent: float) -> BatteryForecast:
     """Of a UAV in flight with a fresh report. The situation's memory is written to."""
-    reported, model, memory = fresh.measurement, situation.model, situation.memory
+    reported, model, detector_state = fresh.measurement, inputs.model, inputs.detector_state
     consumption = None if model is None else model.consumption
     if consumption is None:
         consumption = Consumption(USUAL_CRUISE_MPS)
     wind_mps = _wind(reported, consumption)
     kind, airspeed_mps = _flight_now(reported, wind_mps)
     per_s = consumption.percent_per_s(airspeed_mps)
-    memory.drain.note(fresh.measured_s, left_percent, kind, per_s, situation.link.clock_rate)
+    detector_state.drain.note(fresh.measured_s, left_percent, kind, per_s, inputs.link.clock_rate)
     reserve_percent = USUAL_RESERVE_PERCENT if model is None else model.reserve_percent
-    ways = _Ways() if model is None else _ways(situation, model, reported, consumption, wind_mps, position_of(fresh))
-    moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * memory.drain.ratio(FlightKind.MOVING)
-    rest_percent = None if model is None else _rest_percent(situation, model, reported, consumption)
-    if rest_percent is not None and ways.down_percent is not None and _lands_at_end(situation):
+    ways = _Ways() if model is None else _ways(inputs, model, reported, consumption, wind_mps, position_of(fresh))
+    moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * detector_state.drain.ratio(FlightKind.MOVING)
+    rest_percent = None if model is None else _rest_percent(inputs, model, reported, consumption)
+    if rest_percent is not None and ways.down_percent is not None and _lands_at_end(inputs):
         rest_percent = min(rest_percent, ways.down_percent)
     spare_percent = None if ways.home_percent is None else max(left_percent - reserve_percent - ways.home_percent, 0.0)
-    still_per_s = consumption.percent_per_s(math.hypot(*wind_mps)) * memory.drain.ratio(FlightKind.STILL)
+    still_per_s = consumption.percent_per_s(math.hypot(*wind_mps)) * detector_state.drain.ratio(FlightKind.STILL)
     return BatteryForecast(
         left_percent=left_percent,
         reserve_percent=reserve_percent,
-        drain_per_s=per_s * memory.drain.ratio(kind),
+        drain_per_s=per_s * detector_state.drain.ratio(kind),
         reserve_in_s=max(left_percent - reserve_percent, 0.0) / max(moving_per_s, 1e-6),
         home_percent=ways.home_percent,
         home_s=ways.home_s,
@@ -89,20 +89,20 @@ def battery_forecast(situation: Situation, fresh: Report, left_percent: float) -
         rest_percent=rest_percent,
         down_percent=ways.down_percent,
         hold_s=None if spare_percent is None else spare_percent / max(still_per_s, 1e-6),
-        lands_percent=_lands_percent(situation, left_percent, rest_percent, ways),
+        lands_percent=_lands_percent(inputs, left_percent, rest_percent, ways),
     )
 
 
-def _lands_percent(situation: Situation, left_percent: float, rest_percent: float | None, ways: "_Ways") -> float | None:
+def _lands_percent(inputs: DetectorInput, left_percent: float, rest_percent: float | None, ways: "_Ways") -> float | None:
     """None for one that is held or flown by hand: it does not land as it flies now."""
     needs = {ModeKind.RETURN: ways.home_percent, ModeKind.LAND: ways.down_percent}
-    need = rest_percent if situation.flies_mission or situation.mode is None else needs.get(situation.mode)
+    need = rest_percent if inputs.flies_mission or inputs.mode is None else needs.get(inputs.mode)
     return None if need is None or not math.isfinite(need) else left_percent - need
 
 
-def _lands_at_end(situation: Situation) -> bool:
-    place, model = situation.place, situation.model
-    if place is None or model is None or situation.memory.drain.kind is not FlightKind.STILL:
+def _lands_at_end(inputs: DetectorInput) -> bool:
+    place, model = inputs.place, inputs.model
+    if place is None or model is None or inputs.detector_state.drain.kind is not FlightKind.STILL:
         return False
     return model.line.length_m - place.along_m <= NEAR_VERTEX_M
 
@@ -120,15 +120,15 @@ class _Ways:
 
 
 def _ways(
-    situation: Situation, model: FlightModel, reported: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
+    inputs: DetectorInput, model: FlightModel, reported: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
 ) -> _Ways:
     """Straight from where it is; none without a position."""
     if position is None:
         return _Ways()
-    height_m, drain, home = reported.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
+    height_m, drain, home = reported.altitude_relative_m or 0.0, inputs.detector_state.drain, model.line.vertices[0]
     here = model.line.east_north(position)
-    way, own = (home[0] - here[0], home[1] - here[1]), situation.link.rtl_behaviour
-    climb_m = 0.0 if own is None or situation.mode is ModeKind.LAND else own.level_m(height_m, math.hypot(*way), 0.0) - height_m
+    way, own = (home[0] - here[0], home[1] - here[1]), inputs.link.rtl_behaviour
+    climb_m = 0.0 if own is None or inputs.mode is ModeKind.LAND else own.level_m(height_m, math.hypot(*way), 0.0) - height_m
     home_s, home_percent, moving_per_s = _way_to(consumption, drain, way, height_m, wind_mps, climb_m=climb_m)
     landings = [(math.hypot(*way), way) for way in (east_north_m(position, point) for point in model.rally_points)]
     landing_m, nearest = min(landings, default=(None, None))
@@ -143,7 +143,7 @@ def _ways(
 
 
 def _way_to(
-    consumption: Consumption, drain: DrainMemory, way: tuple[float, float], height_m: float, wind_mps: Wind, *, climb_m: float = 0.0
+    consumption: Consumption, drain: DrainState, way: tuple[float, float], height_m: float, wind_mps: Wind, *, climb_m: float = 0.0
 ) -> tuple[float, float, float]:
     """Seconds, percent, and percent a second while it moves. climb_m: that it climbs before, and sinks more at the end."""
     flies_s, sinks_s, air_mps = consumption.way(*way, height_m + climb_m, wind_mps)
@@ -154,11 +154,11 @@ def _way_to(
     return climbs_s + flies_s + sinks_s, climbs_s * climbing + flies_s * moving + sinks_s * still, moving
 
 
-def _rest_percent(situation: Situation, model: FlightModel, reported: Measurement, consumption: Consumption) -> float | None:
-    place = situation.place
-    if not situation.flies_mission or place is None or model.energy is None:
+def _rest_percent(inputs: DetectorInput, model: FlightModel, reported: Measurement, consumption: Consumption) -> float | None:
+    place = inputs.place
+    if not inputs.flies_mission or place is None or model.energy is None:
         return None
-    height_m, line, drain = reported.altitude_relative_m, model.line, situation.memory.drain
+    height_m, line, drain = reported.altitude_relative_m, model.line, inputs.detector_state.drain
     climbed = 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
     rest = model.energy.rest_at(place, model.energy.used_at(place, climbed))
     if drain.kind is FlightKind.STILL and math.isfinite(holds_s := line.planned_hold_s(place.along_m)):

@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
-from telemetry.alerting.surroundings import Meeting
+from telemetry.alerting.surroundings import Conflict
 
 STANDS_BELOW_MPS = 1.0
 CLIMBS_ABOVE_MPS = 0.7
@@ -121,18 +121,18 @@ class Moving:
         return np.asarray(self.height_m + self.climb_mps * STEP_S * np.arange(steps), dtype=np.float64)
 
 
-def ways_of(situation: Situation, within_s: float) -> list[Moving]:
+def ways_of(inputs: DetectorInput, within_s: float) -> list[Moving]:
     """The ways that a UAV in flight may take: as it moves now, and as its approved route has it, its climb from the ground included."""
-    moving = moving_of(situation, within_s)
+    moving = moving_of(inputs, within_s)
     if moving is None:
         return []
-    planned = _as_planned(situation, moving)
+    planned = _as_planned(inputs, moving)
     return [moving] if planned is None else [moving, planned]
 
 
-def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
-    place, model, newest = situation.place, situation.model, situation.uav.newest
-    if place is None or model is None or newest is None or not situation.flies_mission or place.across_m > situation.limits.off_route_m:
+def _as_planned(inputs: DetectorInput, moving: Moving) -> Moving | None:
+    place, model, newest = inputs.place, inputs.model, inputs.uav.newest
+    if place is None or model is None or newest is None or not inputs.flies_mission or place.across_m > inputs.limits.off_route_m:
         return None
     reported, line = newest.measurement, model.line
     if reported.altitude_relative_m is None or moving.height_m is None:
@@ -153,19 +153,19 @@ def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
     )
 
 
-def moving_of(situation: Situation, within_s: float) -> Moving | None:
+def moving_of(inputs: DetectorInput, within_s: float) -> Moving | None:
     """None where it is not in flight, or where nobody knows where it is."""
-    uav, place, model = situation.uav, situation.place, situation.model
+    uav, place, model = inputs.uav, inputs.place, inputs.model
     estimate, newest = uav.estimate, uav.newest
     position = estimate.position if estimate is not None else None if newest is None else position_of(newest)
-    if position is None or newest is None or not situation.is_in_flight:
+    if position is None or newest is None or not inputs.is_in_flight:
         return None
     reported = newest.measurement
     north_mps, east_mps = reported.velocity_north_mps or 0.0, reported.velocity_east_mps or 0.0
     speed_mps = math.hypot(north_mps, east_mps)
     degree_east_m = DEGREE_M * math.cos(math.radians(position.lat))
     seconds = [STEP_S * step for step in range(int(within_s / STEP_S) + 2)]
-    if place is not None and model is not None and situation.flies_mission and place.across_m <= situation.limits.off_route_m:
+    if place is not None and model is not None and inputs.flies_mission and place.across_m <= inputs.limits.off_route_m:
         line = model.line
         here = line.at(place.along_m)
         ways = [line.at(place.along_m + speed_mps * after_s) for after_s in seconds]
@@ -182,17 +182,17 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
         climb_mps=-(reported.velocity_down_mps or 0.0),
         bound_m=0.0 if estimate is None else max(estimate.bound.along_m, estimate.bound.across_m),
         bound_height_m=0.0 if estimate is None else estimate.bound_height_m,
-        clock_rate=situation.link.clock_rate,
+        clock_rate=inputs.link.clock_rate,
         velocity_mps=(east_mps, north_mps),
     )
 
 
-def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meeting]]:
+def conflicts(moving: Sequence[Moving], within_s: float) -> dict[int, list[Conflict]]:
     """By the UAV with the smaller key of each pair: how near they come within so many seconds; of a crowd those that come nearest.
 
     Of a pair there is a meeting for each two of their ways that come near, the nearest first.
     """
-    found: dict[int, list[Meeting]] = defaultdict(list)
+    found: dict[int, list[Conflict]] = defaultdict(list)
     if len(moving) < 2:
         return found
     steps = min(min(len(one.ahead) for one in moving), int(within_s / STEP_S) + 1)
@@ -218,7 +218,7 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
         is_new = (first.uav_id, second.uav_id) not in reported
         if is_new and met[first.uav_id] >= MAX_MET and met[second.uav_id] >= MAX_MET:
             continue
-        found[first.uav_id].append(_meeting(first, second, float(lateral_m[pair]), float(height_m[pair]), float(in_s[pair])))
+        found[first.uav_id].append(_conflict(first, second, float(lateral_m[pair]), float(height_m[pair]), float(in_s[pair])))
         if is_new:
             reported.add((first.uav_id, second.uav_id))
             met.update((first.uav_id, second.uav_id))
@@ -259,7 +259,7 @@ def _closest(between: FloatArray, above: FloatArray) -> tuple[FloatArray, FloatA
     return metres[rows, step], height[rows, step], (step + share[rows, step]) * STEP_S
 
 
-def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, in_s: float) -> Meeting:
+def _conflict(first: Moving, second: Moving, lateral_m: float, height_m: float, in_s: float) -> Conflict:
     bound_m = math.hypot(min(first.bound_m, MAX_BOUND_M), min(second.bound_m, MAX_BOUND_M))
     bound_height_m = math.hypot(min(first.bound_height_m, MAX_BOUND_M), min(second.bound_height_m, MAX_BOUND_M))
     origin = first.here or first.ahead[0]
@@ -269,7 +269,7 @@ def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, i
     opening = east_m * (other.east_mps - one.east_mps) + north_m * (other.north_mps - one.north_mps)
     is_first, why = yielding(one, other)
     yields = first if is_first else second
-    return Meeting(
+    return Conflict(
         other_id=second.uav_id,
         other_name=second.name,
         in_s=in_s,

@@ -115,7 +115,7 @@ def _beyond(lost: float, expected: float, within: float) -> float:
 
 
 @dataclass
-class DrainMemory:
+class DrainState:
     """What was observed of one flight."""
 
     of_kind: dict[FlightKind, Drained] = field(default_factory=lambda: {kind: Drained() for kind in FlightKind})

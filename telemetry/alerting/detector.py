@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import Limits
 
@@ -20,18 +20,18 @@ class Detector:
 
     `detect` returns what is there now; None: that cannot be told now, and what was open stays open. A cause must last for `raise_after_s`
     before there is an alert, and be gone for `clear_after_s` before it is over. `reports` is how many reports it takes to see it at most.
-    Of a UAV that is not `in_flight` nothing is found where it `needs_flight`. `hidden_by` names what this would be a consequence of: as
+    Of a UAV that is not `in_flight` nothing is found where it `needs_flight`. `suppressed_by` names what this would be a consequence of: as
     long as an alert of one of these codes is open, nothing is said of this. `own_delay_s` is what it takes by its limits, at an interval
     of reports [s].
     """
 
     code: str
-    detect: Callable[[Situation], Iterable[Finding] | None]
+    detect: Callable[[DetectorInput], Iterable[Finding] | None]
     raise_after_s: float
     clear_after_s: float
     reports: int = 1
     needs_flight: bool = True
-    hidden_by: tuple[str, ...] = ()
+    suppressed_by: tuple[str, ...] = ()
     own_delay_s: Callable[[Limits, float], float] = _none
 
     def delay_s(self, limits: Limits, report_interval_s: float = 1.0) -> float:

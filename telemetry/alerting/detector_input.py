@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from uuid import UUID
 
-from telemetry.alerting.detector_state import Memory
+from telemetry.alerting.detector_state import DetectorState
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.modes import AT_THE_END, FLY_LIST, ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
 from telemetry.alerting.status_texts import StatusText
-from telemetry.alerting.surroundings import FlightModel, LinkFacts, Meeting, NearZone, OnboardState, Order
+from telemetry.alerting.surroundings import Conflict, FlightModel, LinkFacts, NearZone, OnboardState, Order
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
 
@@ -41,20 +41,20 @@ class WatchedUav:
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class DetectorInput:
     """`open_levels` are those of the alerts that are open, by code and subject: a cause that is known already clears later than it rose."""
 
     now_s: float
     uav: WatchedUav
     limits: Limits
-    memory: Memory
+    detector_state: DetectorState
     link: LinkFacts = field(default_factory=LinkFacts)
     open_levels: Mapping[Key, str] = field(default_factory=dict)
     model: FlightModel | None = None
     held: OnboardState | None = None
     order: Order | None = None
     zones: tuple[NearZone, ...] = ()
-    meetings: tuple[Meeting, ...] = ()
+    conflicts: tuple[Conflict, ...] = ()
     status_texts: tuple[StatusText, ...] = ()
     is_accounted_for: bool = False  # it is down away from its plan, and a person has closed that alert
 
@@ -71,7 +71,9 @@ class Situation:
     def report_interval_s(self) -> float:
         """Between its reports, as the last few came."""
         estimate = self.uav.estimate
-        return self.memory.usual_interval_s if estimate is None or estimate.report_interval_s is None else estimate.report_interval_s
+        return (
+            self.detector_state.usual_interval_s if estimate is None or estimate.report_interval_s is None else estimate.report_interval_s
+        )
 
     @property
     def fresh(self) -> Report | None:
@@ -84,11 +86,11 @@ class Situation:
     @property
     def place(self) -> Place | None:
         """On its line, by the newest report; None without a position, or when that is old."""
-        return None if self.fresh is None else self.memory.place
+        return None if self.fresh is None else self.detector_state.place
 
     @property
     def has_just_jumped(self) -> bool:
-        return self.memory.jumped_s is not None and self.now_s - self.memory.jumped_s < AFTER_JUMP_S
+        return self.detector_state.jumped_s is not None and self.now_s - self.detector_state.jumped_s < AFTER_JUMP_S
 
     @property
     def mode(self) -> ModeKind | None:
@@ -103,7 +105,7 @@ class Situation:
     @property
     def ends_as_planned(self) -> bool:
         """Whether it is at the end of its line, in a mode that its list leads to there."""
-        place, model = self.memory.place, self.model
+        place, model = self.detector_state.place, self.model
         is_at_end = place is not None and model is not None and model.line.length_m - place.along_m <= AT_END_M
         return is_at_end and self.mode in AT_THE_END and (self.order is None or self.order.kind in FLY_LIST)
 
@@ -139,7 +141,7 @@ class Situation:
         reported = None if self.uav.newest is None else self.uav.newest.measurement
         if reported is None or reported.altitude_agl_m is not None:
             return None if reported is None else reported.altitude_agl_m
-        place = self.memory.place
+        place = self.detector_state.place
         if reported.altitude_relative_m is None or place is None or self.model is None or place.across_m > 200.0:
             return None
         return reported.altitude_relative_m - self.model.line.ground_m(place)

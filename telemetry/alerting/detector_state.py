@@ -6,7 +6,7 @@ from statistics import median
 from typing import Any
 
 from inspection.geodesy import LonLat
-from telemetry.alerting.consumption import DrainMemory
+from telemetry.alerting.consumption import DrainState
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.estimation.report import Report
@@ -35,7 +35,7 @@ class Progress:
 
 
 @dataclass
-class Memory:
+class DetectorState:
     """Of one UAV. `before` is the report before the newest one; `place` is where the newest one puts it on its line."""
 
     newest: Report | None = None
@@ -53,7 +53,7 @@ class Memory:
     mode: ModeKind | None = None  # the last that was known
     mode_since_s: float | None = None  # when it was first reported, measured; None: it was in it before it was watched
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
-    drain: DrainMemory = field(default_factory=DrainMemory)
+    drain: DrainState = field(default_factory=DrainState)
     battery: dict[str, Any] | None = None  # as live pages show it
     causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
@@ -65,7 +65,7 @@ class Memory:
             self.was_in_flight = False
             self.fell_s = self.down_s = self.down_at = None
             self.has_ended = False
-            self.drain = DrainMemory()
+            self.drain = DrainState()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
             return False

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Key, Situation
+from telemetry.alerting.detector_input import DetectorInput, Key
 from telemetry.alerting.detector_state import Cause
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
@@ -30,49 +30,49 @@ class Closed:
 Change = Opened | Closed
 
 
-def changes(situation: Situation, detectors: Sequence[Detector]) -> list[Change]:
+def changes(inputs: DetectorInput, detectors: Sequence[Detector]) -> list[Change]:
     """What of the open alerts changes by this look. An open alert that goes on with the same level is Opened again with its newest words.
 
     The level of an alert rises and does not fall: what was critical has to be seen to be over. No alert of a UAV that is down away from
     its plan closes. The situation's memory is written to.
     """
     found: list[Change] = []
-    open_codes = {code for code, _ in situation.open_levels}
-    is_down_away = not situation.is_in_flight and down.is_down_away(situation)
+    open_codes = {code for code, _ in inputs.open_levels}
+    is_down_away = not inputs.is_in_flight and down.is_down_away(inputs)
     for detector in detectors:
-        if open_codes.intersection(detector.hidden_by):
+        if open_codes.intersection(detector.suppressed_by):
             continue
-        is_over = detector.needs_flight and not situation.is_in_flight
+        is_over = detector.needs_flight and not inputs.is_in_flight
         if is_over and is_down_away:
             continue
-        findings = () if is_over else detector.detect(situation)
+        findings = () if is_over else detector.detect(inputs)
         if findings is None:
             continue
-        of_detector = _changes_of(detector, situation, findings, LANDED if is_over else CLEARED)
+        of_detector = _changes_of(detector, inputs, findings, LANDED if is_over else CLEARED)
         open_codes |= {change.finding.code for change in of_detector if isinstance(change, Opened)}
         found += of_detector
     return found
 
 
-def _changes_of(detector: Detector, situation: Situation, findings: Iterable[Finding], over: str) -> list[Change]:
+def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Finding], over: str) -> list[Change]:
     """over: why those that are found no more are over."""
-    causes, now_s = situation.memory.causes, situation.now_s
+    causes, now_s = inputs.detector_state.causes, inputs.now_s
     by_key: dict[Key, Finding] = {(finding.code, finding.subject): finding for finding in findings}
     found: list[Change] = []
     for key, finding in by_key.items():
         level = _lasting_level(causes.setdefault(key, Cause()), finding.level, now_s, detector.raise_after_s)
-        is_open = situation.open_levels.get(key)
+        is_open = inputs.open_levels.get(key)
         if is_open is not None or level is not None:
             highest = max((entry for entry in (is_open, level) if entry is not None), key=RANK.__getitem__)
             is_held = RANK[finding.level] < RANK[highest]
             found.append(Opened(finding if finding.level == highest else replace(finding, level=highest), is_held))
-    for key in {*causes, *situation.open_levels}:
+    for key in {*causes, *inputs.open_levels}:
         if key[0] != detector.code or key in by_key:
             continue
         cause = causes.setdefault(key, Cause())
         cause.since_s.clear()
         cause.gone_s = now_s if cause.gone_s is None else cause.gone_s
-        if key not in situation.open_levels:
+        if key not in inputs.open_levels:
             del causes[key]
         elif over == LANDED or now_s - cause.gone_s >= detector.clear_after_s:
             del causes[key]

@@ -97,7 +97,7 @@ class NearZone:
 
 
 @dataclass(frozen=True, slots=True)
-class Meeting:
+class Conflict:
     """Two UAVs that come near each other.
 
     Distances `lateral_m` and `height_m` are at the closest, with the places as estimated; `least_` at the worst of their bounds, by which

@@ -49,13 +49,13 @@ class Dispatcher:
     async def run(self) -> None:
         while True:
             try:
-                await self.look()
+                await self.poll()
             except DatabaseAway:
                 await asyncio.sleep(RETRY_S)
             if await wait_for_event(self._woken, POLL_INTERVAL_S):
                 self._woken.clear()
 
-    async def look(self) -> None:
+    async def poll(self) -> None:
         """Drops what is not ours any more, takes what waits, begins what can begin."""
         self._forget_ended()
         if self._deliveries:

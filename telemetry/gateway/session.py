@@ -95,7 +95,7 @@ class ListWatch:
         if message.get_type().startswith("MISSION_"):
             self._transferred_s = now_s
 
-    def look(self, message: Message, state: VehicleState, now_s: float) -> None:
+    def check(self, message: Message, state: VehicleState, now_s: float) -> None:
         """After the vehicle's state has taken the message."""
         is_ours = now_s - self._transferred_s <= QUIET_S
         if message.get_type() in TO_WHO_SENDS_A_LIST and not (is_ours and _is_to_us(message)):
@@ -105,7 +105,7 @@ class ListWatch:
                 self._doubt(Doubt.OTHER_LENGTH, now_s)
             self._total = state.mission_total
 
-    def look_at_boot(self, boot: str, now_s: float) -> None:
+    def check_boot(self, boot: str, now_s: float) -> None:
         """boot: what names the present run of the vehicle's clock."""
         if self._boot not in (None, boot):
             self._doubt(Doubt.REBOOTED, now_s)
@@ -336,8 +336,8 @@ class Session:
         self.message_requests.receive(message, monotonic_s)
         if not _reports_no_place(message):
             self.state.receive(message, monotonic_s)
-            self._note_flown(self._flight.look(self.state, kind))
-            self.lists.look(message, self.state, monotonic_s)
+            self._note_flown(self._flight.check(self.state, kind))
+            self.lists.check(message, self.state, monotonic_s)
         if kind == "GLOBAL_POSITION_INT" and stamp is not None:
             self._position_s = now_s
             self._record(message, stamp, now_s)
@@ -359,9 +359,9 @@ class Session:
     def _stamp(self, message: Message, now_s: float) -> Stamp:
         unix_s = message.time_unix_usec / 1e6 if message.get_type() == "SYSTEM_TIME" else None
         if self.time.boots:
-            self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+            self.lists.check_boot(self.time.boots[-1].key, time.monotonic())
         stamp = self.time.receive(message.time_boot_ms, now_s, unix_s=unix_s)
-        self.lists.look_at_boot(self.time.boots[-1].key, time.monotonic())
+        self.lists.check_boot(self.time.boots[-1].key, time.monotonic())
         return stamp
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:

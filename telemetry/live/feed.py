@@ -7,28 +7,28 @@ from uuid import UUID
 
 from django.db import Error as DatabaseError
 
-from telemetry.live.look import Look, changed_between
 from telemetry.live.messages import changes, everything, message
 from telemetry.live.reader import Reader
+from telemetry.live.snapshot import Snapshot, changed_between
 from telemetry.selectors.live import Key
 from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
 POLL_INTERVAL_S = 1.0  # whether a word has come or not
-LOOK_PAUSE_S = 0.1  # between two looks, however many words come
+POLL_PAUSE_S = 0.1  # between two looks, however many words come
 
-Looker = Callable[[int, Collection[UUID], Collection[str], Look], Awaitable[Look]]
+SnapshotReader = Callable[[int, Collection[UUID], Collection[str], Snapshot], Awaitable[Snapshot]]
 
 
 class Feed:
     """`run` until it is cancelled. Pages come and go by `join` and `leave`, all in one event loop."""
 
-    def __init__(self, organisation_id: int, look: Looker) -> None:
+    def __init__(self, organisation_id: int, read_snapshot: SnapshotReader) -> None:
         self.organisation_id = organisation_id
         self.readers: set[Reader] = set()
-        self._look = look
-        self._seen = Look()
+        self._read_snapshot = read_snapshot
+        self._snapshot = Snapshot()
         self._waiting: set[Reader] = set()  # for the first look that has begun since they came
         self._message = asyncio.Event()
         self._bodies: dict[tuple[UUID | None, str, frozenset[Key] | None], str] = {}
@@ -51,23 +51,23 @@ class Feed:
         place = (reader.mission, reader.language, keys)
         body = self._bodies.get(place)
         if body is None:
-            make = everything(self._seen, *place[:2]) if keys is None else changes(self._seen, *place[:2], keys)
+            make = everything(self._snapshot, *place[:2]) if keys is None else changes(self._snapshot, *place[:2], keys)
             body = self._bodies[place] = make
         return message("snapshot" if keys is None else "changes", sequence, body)
 
     async def run(self) -> None:
         while True:
             self._message.clear()
-            await self._look_once()
-            await asyncio.sleep(LOOK_PAUSE_S)
-            await wait_for_event(self._message, POLL_INTERVAL_S - LOOK_PAUSE_S)
+            await self._poll()
+            await asyncio.sleep(POLL_PAUSE_S)
+            await wait_for_event(self._message, POLL_INTERVAL_S - POLL_PAUSE_S)
 
-    async def _look_once(self) -> None:
+    async def _poll(self) -> None:
         newcomers, self._waiting = self._waiting, set()
         missions = {reader.mission for reader in self.readers if reader.mission is not None}
         languages = {reader.language for reader in self.readers}
         try:
-            seen = await self._look(self.organisation_id, missions, languages, self._seen)
+            snapshot = await self._read_snapshot(self.organisation_id, missions, languages, self._snapshot)
         except DatabaseError as error:  # away for a moment: the next look tells
             logger.debug("live pages cannot be told: %r", error)
             self._waiting |= newcomers & self.readers
@@ -76,20 +76,24 @@ class Feed:
             logger.exception("live pages of organisation %s cannot be told", self.organisation_id)
             self._waiting |= newcomers & self.readers
             return
-        before, self._seen = self._seen, seen
+        before, self._snapshot = self._snapshot, snapshot
         self._bodies.clear()
         self._notify(before, newcomers)
 
-    def _notify(self, before: Look, newcomers: set[Reader]) -> None:
+    def _notify(self, before: Snapshot, newcomers: set[Reader]) -> None:
         changed: dict[UUID | None, set[Key]] = {}
         for reader in self.readers:
-            if reader.mission is not None and reader not in self._waiting and not self._seen.is_shown(_mission_key(reader), reader.mission):
+            if (
+                reader.mission is not None
+                and reader not in self._waiting
+                and not self._snapshot.is_shown(_mission_key(reader), reader.mission)
+            ):
                 reader.end()
             elif reader in newcomers:
                 reader.begin()
             elif reader.is_ready:
                 if reader.mission not in changed:
-                    changed[reader.mission] = changed_between(before, self._seen, reader.mission)
+                    changed[reader.mission] = changed_between(before, self._snapshot, reader.mission)
                 if changed[reader.mission]:
                     reader.note(changed[reader.mission])
 

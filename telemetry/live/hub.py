@@ -13,8 +13,8 @@ from redis.asyncio import Redis
 from redis.exceptions import RedisError
 
 from telemetry.live.feed import Feed
-from telemetry.live.look import Look, look
 from telemetry.live.reader import Reader
+from telemetry.live.snapshot import Snapshot, read_snapshot
 from workspace.live.changes import live_channel
 
 logger = logging.getLogger(__name__)
@@ -46,11 +46,13 @@ class Hub:
     def __init__(self) -> None:
         self._feeds: dict[int, tuple[Feed, asyncio.Task[None]]] = {}
         self._listening: asyncio.Task[None] | None = None
-        self._look = DatabaseSyncToAsync(look, thread_sensitive=False, executor=ThreadPoolExecutor(1, thread_name_prefix="live"))
+        self._read_snapshot = DatabaseSyncToAsync(
+            read_snapshot, thread_sensitive=False, executor=ThreadPoolExecutor(1, thread_name_prefix="live")
+        )
 
     def join(self, reader: Reader) -> Feed:
         if reader.organisation_id not in self._feeds:
-            feed = Feed(reader.organisation_id, self._look_at)
+            feed = Feed(reader.organisation_id, self._read)
             self._feeds[reader.organisation_id] = (feed, asyncio.create_task(feed.run()))
         if self._listening is None:
             self._listening = asyncio.create_task(listen(self._wake))
@@ -72,8 +74,8 @@ class Hub:
         if organisation_id in self._feeds:
             self._feeds[organisation_id][0].wake()
 
-    async def _look_at(self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Look) -> Look:
-        return await self._look(organisation_id, missions, languages, before)
+    async def _read(self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Snapshot) -> Snapshot:
+        return await self._read_snapshot(organisation_id, missions, languages, before)
 
 
 _hubs: WeakKeyDictionary[asyncio.AbstractEventLoop, Hub] = WeakKeyDictionary()

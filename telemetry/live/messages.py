@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from uuid import UUID
 
-from telemetry.live.look import Look
+from telemetry.live.snapshot import Snapshot
 from telemetry.selectors.live import KINDS, Key
 
 
@@ -17,28 +17,28 @@ def message(kind: str, sequence: int, body: str = "") -> str:
     return f"{{{head},{body}}}" if body else f"{{{head}}}"
 
 
-def everything(look: Look, mission: UUID | None, language: str) -> str:
+def everything(read_snapshot: Snapshot, mission: UUID | None, language: str) -> str:
     """The body of a snapshot."""
-    return f'"live":{live_text(look, mission, language)}'
+    return f'"live":{live_text(read_snapshot, mission, language)}'
 
 
-def live_text(look: Look, mission: UUID | None, language: str) -> str:
+def live_text(read_snapshot: Snapshot, mission: UUID | None, language: str) -> str:
     """`{"uavs": […], …}`, as GET /api/v1/live has it, too."""
     texts: dict[str, list[str]] = {kind: [] for kind in KINDS}
-    for key, entry in look.shown.items():
-        text = look.text(key, language)
+    for key, entry in read_snapshot.shown.items():
+        text = read_snapshot.text(key, language)
         if text is not None and entry.is_for(mission):
             texts[key[0]].append(text)
     return "{" + ",".join(f'"{kind}":[{",".join(texts[kind])}]' for kind in KINDS) + "}"
 
 
-def changes(look: Look, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
+def changes(read_snapshot: Snapshot, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
     """The body of a message of changes: what is shown, whole; of the rest that it is gone."""
     there: dict[str, list[str]] = {kind: [] for kind in KINDS}
     gone: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for key in sorted(keys):
         kind, name = key
-        text = look.text(key, language) if look.is_shown(key, mission) else None
+        text = read_snapshot.text(key, language) if read_snapshot.is_shown(key, mission) else None
         if text is not None:
             there[kind].append(text)
         else:

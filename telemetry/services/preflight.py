@@ -23,7 +23,7 @@ from missions.outcome_messages import outcome_in_words
 from missions.selectors.commands import upload_of
 from missions.selectors.fleet import performance_of
 from missions.selectors.missions import approval_in_force, mission_of_organisation
-from missions.services.approval.checks import look_at
+from missions.services.approval.checks import check_approval
 from missions.services.commands.dispatch import TO_SEND
 from missions.services.commands.planned_starts import routes_not_begun, uavs_being_started
 from missions.services.commands.refused import Reason
@@ -137,8 +137,8 @@ def _checked_on_the_map(
     """Most of the cost of a preflight, so computed once a period; the arguments change with all that it depends on but time and other
     missions. A start is decided by a check of its own."""
     mission = mission_of_organisation(Organisation(pk=organisation_id), mission_id)
-    look = look_at(mission, now=timezone.now())
-    return _OnTheMap(() if look is None else look.reasons, {check.place: check for check in return_checks(mission)})
+    check = check_approval(mission, now=timezone.now())
+    return _OnTheMap(() if check is None else check.reasons, {check.place: check for check in return_checks(mission)})
 
 
 def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:

@@ -20,7 +20,7 @@ from telemetry.selectors.mission_record import approval_on_record, at, fastest_m
 
 SETTLED_S = 3.0  # by then the reports about it are stored
 LATELY = timedelta(days=2)
-LOOKED_BACK_S = 120.0  # missions that have just ended are looked at, too
+LOOKBACK_S = 120.0  # missions that have just ended are looked at, too
 _SETTLED = """
 SELECT mission.id, approval.id, place.uav_id, max(target.state_at), array_agg(DISTINCT target.sequence) FILTER (
     WHERE target.state = 'complete'
@@ -43,23 +43,23 @@ GROUP BY mission.id, approval.id, place.uav_id
 class TargetChecks:
     """What one watch has looked at already. After a start everything recent is looked at again, which changes nothing twice."""
 
-    _looked_at: dict[tuple[UUID, int], Any] = field(default_factory=dict)  # when the newest target was settled
+    _checked_at: dict[tuple[UUID, int], Any] = field(default_factory=dict)  # when the newest target was settled
 
     def check(self, uav_ids: list[int]) -> int:
         """Look at targets of these UAVs that were settled. Returns how many of them were missed."""
         with connection.cursor() as cursor:
-            cursor.execute(_SETTLED, {"uav_ids": uav_ids, "back_s": LOOKED_BACK_S, "settled_s": SETTLED_S})
+            cursor.execute(_SETTLED, {"uav_ids": uav_ids, "back_s": LOOKBACK_S, "settled_s": SETTLED_S})
             found = cursor.fetchall()
-        missed, looked_at = 0, {}
+        missed, checked_at = 0, {}
         for mission_id, approval_id, uav_id, newest, places in found:
-            if self._looked_at.get((mission_id, uav_id)) != newest:
-                missed += _look_at(mission_id, approval_id, uav_id, set(places or ()))
-            looked_at[mission_id, uav_id] = newest
-        self._looked_at = looked_at  # what is no longer recent is not found again
+            if self._checked_at.get((mission_id, uav_id)) != newest:
+                missed += _note_targets_checked(mission_id, approval_id, uav_id, set(places or ()))
+            checked_at[mission_id, uav_id] = newest
+        self._checked_at = checked_at  # what is no longer recent is not found again
         return missed
 
 
-def _look_at(mission_id: UUID, approval_id: UUID, uav_id: int, unreported: set[int]) -> int:
+def _note_targets_checked(mission_id: UUID, approval_id: UUID, uav_id: int, unreported: set[int]) -> int:
     """Skip the missed ones among the targets at these places, which nobody reported, and store the visits of all of the UAV's route."""
     routes = Approval.objects.values_list("document", flat=True).get(pk=approval_id)["routes"]
     approved = next((route for route in routes if route["uav"] == uav_id), None)
@@ -82,7 +82,7 @@ def store_missing_visits() -> int:
     """Store visits of missions that have ended in the last days, of which no watch stored any, as it did not run. Returns how many."""
     lately = timezone.now() - LATELY
     settled = InspectionTarget.objects.filter(mission=OuterRef("pk"), state__in=SETTLED, visit_stored_at=None)
-    ended = Mission.objects.filter(Exists(settled), ended_at__gte=lately, ended_at__lt=timezone.now() - timedelta(seconds=LOOKED_BACK_S))
+    ended = Mission.objects.filter(Exists(settled), ended_at__gte=lately, ended_at__lt=timezone.now() - timedelta(seconds=LOOKBACK_S))
     stored = 0
     for mission in ended.order_by("ended_at").iterator():
         for route in routes_on_record(mission, approval_on_record(mission)):

@@ -10,8 +10,8 @@ from rest_framework.exceptions import ValidationError
 from rest_framework.request import Request
 from rest_framework.views import APIView
 
-from telemetry.live.look import etag_of, look_once
 from telemetry.live.messages import live_text, server_time
+from telemetry.live.snapshot import etag_of, page_snapshot
 from telemetry.serializers.live import LiveAnswerSerializer
 from workspace.api.signed_in import SignedInRequest
 from workspace.locale_negotiation import language_of_request
@@ -38,13 +38,13 @@ class Live(APIView):
         mission = _asked_mission(request)
         language = language_of_request(request.user, request)
         known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
-        seen = look_once(request.user.organisation_id, mission, language, known=known)
-        if mission is not None and ("missions", str(mission)) not in seen.shown:
+        snapshot = page_snapshot(request.user.organisation_id, mission, language, known=known)
+        if mission is not None and ("missions", str(mission)) not in snapshot.shown:
             raise Http404
-        headers = {"ETag": etag_of(seen, language), "Cache-Control": "private, no-cache"}
+        headers = {"ETag": etag_of(snapshot, language), "Cache-Control": "private, no-cache"}
         if headers["ETag"] == known:
             return HttpResponse(status=304, headers=headers)
-        body = f'{{"server_time":"{server_time()}","live":{live_text(seen, mission, language)}}}'
+        body = f'{{"server_time":"{server_time()}","live":{live_text(snapshot, mission, language)}}}'
         return HttpResponse(body, content_type="application/json", headers=headers)
 
 

@@ -31,9 +31,9 @@ from telemetry.selectors.watched import (
     reports_stored_after,
     watched_flights,
 )
-from telemetry.services.alerts.alerting import look
+from telemetry.services.alerts.alerting import poll_alerts
 from telemetry.services.knowledge import knowledge_of
-from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
+from telemetry.services.targets_checked import LOOKBACK_S, TargetChecks
 from telemetry.services.watches import (
     Made,
     forget_what_is_over,
@@ -66,7 +66,7 @@ class NewReports:
     """Ids are given before a store ends, so what lies behind the newest may still come: it is asked for again for a while."""
 
     _behind: int = -1  # all up to this id have been seen, or were there before
-    _seen: deque[tuple[float, int]] = field(default_factory=deque)
+    _watched_uav: deque[tuple[float, int]] = field(default_factory=deque)
 
     def begin(self) -> None:
         """From now on, at the first call."""
@@ -75,10 +75,10 @@ class NewReports:
 
     def read(self, uav_ids: Sequence[int], now_s: float) -> list[StoredReport]:
         """Of these UAVs, since the last call. now_s: any clock that only goes on."""
-        found = reports_stored_after(self._behind, but=[key for _, key in self._seen], uav_ids=uav_ids)
-        self._seen.extend((now_s, report.id) for report in found)
-        while self._seen and self._seen[0][0] < now_s - OPEN_FOR_S:
-            self._behind = max(self._behind, self._seen.popleft()[1])
+        found = reports_stored_after(self._behind, but=[key for _, key in self._watched_uav], uav_ids=uav_ids)
+        self._watched_uav.extend((now_s, report.id) for report in found)
+        while self._watched_uav and self._watched_uav[0][0] < now_s - OPEN_FOR_S:
+            self._behind = max(self._behind, self._watched_uav.popleft()[1])
         return found
 
 
@@ -180,8 +180,8 @@ class Watch:
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
         count_states(made.values(), held=len(self.held))
         self._notify(list(made.values()))
-        seen = [_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()]
-        for uav_id, battery in look(watched=seen, now=datetime.fromtimestamp(now_s, UTC)).items():
+        seen = [_watched_uav(watched, made.get(uav_id)) for uav_id, watched in self.held.items()]
+        for uav_id, battery in poll_alerts(watched=seen, now=datetime.fromtimestamp(now_s, UTC)).items():
             self.held[uav_id].battery = battery
         self._check_targets(now_s)
 
@@ -266,7 +266,7 @@ class Watch:
     def _check_targets(self, now_s: float) -> None:
         """Also of UAVs whose mission has just ended: its last targets count as complete by that."""
         self._held_at_s |= dict.fromkeys(self.held, now_s)
-        self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKED_BACK_S}
+        self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKBACK_S}
         if self._held_at_s:
             self._targets.check(sorted(self._held_at_s))
 
@@ -306,7 +306,7 @@ def _made(watched: Watched, now_s: float) -> Made | None:
     return Made(flight.uav_id, flight.mission_id, datetime.fromtimestamp(at_s, UTC), report_at, estimate, watched.battery)
 
 
-def _seen(watched: Watched, made: Made | None) -> WatchedUav:
+def _watched_uav(watched: Watched, made: Made | None) -> WatchedUav:
     flight = watched.flight
     return WatchedUav(
         uav_id=flight.uav_id,

@@ -369,7 +369,7 @@ FLIGHT = (
             Tests(
                 "two missions at one time and place; two UAVs that meet, 50 pairs", "not both approved; told in time and once",
                 ("tests/missions/test_approval.py::test_two_missions_on_the_same_way_at_the_same_time_are_not_both_approved",
-                 "tests/missions/planning/test_other_flights.py", "tests/telemetry/alerting/test_meetings.py"),
+                 "tests/missions/planning/test_other_flights.py", "tests/telemetry/alerting/test_conflicts.py"),
                 "{passed} of {all} tests",
             ),
         ),

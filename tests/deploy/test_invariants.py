@@ -14,7 +14,7 @@ from django.utils import timezone
 from deploy.load.day import book as kinds
 from deploy.load.day.book import Book, lines
 from deploy.load.day.promises import Promises, promises_of
-from deploy.load.invariants import look, look_here
+from deploy.load.invariants import check_invariants, check_invariants_here
 from missions.models import Approval, Mission, Uav, UavCommand, UavCommandEvent
 from missions.services import MissionChange, change_mission, create_mission
 from telemetry.models import AlertLevel, AlertNote, InspectionResult, TelemetryRecord
@@ -89,7 +89,7 @@ def _alerted(book: Book, uav: Uav, user: Any) -> None:
 
 
 def violated(promised: Promises) -> set[str]:
-    return {one.name for one in look_here(promised) if one.violations}
+    return {one.name for one in check_invariants_here(promised) if one.violations}
 
 
 def sql(statement: str) -> None:
@@ -237,4 +237,4 @@ def test_a_line_that_was_cut_off_is_left_out(tmp_path: Path) -> None:
 
 @pytest.mark.django_db(transaction=True)
 def test_looking_writes_nothing_and_can_write_nothing() -> None:
-    assert all(not one.violations for one in look(Promises()))
+    assert all(not one.violations for one in check_invariants(Promises()))

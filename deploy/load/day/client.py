@@ -91,7 +91,7 @@ class Client(FastHttpUser):
     def headers_for(self, method: str) -> dict[str, str]:
         return {}
 
-    def note_seen(self, name: str, took_s: float) -> None:
+    def note_visible(self, name: str, took_s: float) -> None:
         """What somebody waited for came; that is no request, and not among their times."""
         self.book.note(kinds.SEEN, name=name, took_s=round(took_s, 2))
 

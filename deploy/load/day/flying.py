@@ -139,7 +139,7 @@ class FlyingOperator(Browser):
         if not is_so():
             self.blame(name, TimeoutError(f"not in {SEEN_WITHIN_S:.0f} s"))
             return False
-        self.note_seen(name, time.monotonic() - began_s)
+        self.note_visible(name, time.monotonic() - began_s)
         return True
 
     def pause(self) -> None:

@@ -97,7 +97,7 @@ class PlansMissions(Person):
             if reported["state"] in {"done", "failed", "cancelled"}:
                 break
         if reported["state"] == "done":
-            self.note_seen("plan: large, done", waited_s)
+            self.note_visible("plan: large, done", waited_s)
             self.book.note(kinds.PLAN, job=job)
         else:
             self.blame("plan: large, done", TimeoutError(f"{reported['state']} after {waited_s:.0f} s: {reported.get('error')}"))
@@ -208,13 +208,13 @@ class Administers(Person):
     abstract = True
     role = "administrator"
 
-    def look_after_people(self) -> None:
+    def edit_people(self) -> None:
         self.ask("GET", "/administration", "page: administration")
         self.get("people?limit=50", "people: list")
         self.get("sign-ins?limit=50", "sign-ins: list")
         self.get("history?limit=50", "history: list")
 
-    def look_after_uavs(self) -> None:
+    def edit_uavs(self) -> None:
         self.ask("GET", "/uavs", "page: UAVs")
         self.get("uavs?limit=100", "UAVs: list")
 

@@ -48,7 +48,7 @@ def _twins(mission: Mission) -> list[Reason]:
 
 
 @dataclass(frozen=True)
-class Look:
+class ApprovalCheck:
     """What spoke against a mission, taken before its row is held: that may take seconds, for which no abort shall wait."""
 
     mission_revision: int
@@ -62,7 +62,7 @@ class Look:
         return now == (self.mission_revision, self.is_under_way) and self.ground == ground_revision()
 
 
-def look_at(mission: Mission, *, now: datetime) -> Look | None:
+def check_approval(mission: Mission, *, now: datetime) -> ApprovalCheck | None:
     """reasons_against, with the mission's revision and the ground's; None for one that has been put away."""
     ground = ground_revision()
     try:
@@ -70,15 +70,15 @@ def look_at(mission: Mission, *, now: datetime) -> Look | None:
     except Mission.DoesNotExist:
         return None
     is_under_way = loaded.state == MissionState.ACTIVE
-    return Look(loaded.revision, ground, is_under_way, tuple(reasons_against(loaded, now=now, is_under_way=is_under_way)))
+    return ApprovalCheck(loaded.revision, ground, is_under_way, tuple(reasons_against(loaded, now=now, is_under_way=is_under_way)))
 
 
-def look_that_counts(look: Look | None, held: Mission, *, now: datetime) -> Look:
+def valid_check(check: ApprovalCheck | None, held: Mission, *, now: datetime) -> ApprovalCheck:
     """The look that was taken before the row was held, or a new one. Raises MissionChanged for a mission that has been put away."""
-    seen = look if look is not None and look.still_counts(held) else look_at(held, now=now)
-    if seen is None:
+    current = check if check is not None and check.still_counts(held) else check_approval(held, now=now)
+    if current is None:
         raise MissionChanged
-    return seen
+    return current
 
 
 def _departure(mission: Mission, now: datetime) -> Iterator[Reason]:

@@ -27,7 +27,7 @@ from missions.models import (
 from missions.selectors.commands import upload_of
 from missions.selectors.missions import approval_in_force
 from missions.services.approval.approval import change_state, locked_mission, uavs_that_may_hold
-from missions.services.approval.checks import look_at, look_that_counts
+from missions.services.approval.checks import check_approval, valid_check
 from missions.services.approval.document import content_sha256
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
@@ -71,7 +71,7 @@ def dispatch_mission(
 
     `place` is the UAV's in the mission. Raises MissionChanged or Refused.
     """
-    look = look_at(mission, now=timezone.now())
+    check = check_approval(mission, now=timezone.now())
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
@@ -85,7 +85,7 @@ def dispatch_mission(
             raise refuse("no_route", _("This UAV flies no route."), place)
         if not any(0 < flight <= len(route["flights"]) for route in wanted):
             raise refuse("no_flight", _("This UAV has no such flight."), place)
-        against = look_that_counts(look, held, now=timezone.now()).reasons
+        against = valid_check(check, held, now=timezone.now()).reasons
         refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *against])
         to_send = [route for route in wanted if place is not None or not _is_on_its_way(approval, route["uav"])]
         refuse_for([] if to_send else [Reason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])

@@ -27,7 +27,7 @@ from missions.models import (
 from missions.selectors.commands import route_commands, upload_of
 from missions.selectors.fleet import performance_of
 from missions.selectors.missions import approval_in_force
-from missions.services.approval.checks import Look, look_at, look_that_counts
+from missions.services.approval.checks import ApprovalCheck, check_approval, valid_check
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
 from missions.services.commands.refused import Reason, refuse, refuse_for
@@ -56,7 +56,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
         raise refuse("uav_not_in_service", _("%(uav)s is retired.") % {"uav": uav.name})
     checked = _parameters(uav, kind, parameters or {})
     mission = mission_in_hand(uav)
-    look = look_at(mission, now=timezone.now()) if mission is not None and kind == CommandKind.START else None
+    check = check_approval(mission, now=timezone.now()) if mission is not None and kind == CommandKind.START else None
     with transaction.atomic():
         if mission is not None and kind in SETS_IN_MOTION:  # what stops a UAV waits for nobody who holds its mission
             mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
@@ -64,7 +64,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
         if kind in SETS_IN_MOTION:
             mission, approval = _to_move_for(uav, kind, mission, approval)
             if kind == CommandKind.START:
-                checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now(), out_of_slot=OUT_OF_SLOT in checked)
+                checked["flight"] = _flight_to_start(uav, mission, approval, check, timezone.now(), out_of_slot=OUT_OF_SLOT in checked)
         about = {"mission": mission, "approval": approval}
         if THEN_RETURN in checked or (kind == CommandKind.RETURN and checked.keys() & {WAIT_S, HEIGHT_M}):
             return return_in_steps(uav=uav, parameters=checked, actor=actor, why=why, **about)
@@ -164,7 +164,9 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
     return mission, approval
 
 
-def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look | None, now: datetime, *, out_of_slot: bool) -> int:
+def _flight_to_start(
+    uav: Uav, mission: Mission, approval: Approval, check: ApprovalCheck | None, now: datetime, *, out_of_slot: bool
+) -> int:
     """That is on the UAV, seen there, and due. Raises Refused."""
     values = {"uav": uav.name}
     upload = upload_of(approval, uav.pk)
@@ -176,16 +178,16 @@ def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look 
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
-    refuse_for(_reasons_for(route.mission_uav.sequence, look_that_counts(look, mission, now=now)))
+    refuse_for(_reasons_for(route.mission_uav.sequence, valid_check(check, mission, now=now)))
     hold_starts(uav.organisation_id)
     if not out_of_slot:
         refuse_for(reasons_to_wait(uav=uav, route=route, flight=flight, now=now))
     return flight
 
 
-def _reasons_for(place: int, look: Look) -> list[Reason]:
+def _reasons_for(place: int, check: ApprovalCheck) -> list[Reason]:
     """As things are now, for this UAV: zones may have come since the mission was sent. Its own departure is looked at by itself."""
-    return [reason for reason in look.reasons if reason.uav in (None, place) and reason.code != "departure_past"]
+    return [reason for reason in check.reasons if reason.uav in (None, place) and reason.code != "departure_past"]
 
 
 def _refuse_untimely(departs_at: datetime, now: datetime, values: dict[str, str]) -> None:

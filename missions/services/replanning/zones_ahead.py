@@ -14,7 +14,7 @@ from missions.services.replanning.offers import suggest
 from missions.services.replanning.rest import Cause, Rest, rests_of
 
 ZONE_ACTIVE = "zone-active"
-LOOKED_AT_FOR_S = 3_600
+CHECKED_FOR_S = 3_600
 
 
 def zone_ahead(rest: Rest, now: datetime) -> MetZone | None:
@@ -37,8 +37,8 @@ def suggest_for_zones() -> list[ReplanOffer]:
     flying = Mission.objects.filter(state=MissionState.ACTIVE, deleted_at=None).exclude(ground_revision=revision)
     found = []
     for mission in flying.select_related("organisation"):
-        looked_at = f"replan-zones:{mission.pk}:{revision}"
-        if cache.get(looked_at):
+        checked_at = f"replan-zones:{mission.pk}:{revision}"
+        if cache.get(checked_at):
             continue
         loaded = mission_of_organisation(mission.organisation, mission.pk)
         for rest in rests_of(loaded, Cause(ZONE_ACTIVE), now):
@@ -55,5 +55,5 @@ def suggest_for_zones() -> list[ReplanOffer]:
             }
             offer = suggest(mission_id=mission.pk, code=ZONE_ACTIVE, cause=cause)
             found += [] if offer is None else [offer]
-        cache.set(looked_at, 1, LOOKED_AT_FOR_S)
+        cache.set(checked_at, 1, CHECKED_FOR_S)
     return found

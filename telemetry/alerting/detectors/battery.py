@@ -18,7 +18,7 @@ from telemetry.alerting.advice import (
 )
 from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import ACTS, CRITICAL, LAND, RANK, RETURN, WARNING, Finding, acts
 from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.status_texts import is_worse, newest_battery_text
@@ -50,35 +50,35 @@ class _Judged:
     is_route_short: bool = False
 
 
-def detect(situation: Situation) -> list[Finding] | None:
+def detect(inputs: DetectorInput) -> list[Finding] | None:
     """By the vehicle's own word, which may go by voltage while its percentage stays high, and by what is left; the worse of both."""
-    newest = situation.uav.newest
-    situation.memory.note_mode(situation.mode, situation.now_s if newest is None else newest.measured_s)
-    forecast = _forecast(situation)
-    expected = None if forecast is None else _expected(situation, forecast)
-    stated = _stated(situation)
-    situation.memory.battery = None if forecast is None else forecast.as_json(expected[0].level if expected else "")
+    newest = inputs.uav.newest
+    inputs.detector_state.note_mode(inputs.mode, inputs.now_s if newest is None else newest.measured_s)
+    forecast = _forecast(inputs)
+    expected = None if forecast is None else _expected(inputs, forecast)
+    stated = _stated(inputs)
+    inputs.detector_state.battery = None if forecast is None else forecast.as_json(expected[0].level if expected else "")
     if stated is None or (expected and RANK[expected[0].level] >= RANK[stated.level]):
         return expected
-    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | _answer(situation, forecast))]
+    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | _answer(inputs, forecast))]
 
 
-def _forecast(situation: Situation) -> BatteryForecast | None:
-    fresh = situation.fresh
+def _forecast(inputs: DetectorInput) -> BatteryForecast | None:
+    fresh = inputs.fresh
     left_percent = None if fresh is None else fresh.measurement.battery_percent
-    if fresh is None or left_percent is None or situation.has_just_jumped:
+    if fresh is None or left_percent is None or inputs.has_just_jumped:
         return None
-    return battery_forecast(situation, fresh, left_percent)
+    return battery_forecast(inputs, fresh, left_percent)
 
 
-def _stated(situation: Situation) -> Finding | None:
-    state, text = situation.link.battery_state, newest_battery_text(situation.status_texts, situation.now_s)
-    if text is not None and state == "ok" and situation.now_s - text.at_s > OVERRULES_AFTER_S:
+def _stated(inputs: DetectorInput) -> Finding | None:
+    state, text = inputs.link.battery_state, newest_battery_text(inputs.status_texts, inputs.now_s)
+    if text is not None and state == "ok" and inputs.now_s - text.at_s > OVERRULES_AFTER_S:
         text = None
     if state not in STATES and text is None:
         return None
     named = state if state in STATES else "critical" if text is not None and is_worse(text) else "low"
-    values = {"uav": situation.uav.name, "state": named}
+    values = {"uav": inputs.uav.name, "state": named}
     details = {"charge_state": state, "words": "" if text is None else text.text}
     if text is None:
         return Finding(CODE, STATES[named], STATED, values, details=details)
@@ -86,11 +86,11 @@ def _stated(situation: Situation) -> Finding | None:
     return Finding(CODE, level, STATED_AS, values | {"words": text.text}, details=details)
 
 
-def _expected(situation: Situation, forecast: BatteryForecast) -> list[Finding]:
-    judged = _judged(situation, forecast)
+def _expected(inputs: DetectorInput, forecast: BatteryForecast) -> list[Finding]:
+    judged = _judged(inputs, forecast)
     if judged is None:
         return []
-    values: dict[str, object] = {"uav": situation.uav.name}
+    values: dict[str, object] = {"uav": inputs.uav.name}
     if judged.message is not EMPTY:
         values["percent"] = str(round(judged.percent if judged.message is EXPECTED else forecast.left_percent))
     if judged.message not in (EMPTY, TIGHT, NO_WAY_HOME, NO_WAY_BUT_LANDING):
@@ -101,20 +101,20 @@ def _expected(situation: Situation, forecast: BatteryForecast) -> list[Finding]:
         values["metres"] = round(forecast.landing_m or 0.0)
     details = {
         **forecast.as_json(judged.level),
-        **_answer(situation, forecast),
+        **_answer(inputs, forecast),
         "expected_percent": round(judged.percent, 1),
-        "rate": round(situation.memory.drain.ratio(situation.memory.drain.kind), 2),
+        "rate": round(inputs.detector_state.drain.ratio(inputs.detector_state.drain.kind), 2),
         "route_short": judged.is_route_short,
     }
     return [Finding(CODE, judged.level, judged.message, values, details=details, severity=-forecast.left_percent)]
 
 
-def _judged(situation: Situation, forecast: BatteryForecast) -> _Judged | None:
+def _judged(inputs: DetectorInput, forecast: BatteryForecast) -> _Judged | None:
     """The worst that the figures say. An open alert is kept until all is CLEARS_ABOVE_PERCENT better than what raises it."""
-    worst = _worst(situation, forecast, 0.0)
-    if worst is not None or not situation.is_open(CODE):
+    worst = _worst(inputs, forecast, 0.0)
+    if worst is not None or not inputs.is_open(CODE):
         return worst
-    nearly = _worst(situation, forecast, CLEARS_ABOVE_PERCENT)
+    nearly = _worst(inputs, forecast, CLEARS_ABOVE_PERCENT)
     if nearly is None or nearly.message in (TURN_BACK, EXPECTED):
         return nearly
     return _Judged(WARNING, EXPECTED, max(_ends(forecast), default=forecast.left_percent))
@@ -125,14 +125,14 @@ def _ends(forecast: BatteryForecast) -> list[float]:
     return [forecast.left_percent - need for need in (forecast.home_percent, forecast.rest_percent) if need is not None]
 
 
-def _worst(situation: Situation, forecast: BatteryForecast, more: float) -> _Judged | None:
+def _worst(inputs: DetectorInput, forecast: BatteryForecast, more: float) -> _Judged | None:
     """more: percent by which all limits are raised."""
-    limits, left, reserve, rest = situation.limits, forecast.left_percent, forecast.reserve_percent + more, forecast.rest_percent
+    limits, left, reserve, rest = inputs.limits, forecast.left_percent, forecast.reserve_percent + more, forecast.rest_percent
     floor, at_home = limits.battery_critical_percent + more, None if forecast.home_percent is None else left - forecast.home_percent
     best = max(_ends(forecast), default=left)
     if left < reserve:
         return _Judged(CRITICAL, BELOW, left)
-    if _falls_soon(situation, forecast, reserve):
+    if _falls_soon(inputs, forecast, reserve):
         return _Judged(CRITICAL, SOON, left)
     if best < floor:
         if at_home is not None and at_home >= more:
@@ -144,25 +144,25 @@ def _worst(situation: Situation, forecast: BatteryForecast, more: float) -> _Jud
         if at_home is not None and at_home <= reserve:
             return _Judged(WARNING, TURN_BACK, at_home, is_short)
         return _Judged(WARNING, EMPTY if left - rest <= 0.0 else EXPECTED, left - rest, is_short)
-    comes_down = situation.mode in (ModeKind.RETURN, ModeKind.LAND)
+    comes_down = inputs.mode in (ModeKind.RETURN, ModeKind.LAND)
     if rest is None and at_home is not None and at_home < reserve - (margin if comes_down else 0.0):
         return _Judged(WARNING, EXPECTED if comes_down else TURN_BACK, at_home)
     return None
 
 
-def _falls_soon(situation: Situation, forecast: BatteryForecast, below_percent: float) -> bool:
+def _falls_soon(inputs: DetectorInput, forecast: BatteryForecast, below_percent: float) -> bool:
     """Within AHEAD_S, or before it lands, where it is on its way down by its route, home or here; one that is held stays in the air."""
     down = {ModeKind.RETURN: forecast.home_percent, ModeKind.LAND: forecast.down_percent}
-    need = forecast.rest_percent if forecast.rest_percent is not None or situation.mode is None else down.get(situation.mode)
+    need = forecast.rest_percent if forecast.rest_percent is not None or inputs.mode is None else down.get(inputs.mode)
     drained = forecast.drain_per_s * AHEAD_S
     return forecast.left_percent - (drained if need is None else min(drained, need)) < below_percent
 
 
-def _answer(situation: Situation, forecast: BatteryForecast | None) -> dict[str, Any]:
+def _answer(inputs: DetectorInput, forecast: BatteryForecast | None) -> dict[str, Any]:
     """What an operator would do, what that costs, and what the UAV does by itself; as an alert has it in its details."""
-    mode, uav_id = situation.mode, situation.uav.uav_id
-    floor_percent = situation.limits.battery_critical_percent
-    own = {} if situation.ends_as_planned else own_act(mode, situation.memory.mode_since_s, situation.order)
+    mode, uav_id = inputs.mode, inputs.uav.uav_id
+    floor_percent = inputs.limits.battery_critical_percent
+    own = {} if inputs.ends_as_planned else own_act(mode, inputs.detector_state.mode_since_s, inputs.order)
     if mode is ModeKind.LAND:
         return {ACTS: [], **own}
     if mode is ModeKind.RETURN:

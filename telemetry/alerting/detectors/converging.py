@@ -4,9 +4,9 @@ from typing import Any
 
 from telemetry.alerting.conflicts import FAR_HEIGHT_M, FAR_M
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, WARNING, Finding, acts
-from telemetry.alerting.surroundings import Meeting
+from telemetry.alerting.surroundings import Conflict
 
 CODE = "converging"
 WORDS = (
@@ -18,44 +18,44 @@ CLEAR_SHARE = 1.3
 CRITICAL_WITHIN_S = 12.0
 
 
-def detect(situation: Situation) -> list[Finding]:
-    limits = situation.limits
+def detect(inputs: DetectorInput) -> list[Finding]:
+    limits = inputs.limits
     found: dict[str, Finding] = {}
-    for meeting in situation.meetings:
-        subject = str(meeting.other_id)
-        share = CLEAR_SHARE if situation.is_open(CODE, subject) else 1.0
+    for conflict in inputs.conflicts:
+        subject = str(conflict.other_id)
+        share = CLEAR_SHARE if inputs.is_open(CODE, subject) else 1.0
         lateral_m, height_m = limits.separation_m * share, limits.separation_height_m * share
-        if meeting.in_s > limits.converging_s or meeting.least_lateral_m >= lateral_m or meeting.least_height_m >= height_m:
+        if conflict.in_s > limits.converging_s or conflict.least_lateral_m >= lateral_m or conflict.least_height_m >= height_m:
             continue
-        is_near = meeting.lateral_m < limits.separation_m and meeting.height_m < limits.separation_height_m
-        level = CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING
+        is_near = conflict.lateral_m < limits.separation_m and conflict.height_m < limits.separation_height_m
+        level = CRITICAL if is_near and conflict.in_s <= CRITICAL_WITHIN_S else WARNING
         if subject in found and (level == WARNING or found[subject].level == CRITICAL):
             continue
-        found[subject] = _finding(situation, meeting, level)
+        found[subject] = _finding(inputs, conflict, level)
     return list(found.values())
 
 
-def _finding(situation: Situation, meeting: Meeting, level: str) -> Finding:
+def _finding(inputs: DetectorInput, conflict: Conflict, level: str) -> Finding:
     """With the distance of this moment, whatever its bound is."""
-    in_s = meeting.in_s / situation.link.clock_rate  # for those who look at the server's clock
+    in_s = conflict.in_s / inputs.link.clock_rate  # for those who look at the server's clock
     values: dict[str, Any] = {
-        "uav": situation.uav.name, "other": meeting.other_name, "metres": round(meeting.now_lateral_m),
-        "height": "–" if meeting.now_height_m is None else round(meeting.now_height_m), "bound": round(meeting.bound_m),
-        "hold": meeting.yields_name, "why": str(meeting.why),
+        "uav": inputs.uav.name, "other": conflict.other_name, "metres": round(conflict.now_lateral_m),
+        "height": "–" if conflict.now_height_m is None else round(conflict.now_height_m), "bound": round(conflict.bound_m),
+        "hold": conflict.yields_name, "why": str(conflict.why),
     }  # fmt: skip
-    is_ahead = in_s >= 1.0 and meeting.closing_mps > 0.0
+    is_ahead = in_s >= 1.0 and conflict.closing_mps > 0.0
     if is_ahead:
-        values |= {"seconds": round(in_s), "speed": round(meeting.closing_mps)}
+        values |= {"seconds": round(in_s), "speed": round(conflict.closing_mps)}
     details = {
-        "other": meeting.other_id, "in_s": round(in_s, 1), "distance_m": round(meeting.now_lateral_m, 1),
-        "height_difference_m": None if meeting.now_height_m is None else round(meeting.now_height_m, 1),
-        "closing_mps": round(meeting.closing_mps, 1), "bound_m": round(meeting.bound_m, 1), "lateral_m": round(meeting.lateral_m, 1),
-        "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
-        ACTS: acts(HOLD, uav_id=meeting.yields_id),
+        "other": conflict.other_id, "in_s": round(in_s, 1), "distance_m": round(conflict.now_lateral_m, 1),
+        "height_difference_m": None if conflict.now_height_m is None else round(conflict.now_height_m, 1),
+        "closing_mps": round(conflict.closing_mps, 1), "bound_m": round(conflict.bound_m, 1), "lateral_m": round(conflict.lateral_m, 1),
+        "height_m": round(conflict.height_m, 1), "least_lateral_m": round(conflict.least_lateral_m, 1),
+        ACTS: acts(HOLD, uav_id=conflict.yields_id),
     }  # fmt: skip
-    nearness = -max(meeting.now_lateral_m / FAR_M, (meeting.now_height_m or 0.0) / FAR_HEIGHT_M)
+    nearness = -max(conflict.now_lateral_m / FAR_M, (conflict.now_height_m or 0.0) / FAR_HEIGHT_M)
     words = WORDS if is_ahead else NOW
-    return Finding(CODE, level, words, values, subject=str(meeting.other_id), details=details, severity=nearness)
+    return Finding(CODE, level, words, values, subject=str(conflict.other_id), details=details, severity=nearness)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=5.0)

@@ -5,8 +5,8 @@ from collections.abc import Iterable
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
-from telemetry.alerting.detector_state import Memory, position_of
+from telemetry.alerting.detector_input import DetectorInput
+from telemetry.alerting.detector_state import DetectorState, position_of
 from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import Order
@@ -22,38 +22,38 @@ FELL_WITHIN_S = 10.0  # before it was on the ground
 GIVEN_AFTER_S = 2.0  # that clocks and reports may differ by
 
 
-def detect(situation: Situation) -> Iterable[Finding] | None:
+def detect(inputs: DetectorInput) -> Iterable[Finding] | None:
     """None where nothing is found: what is open stays open."""
-    if situation.is_accounted_for:
+    if inputs.is_accounted_for:
         return None
-    away = _away(situation)
-    return None if away is None else [finding(situation.uav.name, situation.uav.flight, *away)]
+    away = _away(inputs)
+    return None if away is None else [finding(inputs.uav.name, inputs.uav.flight, *away)]
 
 
-def is_down_away(situation: Situation) -> bool:
+def is_down_away(inputs: DetectorInput) -> bool:
     """Tell whether it is on the ground where its flight does not end, and no person has said what became of it."""
-    return not situation.is_accounted_for and (any(code == CODE for code, _ in situation.open_levels) or _away(situation) is not None)
+    return not inputs.is_accounted_for and (any(code == CODE for code, _ in inputs.open_levels) or _away(inputs) is not None)
 
 
-def has_ended(situation: Situation) -> bool:
+def has_ended(inputs: DetectorInput) -> bool:
     """Tell whether its flight is over: seen in flight, it came down away from its plan, and has stood there disarmed since.
 
     One that came down where its plan has it stand is none, though it is carried away: it can be started again. Nor is one that was told
     to land, is silent, or was down before it was watched.
     """
-    memory, model, newest = situation.memory, situation.model, situation.uav.newest
-    if model is None or newest is None or memory.down_s is None or memory.down_at is None or not situation.is_disarmed:
+    detector_state, model, newest = inputs.detector_state, inputs.model, inputs.uav.newest
+    if model is None or newest is None or detector_state.down_s is None or detector_state.down_at is None or not inputs.is_disarmed:
         return False
-    has_stayed = newest.measured_s - memory.down_s >= DETECTOR.raise_after_s or situation.is_open(CODE, str(situation.uav.flight))
-    if not has_stayed or _away(situation) is None:
+    has_stayed = newest.measured_s - detector_state.down_s >= DETECTOR.raise_after_s or inputs.is_open(CODE, str(inputs.uav.flight))
+    if not has_stayed or _away(inputs) is None:
         return False
-    return away_from_plan_m(model.line, memory.down_at, model.rally_points) >= AWAY_M
+    return away_from_plan_m(model.line, detector_state.down_at, model.rally_points) >= AWAY_M
 
 
-def _away(situation: Situation) -> tuple[LonLat, float] | None:
+def _away(inputs: DetectorInput) -> tuple[LonLat, float] | None:
     """Where it is, and how far from its plan [m]."""
-    newest, model = situation.uav.newest, situation.model
-    if newest is None or model is None or not situation.is_known_down or not _was_started(situation):
+    newest, model = inputs.uav.newest, inputs.model
+    if newest is None or model is None or not inputs.is_known_down or not _was_started(inputs):
         return None
     position = position_of(newest)
     if position is None:
@@ -86,19 +86,19 @@ def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[L
     return min(math.dist(here, place) for place in stands)
 
 
-def _was_started(situation: Situation) -> bool:
-    order = situation.order
-    if order is not None and order.kind in ORDERED_TO and _could_land(situation.memory, order):
+def _was_started(inputs: DetectorInput) -> bool:
+    order = inputs.order
+    if order is not None and order.kind in ORDERED_TO and _could_land(inputs.detector_state, order):
         return False
-    return situation.memory.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
+    return inputs.detector_state.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
 
 
-def _could_land(memory: Memory, order: Order) -> bool:
+def _could_land(detector_state: DetectorState, order: Order) -> bool:
     """Whether its being down can be what the order was for: it did not fall there, nor was it down before it was told to."""
-    if memory.down_s is None:
+    if detector_state.down_s is None:
         return True
-    fell = memory.fell_s is not None and memory.down_s - memory.fell_s <= FELL_WITHIN_S
-    return not fell and (order.given_s is None or order.given_s <= memory.down_s + GIVEN_AFTER_S)
+    fell = detector_state.fell_s is not None and detector_state.down_s - detector_state.fell_s <= FELL_WITHIN_S
+    return not fell and (order.given_s is None or order.given_s <= detector_state.down_s + GIVEN_AFTER_S)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=0.0, needs_flight=False)

@@ -4,7 +4,7 @@ import math
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import position_of
 from telemetry.alerting.finding import ACTS, CRITICAL, HOLD, LAND, TAKE_OVER, WARNING, Finding, acts
 from telemetry.estimation.report import Report
@@ -28,12 +28,12 @@ JUMP_LASTS_S = 6.0
 BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown it
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    fresh, limits = situation.fresh, situation.limits
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    fresh, limits = inputs.fresh, inputs.limits
     if fresh is None:
         return None
-    reported, is_open = fresh.measurement, situation.is_open(CODE)
-    jump_m = _jump_m(situation, fresh)
+    reported, is_open = fresh.measurement, inputs.is_open(CODE)
+    jump_m = _jump_m(inputs, fresh)
     found: tuple[str, str, dict[str, object]] | None = None
     if reported.gps_fix is not None and reported.gps_fix < FIX_IN_SPACE:
         found = CRITICAL, NO_FIX, {}
@@ -50,8 +50,8 @@ def detect(situation: Situation) -> list[Finding] | None:
     level, words, values = found
     is_lost = level == CRITICAL
     if is_lost:
-        values["own"] = OWN.get(situation.link.autopilot, OWN_UNKNOWN)
-    answers = acts(LAND, TAKE_OVER, uav_id=situation.uav.uav_id) if is_lost else acts(HOLD, uav_id=situation.uav.uav_id)
+        values["own"] = OWN.get(inputs.link.autopilot, OWN_UNKNOWN)
+    answers = acts(LAND, TAKE_OVER, uav_id=inputs.uav.uav_id) if is_lost else acts(HOLD, uav_id=inputs.uav.uav_id)
     details = {
         ACTS: answers,
         "gps_fix": reported.gps_fix,
@@ -59,22 +59,22 @@ def detect(situation: Situation) -> list[Finding] | None:
         "hdop": reported.hdop,
         "jump_m": jump_m and round(jump_m),
     }
-    return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
+    return [Finding(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
 
 
-def _jump_m(situation: Situation, fresh: Report) -> float | None:
+def _jump_m(inputs: DetectorInput, fresh: Report) -> float | None:
     """Of its last jump, as long as that is news. The memory is written to."""
-    memory = situation.memory
-    before = memory.before
-    if before is not None and memory.jumped_s != fresh.received_s:
+    detector_state = inputs.detector_state
+    before = detector_state.before
+    if before is not None and detector_state.jumped_s != fresh.received_s:
         here, there = position_of(fresh), position_of(before)
         seconds = fresh.measured_s - before.measured_s
         if here is not None and there is not None and 0.0 < seconds <= BETWEEN_S:
             metres = _flat_m(there, here)
-            if metres >= max(MIN_JUMP_M, situation.limits.jump_mps * _own_s(before, fresh, situation.link.clock_rate)):
-                memory.jumped_s, memory.jump_m = fresh.received_s, metres
-    is_news = memory.jumped_s is not None and situation.now_s - memory.jumped_s <= JUMP_LASTS_S
-    return memory.jump_m if is_news else None
+            if metres >= max(MIN_JUMP_M, inputs.limits.jump_mps * _own_s(before, fresh, inputs.link.clock_rate)):
+                detector_state.jumped_s, detector_state.jump_m = fresh.received_s, metres
+    is_news = detector_state.jumped_s is not None and inputs.now_s - detector_state.jumped_s <= JUMP_LASTS_S
+    return detector_state.jump_m if is_news else None
 
 
 def _own_s(before: Report, after: Report, clock_rate: float) -> float:

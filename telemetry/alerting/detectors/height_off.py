@@ -1,7 +1,7 @@
 """It flies its list, but higher or lower than approved."""
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 
 CODE = "height-off"
@@ -10,10 +10,10 @@ BELOW = "%(uav)s flies %(metres)s m below the height of its route; %(limit)s m a
 CLEAR_SHARE = 0.8
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    if not situation.flies_mission:
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    if not inputs.flies_mission:
         return []
-    place, fresh, model, limits = situation.place, situation.fresh, situation.model, situation.limits
+    place, fresh, model, limits = inputs.place, inputs.fresh, inputs.model, inputs.limits
     if place is None or fresh is None or model is None or fresh.measurement.altitude_relative_m is None:
         return None
     if place.across_m > limits.off_route_critical_m:
@@ -21,10 +21,10 @@ def detect(situation: Situation) -> list[Finding] | None:
     low_m, high_m = model.line.heights_at(place)
     height_m = fresh.measurement.altitude_relative_m
     off_m = max(height_m - high_m, low_m - height_m)
-    if off_m <= limits.height_off_m * (CLEAR_SHARE if situation.is_open(CODE) else 1.0):
+    if off_m <= limits.height_off_m * (CLEAR_SHARE if inputs.is_open(CODE) else 1.0):
         return []
     level = CRITICAL if off_m > limits.height_off_critical_m else WARNING
-    values = {"uav": situation.uav.name, "metres": round(off_m), "limit": round(limits.height_off_m)}
+    values = {"uav": inputs.uav.name, "metres": round(off_m), "limit": round(limits.height_off_m)}
     details = {"altitude_relative_m": round(height_m, 1), "planned_from_m": round(low_m, 1), "planned_to_m": round(high_m, 1)}
     return [Finding(CODE, level, ABOVE if height_m > high_m else BELOW, values, details=details)]
 

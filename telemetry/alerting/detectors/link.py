@@ -17,7 +17,7 @@ from telemetry.alerting.advice import (
     advice,
 )
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.modes import ModeKind
@@ -37,43 +37,43 @@ def lost_after_s(limits: Limits, report_interval_s: float) -> float:
     return max(limits.link_lost_s, LOST_INTERVALS * report_interval_s)
 
 
-def detect(situation: Situation) -> list[Finding]:
-    last_message_s = situation.last_message_s
+def detect(inputs: DetectorInput) -> list[Finding]:
+    last_message_s = inputs.last_message_s
     if last_message_s is None:
         return []
-    silent_s, interval_s = situation.now_s - last_message_s, situation.report_interval_s
-    if silent_s < late_after_s(situation.limits, interval_s):
+    silent_s, interval_s = inputs.now_s - last_message_s, inputs.report_interval_s
+    if silent_s < late_after_s(inputs.limits, interval_s):
         return []
-    is_lost = silent_s >= lost_after_s(situation.limits, interval_s)
-    expected_s = None if situation.uav.estimate is None else situation.uav.estimate.contact_expected_s
+    is_lost = silent_s >= lost_after_s(inputs.limits, interval_s)
+    expected_s = None if inputs.uav.estimate is None else inputs.uav.estimate.contact_expected_s
     return [
         Finding(
             CODE,
             CRITICAL if is_lost else WARNING,
             LOST if is_lost else LATE,
-            {"uav": situation.uav.name, "seconds": round(silent_s)},
+            {"uav": inputs.uav.name, "seconds": round(silent_s)},
             details={
                 "heard_s": last_message_s,
                 "silent_s": round(silent_s, 1),
                 "contact_expected_s": expected_s,
-                **_does_by_itself(situation),
+                **_does_by_itself(inputs),
             },
         )
     ]
 
 
-def _does_by_itself(situation: Situation) -> dict[str, Any]:
+def _does_by_itself(inputs: DetectorInput) -> dict[str, Any]:
     """What it does meanwhile: as it was last heard, and as was planned for a lost link. Failsafes of autopilots are not read."""
-    mode, model = situation.mode, situation.model
+    mode, model = inputs.mode, inputs.model
     if mode in _LAST_RECEIVED:
         return advice(_LAST_RECEIVED[mode])
     if mode in (ModeKind.BY_HAND, ModeKind.GUIDED):
-        newest = situation.uav.newest
-        return advice(WAS_FLOWN, mode=(newest.measurement.mode if newest is not None else "") or situation.link.mode)
+        newest = inputs.uav.newest
+        return advice(WAS_FLOWN, mode=(newest.measurement.mode if newest is not None else "") or inputs.link.mode)
     planned = None if model is None else model.lost_link
     if planned is None:
         return advice(NOT_PLANNED)
-    failsafe = FAILSAFES.get(situation.link.autopilot, FAILSAFE_UNKNOWN)
+    failsafe = FAILSAFES.get(inputs.link.autopilot, FAILSAFE_UNKNOWN)
     if planned.behaviour is LostLink.HOLD:
         return advice(HOLDS_THEN_RETURNS, seconds=round(planned.hold_s), failsafe=failsafe)
     return advice(RETURNS_PLANNED if planned.behaviour is LostLink.RETURN else GOES_ON, failsafe=failsafe)

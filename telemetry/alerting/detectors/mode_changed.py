@@ -1,7 +1,7 @@
 """Its mode is not what we told it: it acts by itself, or somebody else flies it."""
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import LEADS_TO, WITHOUT_ORDER, ModeKind
 from telemetry.alerting.status_texts import AFTER_S, BEFORE_S, quoted
@@ -28,36 +28,36 @@ _TEXTS = {
 }  # fmt: skip
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    kind, order, newest = situation.mode, situation.order, situation.uav.newest
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    kind, order, newest = inputs.mode, inputs.order, inputs.uav.newest
     if kind is None or newest is None:
         return None
     if order is not None and (order.done_s is None or newest.received_s < order.done_s + SETTLES_S):
         return None
-    if situation.memory.mode_words[0] and kind is ModeKind.MISSION:
-        situation.memory.mode_words = ("", "")
+    if inputs.detector_state.mode_words[0] and kind is ModeKind.MISSION:
+        inputs.detector_state.mode_words = ("", "")
     if kind in (WITHOUT_ORDER if order is None else LEADS_TO.get(order.kind, WITHOUT_ORDER)):
         return []
-    if situation.ends_as_planned:
+    if inputs.ends_as_planned:
         return []
     level = CRITICAL if kind in (ModeKind.RETURN, ModeKind.LAND) else WARNING
-    mode = newest.measurement.mode or situation.link.mode
+    mode = newest.measurement.mode or inputs.link.mode
     details = {"mode": mode, "order": None if order is None else order.kind}
-    template, values = _WORDS[kind], {"uav": situation.uav.name, "mode": mode}
-    words = _words_about(situation, mode)
+    template, values = _WORDS[kind], {"uav": inputs.uav.name, "mode": mode}
+    words = _words_about(inputs, mode)
     if words:
         template, values = _TEXTS[template], values | {"words": words}
     return [Finding(CODE, level, template, values, details=details)]
 
 
-def _words_about(situation: Situation, mode: str) -> str:
+def _words_about(inputs: DetectorInput, mode: str) -> str:
     """What the vehicle said when it changed to this mode, kept as long as it is in it."""
-    cause, (of_mode, words) = situation.memory.causes.get((CODE, "")), situation.memory.mode_words
+    cause, (of_mode, words) = inputs.detector_state.causes.get((CODE, "")), inputs.detector_state.mode_words
     if of_mode == mode and words:
         return words
-    since_s = situation.now_s if cause is None else min(cause.since_s.values(), default=situation.now_s)
-    words = quoted(situation.status_texts, since_s - BEFORE_S, since_s + AFTER_S)
-    situation.memory.mode_words = (mode, words)
+    since_s = inputs.now_s if cause is None else min(cause.since_s.values(), default=inputs.now_s)
+    words = quoted(inputs.status_texts, since_s - BEFORE_S, since_s + AFTER_S)
+    inputs.detector_state.mode_words = (mode, words)
     return words
 
 

@@ -1,7 +1,7 @@
 """It is to fly its list and does not come on."""
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import Progress
 from telemetry.alerting.finding import WARNING, Finding
 
@@ -13,27 +13,27 @@ AT_END_M = 15.0
 SLACK = 1.2  # of a planned stay, which autopilots round up
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    memory, place, model, fresh = situation.memory, situation.place, situation.model, situation.fresh
-    if not situation.flies_mission or not situation.is_in_flight:
-        memory.progress.clear()
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    detector_state, place, model, fresh = inputs.detector_state, inputs.place, inputs.model, inputs.fresh
+    if not inputs.flies_mission or not inputs.is_in_flight:
+        detector_state.progress.clear()
         return []
-    if place is None or model is None or fresh is None or situation.has_just_jumped:
+    if place is None or model is None or fresh is None or inputs.has_just_jumped:
         return None
     here = Progress(fresh.received_s, place.along_m, fresh.measurement.altitude_relative_m)
-    if not memory.progress or memory.progress[-1].at_s < here.at_s:
-        memory.progress.append(here)
-    longest_s = (situation.limits.no_progress_s + SLACK * model.line.planned_hold_s(place.along_m)) / situation.link.clock_rate
-    while len(memory.progress) > 1 and memory.progress[1].at_s <= situation.now_s - longest_s:
-        memory.progress.popleft()
-    before = memory.progress[0]
-    stood_s = situation.now_s - before.at_s
-    step_m = STEP_M * (CLEAR_STEPS if situation.is_open(CODE) else 1.0)
+    if not detector_state.progress or detector_state.progress[-1].at_s < here.at_s:
+        detector_state.progress.append(here)
+    longest_s = (inputs.limits.no_progress_s + SLACK * model.line.planned_hold_s(place.along_m)) / inputs.link.clock_rate
+    while len(detector_state.progress) > 1 and detector_state.progress[1].at_s <= inputs.now_s - longest_s:
+        detector_state.progress.popleft()
+    before = detector_state.progress[0]
+    stood_s = inputs.now_s - before.at_s
+    step_m = STEP_M * (CLEAR_STEPS if inputs.is_open(CODE) else 1.0)
     if stood_s < longest_s or place.along_m - before.along_m >= step_m or _has_climbed(before.height_m, here.height_m):
         return []
     if model.line.length_m - place.along_m <= AT_END_M:
         return []
-    values = {"uav": situation.uav.name, "seconds": round(stood_s)}
+    values = {"uav": inputs.uav.name, "seconds": round(stood_s)}
     return [Finding(CODE, WARNING, WORDS, values, details={"stood_s": round(stood_s), "along_m": round(place.along_m, 1)})]
 
 
@@ -42,6 +42,6 @@ def _has_climbed(before_m: float | None, height_m: float | None) -> bool:
 
 
 DETECTOR = Detector(
-    CODE, detect, raise_after_s=0.0, clear_after_s=2.0, hidden_by=("link-lost", "off-route", "mode-changed"),
+    CODE, detect, raise_after_s=0.0, clear_after_s=2.0, suppressed_by=("link-lost", "off-route", "mode-changed"),
     own_delay_s=lambda limits, _interval_s: limits.no_progress_s,
 )  # fmt: skip

@@ -1,7 +1,7 @@
 """What it holds, or flies, is not what was approved."""
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import ModeKind
 
@@ -12,11 +12,11 @@ IN_DOUBT = "%(uav)s may hold another mission than the approved one: it changed a
 BEYOND = "%(uav)s is at item %(item)s of its mission; the approved one has %(items)s."
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    held, newest = situation.held, situation.uav.newest
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    held, newest = inputs.held, inputs.uav.newest
     if held is None or held.is_changing:
         return None
-    is_flown = situation.is_in_flight and situation.mode is ModeKind.MISSION
+    is_flown = inputs.is_in_flight and inputs.mode is ModeKind.MISSION
     item = None if newest is None else newest.measurement.mission_item
     values: dict[str, object] = {}
     if is_flown and held.approval_id is None:
@@ -30,7 +30,7 @@ def detect(situation: Situation) -> list[Finding] | None:
     else:
         return []
     details = {"doubt": held.doubt, "loaded_approval": None if held.approval_id is None else str(held.approval_id)}
-    return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
+    return [Finding(CODE, level, words, {"uav": inputs.uav.name, **values}, details=details)]
 
 
-DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=2.0, needs_flight=False, hidden_by=("mission-mixed",))
+DETECTOR = Detector(CODE, detect, raise_after_s=3.0, clear_after_s=2.0, needs_flight=False, suppressed_by=("mission-mixed",))

@@ -4,7 +4,7 @@ import math
 
 from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.detector_input import Situation
+from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 
 CODE = "weather"
@@ -12,17 +12,17 @@ WORDS = "Wind %(wind)s m/s at %(uav)s (limit %(limit)s m/s)."
 CLEAR_SHARE = 0.85
 
 
-def detect(situation: Situation) -> list[Finding] | None:
-    fresh, limits, model = situation.fresh, situation.limits, situation.model
+def detect(inputs: DetectorInput) -> list[Finding] | None:
+    fresh, limits, model = inputs.fresh, inputs.limits, inputs.model
     wind_mps = None if fresh is None else wind_of(fresh.measurement)
     if wind_mps is None:
         return None
     airspeed_mps = math.inf if model is None else model.max_airspeed_mps
     limit_mps = min(airspeed_mps * limits.wind_share_percent / 100.0, limits.wind_mps or math.inf)
-    if wind_mps <= limit_mps * (CLEAR_SHARE if situation.is_open(CODE) else 1.0):
+    if wind_mps <= limit_mps * (CLEAR_SHARE if inputs.is_open(CODE) else 1.0):
         return []
     level = CRITICAL if wind_mps >= airspeed_mps else WARNING
-    values = {"uav": situation.uav.name, "wind": f"{wind_mps:.0f}", "limit": f"{limit_mps:.0f}"}
+    values = {"uav": inputs.uav.name, "wind": f"{wind_mps:.0f}", "limit": f"{limit_mps:.0f}"}
     return [Finding(CODE, level, WORDS, values, details={"wind_mps": round(wind_mps, 1), "limit_mps": round(limit_mps, 1)})]
 
 

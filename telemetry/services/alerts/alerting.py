@@ -7,9 +7,9 @@ from datetime import datetime
 from typing import Any
 
 from mavlink.autopilot_type import AutopilotType
-from telemetry.alerting.conflicts import elsewhere, meetings, ways_of
-from telemetry.alerting.detector_input import Situation, WatchedUav
-from telemetry.alerting.detector_state import Memory, position_of
+from telemetry.alerting.conflicts import conflicts, elsewhere, ways_of
+from telemetry.alerting.detector_input import DetectorInput, WatchedUav
+from telemetry.alerting.detector_state import DetectorState, position_of
 from telemetry.alerting.detectors import down
 from telemetry.alerting.limits import Limits, sound_limits
 from telemetry.alerting.order import CODES, DETECTORS
@@ -36,38 +36,40 @@ MIN_REACH_M, MAX_SPEED_MPS = 200.0, 40.0  # within which zones are looked at: as
 
 
 @dataclass
-class Memories:
+class DetectorStates:
     """What one process remembers from look to look, by UAV. It may be lost: the alerts themselves are rows."""
 
-    of_uav: dict[int, Memory] = field(default_factory=lambda: defaultdict(Memory))
+    of_uav: dict[int, DetectorState] = field(default_factory=lambda: defaultdict(DetectorState))
 
     def keep_only(self, uav_ids: Iterable[int]) -> None:
         for uav_id in self.of_uav.keys() - set(uav_ids):
             del self.of_uav[uav_id]
 
 
-_OF_THIS_PROCESS = Memories()
+_OF_THIS_PROCESS = DetectorStates()
 
 
-def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | None = None) -> dict[int, dict[str, Any] | None]:
+def poll_alerts(
+    *, watched: Sequence[WatchedUav], now: datetime, detector_states: DetectorStates | None = None
+) -> dict[int, dict[str, Any] | None]:
     """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again.
 
     Returns what the battery of each allows, as live pages show it (battery_forecast.py).
     """
-    memories = _OF_THIS_PROCESS if memories is None else memories
-    memories.keep_only(uav.uav_id for uav in watched)
+    detector_states = _OF_THIS_PROCESS if detector_states is None else detector_states
+    detector_states.keep_only(uav.uav_id for uav in watched)
     batteries: dict[int, dict[str, Any] | None] = {}
     reported = close_alerts_of_ended_missions(codes={*CODES, OTHER_LIST} - {down.CODE}, but=[uav.uav_id for uav in watched], now=now)
     if watched:
         open_rows = open_alerts_of([uav.uav_id for uav in watched], (*CODES, MIXED))
         levels = {uav_id: {(row.code, row.subject): row.level for row in rows} for uav_id, rows in open_rows.items()}
-        situations = _with_accounts(_with_meetings(list(_situations(watched, now.timestamp(), memories, levels))))
+        situations = _with_accounts(_with_conflicts(list(_situations(watched, now.timestamp(), detector_states, levels))))
         found: list[tuple[WatchedUav, Opened | Closed]] = [
-            (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
+            (inputs.uav, change) for inputs in situations for change in changes(inputs, DETECTORS)
         ]
-        in_mission = {situation.uav.uav_id for situation in situations if situation.is_in_flight and situation.flies_mission}
+        in_mission = {inputs.uav.uav_id for inputs in situations if inputs.is_in_flight and inputs.flies_mission}
         reported |= settle(found, open_rows=open_rows, now=now)
-        batteries = {situation.uav.uav_id: situation.memory.battery if situation.is_in_flight else None for situation in situations}
+        batteries = {inputs.uav.uav_id: inputs.detector_state.battery if inputs.is_in_flight else None for inputs in situations}
         _end_flights(situations)
         suggest_for_findings(
             (uav.mission_id, uav.uav_id, change.finding)
@@ -82,22 +84,22 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
     return batteries
 
 
-def _end_flights(situations: Iterable[Situation]) -> None:
+def _end_flights(situations: Iterable[DetectorInput]) -> None:
     """Of UAVs that are down for good away from their plans: each is told to its mission once."""
-    for situation in situations:
-        if not situation.memory.has_ended and down.has_ended(situation):
-            uav = situation.uav
+    for inputs in situations:
+        if not inputs.detector_state.has_ended and down.has_ended(inputs):
+            uav = inputs.uav
             note_down_off_plan(uav_id=uav.uav_id, approval_id=uav.approval_id, flight=uav.flight)
-            situation.memory.has_ended = True
+            inputs.detector_state.has_ended = True
 
 
-def _with_accounts(situations: list[Situation]) -> list[Situation]:
+def _with_accounts(situations: list[DetectorInput]) -> list[DetectorInput]:
     """A UAV that still lies where somebody knows of it is not reported again."""
-    pairs = [(situation.uav.uav_id, situation.uav.mission_id) for situation in situations if down.is_down_away(situation)]
+    pairs = [(inputs.uav.uav_id, inputs.uav.mission_id) for inputs in situations if down.is_down_away(inputs)]
     known = closed_by_people(pairs, down.CODE) if pairs else set()
     return [
-        replace(situation, is_accounted_for=(situation.uav.uav_id, situation.uav.mission_id, str(situation.uav.flight)) in known)
-        for situation in situations
+        replace(inputs, is_accounted_for=(inputs.uav.uav_id, inputs.uav.mission_id, str(inputs.uav.flight)) in known)
+        for inputs in situations
     ]
 
 
@@ -109,22 +111,22 @@ def _is_new(change: Opened, rows: Iterable[OpenRow]) -> bool:
 
 
 def _situations(
-    watched: Sequence[WatchedUav], now_s: float, memories: Memories, levels: Mapping[int, Mapping[tuple[str, str], str]]
-) -> Iterator[Situation]:
+    watched: Sequence[WatchedUav], now_s: float, detector_states: DetectorStates, levels: Mapping[int, Mapping[tuple[str, str], str]]
+) -> Iterator[DetectorInput]:
     flying = [(uav.uav_id, uav.mission_id) for uav in watched]
     links, orders, stated, zones = links_of([uav_id for uav_id, _ in flying]), orders_to(flying), stated_limits(flying), zones_about(now_s)
     status_texts = status_texts_of([uav_id for uav_id, _ in flying], now_s)
     for uav in watched:
-        memory, model = memories.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
-        memory.take(uav.newest, None if model is None else model.line)
+        detector_state, model = detector_states.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
+        detector_state.take(uav.newest, None if model is None else model.line)
         link, loaded = links.get(uav.uav_id, (LinkFacts(), Loaded()))
         order, is_changing = orders.get(uav.uav_id, (None, False))
         limits = sound_limits(stated[uav.uav_id])
-        situation = Situation(
+        inputs = DetectorInput(
             now_s=now_s,
             uav=uav,
             limits=limits,
-            memory=memory,
+            detector_state=detector_state,
             link=link,
             open_levels=levels.get(uav.uav_id, {}),
             model=model,
@@ -134,27 +136,24 @@ def _situations(
             status_texts=status_texts.get(uav.uav_id, ()),
         )
         if model is not None:
-            memory.note_flight(is_in_flight=situation.is_in_flight)
-        yield situation
+            detector_state.note_flight(is_in_flight=inputs.is_in_flight)
+        yield inputs
 
 
-def _with_meetings(situations: list[Situation]) -> list[Situation]:
-    within_s = max(situation.limits.converging_s for situation in situations)
-    moving = [way for situation in situations for way in ways_of(situation, within_s)]
+def _with_conflicts(situations: list[DetectorInput]) -> list[DetectorInput]:
+    within_s = max(inputs.limits.converging_s for inputs in situations)
+    moving = [way for inputs in situations for way in ways_of(inputs, within_s)]
     if not moving:
         return situations
-    organisations = {situation.uav.organisation_id for situation in situations}
-    others = estimated_by_other_watches(organisations, [situation.uav.uav_id for situation in situations])
+    organisations = {inputs.uav.organisation_id for inputs in situations}
+    others = estimated_by_other_watches(organisations, [inputs.uav.uav_id for inputs in situations])
     moving += [
         elsewhere(uav_id, name, organisation_id, estimated, within_s, clock_rate, is_twin=is_twin)
         for organisation_id, of_organisation in others.items()
         for uav_id, name, estimated, clock_rate, is_twin in of_organisation
     ]
-    met = meetings(moving, within_s)
-    return [
-        replace(situation, meetings=tuple(met[situation.uav.uav_id])) if situation.uav.uav_id in met else situation
-        for situation in situations
-    ]
+    met = conflicts(moving, within_s)
+    return [replace(inputs, conflicts=tuple(met[inputs.uav.uav_id])) if inputs.uav.uav_id in met else inputs for inputs in situations]
 
 
 def _zones(uav: WatchedUav, limits: Limits, zones: ZonesAbout) -> tuple[NearZone, ...]:

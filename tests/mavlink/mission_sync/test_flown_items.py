@@ -26,7 +26,7 @@ class Watched:
     def feed(self, message) -> None:
         parsed = mavlink.MAVLink(None).parse_char(message.pack(self._frames))
         self.state.receive(parsed, self.now_s)
-        self.reported += self.watch.look(self.state, parsed.get_type())
+        self.reported += self.watch.check(self.state, parsed.get_type())
 
     def is_seen(self, *, armed: bool, in_air: bool, in_mission: bool = True) -> None:
         mode = MODES[self.autopilot_type][0 if in_mission else 1]

@@ -87,7 +87,7 @@ def battery_flight(seed: int) -> Flown:
         if second % interval_s == 0:
             newest = Report(now_s, now_s, Measurement(**_reported(flight, moment, truth, random)))
         seen = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=newest)
-        watch.look(watch.situation(now_s, seen, model=flight.model), (battery.DETECTOR,))
+        watch.evaluate(watch.inputs(now_s, seen, model=flight.model), (battery.DETECTOR,))
     return Flown(moments, watch, flight.model.reserve_percent)
 
 

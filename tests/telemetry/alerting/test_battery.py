@@ -40,7 +40,7 @@ def found(flight: TrueFlight, measured: Measurement, watch: Watch | None = None,
     watch = watch or Watch()
     now_s = START_S + second
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(now_s, now_s, measured))
-    return next(iter(battery.detect(watch.situation(now_s, uav, model=flight.model, **around)) or ()), None)
+    return next(iter(battery.detect(watch.inputs(now_s, uav, model=flight.model, **around)) or ()), None)
 
 
 def far_from_home(flight: TrueFlight) -> int:
@@ -59,7 +59,7 @@ def test_the_climb_to_the_height_of_its_return_counts_in_the_way_home(flight):
     def home(**link) -> dict:
         watch = Watch()
         found(flight, reported(flight, second, 60.0), watch, link=LinkFacts(**link))
-        return watch.memory.battery
+        return watch.detector_state.battery
 
     level = home()
     high = home(rtl_behaviour=rtl_behaviour("ardupilot", {"RTL_ALT": (height_m + 60.0) * 100.0, "RTL_ALT_TYPE": 0.0}))
@@ -98,7 +98,7 @@ def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(f
     measured = reported(flight, far_from_home(flight), 60.0, "LOITER", moves=False)
     watch = Watch()
     assert found(flight, measured, watch) is None
-    home_percent = watch.memory.battery["home_percent"]
+    home_percent = watch.detector_state.battery["home_percent"]
     assert home_percent > 5.0
     finding = found(flight, reported(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
     assert (finding.level, finding.message, proposed(finding)) == (WARNING, battery.TURN_BACK, [("return", 7)])
@@ -107,7 +107,7 @@ def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(f
 def home_percent_of(flight: TrueFlight, second: int) -> float:
     watch = Watch()
     found(flight, reported(flight, second, 60.0, "LOITER", moves=False), watch)
-    return watch.memory.battery["home_percent"]
+    return watch.detector_state.battery["home_percent"]
 
 
 def advised(finding: Finding) -> str | None:
@@ -180,20 +180,23 @@ def test_a_return_that_is_too_short_of_battery_to_reach_home_can_be_cut_by_a_lan
 
 def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, Measurement(battery_percent=15.0, is_in_air=True)))
-    (finding,) = battery.detect(Watch().situation(START_S, uav))
+    (finding,) = battery.detect(Watch().inputs(START_S, uav))
     assert (finding.level, finding.message) == (CRITICAL, battery.BELOW)
 
 
 def test_pages_are_told_minutes_to_the_reserve_and_home(flight):
     watch = Watch()
     found(flight, reported(flight, far_from_home(flight), 60.0), watch)
-    assert watch.memory.battery["level"] == "" and watch.memory.battery["reserve_in_s"] > 60 < watch.memory.battery["home_s"]
+    assert (
+        watch.detector_state.battery["level"] == ""
+        and watch.detector_state.battery["reserve_in_s"] > 60 < watch.detector_state.battery["home_s"]
+    )
 
 
 def test_a_hold_lasts_as_long_as_more_is_left_than_the_way_home_and_the_reserve_take(flight):
     watch, second = Watch(), far_from_home(flight)
     found(flight, reported(flight, second, 80.0), watch)
-    battery_now = watch.memory.battery
+    battery_now = watch.detector_state.battery
     spare = 80.0 - battery_now["reserve_percent"] - battery_now["home_percent"]
     wind_mps = math.hypot(*flight.conditions.wind_at(60.0))
     assert battery_now["hold_s"] == pytest.approx(spare / flight.model.consumption.percent_per_s(wind_mps), rel=0.02)
@@ -205,10 +208,10 @@ def test_pages_are_told_what_is_left_at_landing_by_the_way_that_it_flies_now(fli
     for mode in ("AUTO", "RTL", "LOITER"):
         watch = Watch()
         found(flight, reported(flight, second, left, mode), watch)
-        lands[mode] = watch.memory.battery["lands_percent"]
-    rest = flight.model.energy.rest_at(watch.memory.place, flight.model.energy.used_at(watch.memory.place, 1.0))
+        lands[mode] = watch.detector_state.battery["lands_percent"]
+    rest = flight.model.energy.rest_at(watch.detector_state.place, flight.model.energy.used_at(watch.detector_state.place, 1.0))
     assert lands["AUTO"] == pytest.approx(left - rest, abs=1.0)
-    assert lands["RTL"] == pytest.approx(left - watch.memory.battery["home_percent"], abs=0.1) != lands["AUTO"]
+    assert lands["RTL"] == pytest.approx(left - watch.detector_state.battery["home_percent"], abs=0.1) != lands["AUTO"]
     assert lands["LOITER"] is None, "it is held"
 
 
@@ -218,13 +221,13 @@ def test_a_hold_that_drains_more_than_planned_lasts_less(flight):
     planned_s = None
     for after_s in range(0, 120):
         found(flight, reported(flight, second, left, "LOITER", moves=False), watch, float(after_s))
-        planned_s = planned_s or watch.memory.battery["hold_s"]
+        planned_s = planned_s or watch.detector_state.battery["hold_s"]
         left -= 2.0 * per_s
     as_planned_s = planned_s - 120.0 * 2.0
-    assert watch.memory.battery["hold_s"] < 0.8 * as_planned_s
+    assert watch.detector_state.battery["hold_s"] < 0.8 * as_planned_s
 
 
 def test_one_with_nothing_to_spare_cannot_hold(flight):
     watch = Watch()
     found(flight, reported(flight, far_from_home(flight), 21.0), watch)
-    assert watch.memory.battery["hold_s"] == 0
+    assert watch.detector_state.battery["hold_s"] == 0

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from telemetry.alerting.conflicts import Flying, Why, meetings, ways_of, yielding
+from telemetry.alerting.conflicts import Flying, Why, conflicts, ways_of, yielding
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING, acts_of
@@ -14,7 +14,7 @@ from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
 from tests.telemetry.alerting.faults import LIMITS
-from tests.telemetry.alerting.test_meetings import at, flown_with_another, reported, ways
+from tests.telemetry.alerting.test_conflicts import at, flown_with_another, reported, ways
 from tests.telemetry.alerting.truth import MISSION, START_S
 from tests.telemetry.alerting.watch import Watch
 
@@ -23,9 +23,9 @@ LEVEL_M = 30.0
 
 def finding_of(first, second):
     moving = [*ways(1, first, None), *ways(2, second, None)]
-    met = tuple(meetings(moving, LIMITS.converging_s)[1])
+    met = tuple(conflicts(moving, LIMITS.converging_s)[1])
     uav = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, first))
-    (found,) = DETECTOR.detect(Watch().situation(START_S, uav, meetings=met))
+    (found,) = DETECTOR.detect(Watch().inputs(START_S, uav, conflicts=met))
     return found
 
 
@@ -96,13 +96,13 @@ def test_the_reported_distance_is_the_true_one_within_2_m():
                 report = Report(START_S + moment, START_S + moment + 0.05, measured)
                 tracker.take(report)
                 uav = WatchedUav(number, 1, f"UAV {number}", MISSION, MISSION, newest=report, estimate=tracker.estimate(START_S + second))
-                seen.append(Watch().situation(START_S + second, uav))
+                seen.append(Watch().inputs(START_S + second, uav))
             if second < 0:
                 continue
-            moving = [way for situation in seen for way in ways_of(situation, LIMITS.converging_s)]
+            moving = [way for inputs in seen for way in ways_of(inputs, LIMITS.converging_s)]
             true_m = math.dist(moves[0](second), moves[1](second))
-            for meeting in meetings(moving, LIMITS.converging_s).get(0, ()):
-                assert meeting.now_lateral_m == pytest.approx(true_m, abs=2.0), f"pair {pair}, second {second}"
+            for conflict in conflicts(moving, LIMITS.converging_s).get(0, ()):
+                assert conflict.now_lateral_m == pytest.approx(true_m, abs=2.0), f"pair {pair}, second {second}"
                 compared += 1
     assert compared > 30
 

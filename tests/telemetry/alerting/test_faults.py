@@ -32,7 +32,7 @@ def flown_fast(flight: TrueFlight, seed: int, *, clock_rate: float) -> Watch:
             continue
         now_s = START_S + state.seconds / FAST
         seen = WatchedUav(1, 1, "Tern", MISSION, MISSION, newest=Report(now_s, now_s, Measurement(**values)))
-        watch.look(watch.situation(now_s, seen, model=flight.model, link=LinkFacts(now_s, clock_rate=clock_rate)))
+        watch.evaluate(watch.inputs(now_s, seen, model=flight.model, link=LinkFacts(now_s, clock_rate=clock_rate)))
     return watch
 
 
@@ -53,7 +53,7 @@ def flown(flight: TrueFlight, seed: int, fault: Fault | None, *, interval_s: int
         last_message_s = now_s if fault is None or fault.is_received(state) else last_message_s
         seen = WatchedUav(uav.uav_id, 1, uav.name, MISSION, MISSION, newest=newest)
         around = {"model": flight.model, "link": LinkFacts(last_message_s if interval_s < 5 else None)}
-        watch.look(watch.situation(now_s, seen, **{**around, **(fault.around(state, seen) if fault else {})}))
+        watch.evaluate(watch.inputs(now_s, seen, **{**around, **(fault.around(state, seen) if fault else {})}))
     return watch
 
 

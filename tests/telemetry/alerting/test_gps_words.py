@@ -15,7 +15,7 @@ from tests.telemetry.alerting.watch import Watch
 def found(autopilot: str = "", **reported):
     measured = Measurement(longitude_deg=10.0, latitude_deg=56.0, is_in_air=True, **reported)
     uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, measured))
-    (finding,) = gps.detect(Watch().situation(START_S, uav, link=LinkFacts(autopilot=autopilot)))
+    (finding,) = gps.detect(Watch().inputs(START_S, uav, link=LinkFacts(autopilot=autopilot)))
     return finding
 
 

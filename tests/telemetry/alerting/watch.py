@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from telemetry.alerting.detector_input import Situation, WatchedUav
-from telemetry.alerting.detector_state import Memory
+from telemetry.alerting.detector_input import DetectorInput, WatchedUav
+from telemetry.alerting.detector_state import DetectorState
 from telemetry.alerting.limits import Limits
 from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.state_machine import RANK, Closed, changes
@@ -27,27 +27,29 @@ class Watch:
     """Of one UAV."""
 
     limits: Limits = field(default_factory=Limits)
-    memory: Memory = field(default_factory=Memory)
+    detector_state: DetectorState = field(default_factory=DetectorState)
     open_levels: dict[tuple[str, str], str] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)
 
-    def situation(self, now_s: float, uav: WatchedUav, **around) -> Situation:
+    def inputs(self, now_s: float, uav: WatchedUav, **around) -> DetectorInput:
         model = around.get("model")
-        self.memory.take(uav.newest, None if model is None else model.line)
+        self.detector_state.take(uav.newest, None if model is None else model.line)
         around.setdefault("held", OnboardState(approval_id=uav.approval_id, is_approved=True))
-        return Situation(now_s=now_s, uav=uav, limits=self.limits, memory=self.memory, open_levels=dict(self.open_levels), **around)
+        return DetectorInput(
+            now_s=now_s, uav=uav, limits=self.limits, detector_state=self.detector_state, open_levels=dict(self.open_levels), **around
+        )
 
-    def look(self, situation: Situation, detectors=DETECTORS) -> None:
-        for change in changes(situation, detectors):
+    def evaluate(self, inputs: DetectorInput, detectors=DETECTORS) -> None:
+        for change in changes(inputs, detectors):
             if isinstance(change, Closed):
                 level = self.open_levels.pop((change.code, change.subject))
-                self.events.append(Event(situation.now_s, "closed", change.code, change.subject, level))
+                self.events.append(Event(inputs.now_s, "closed", change.code, change.subject, level))
                 continue
             finding = change.finding
             key = finding.code, finding.subject
             before = self.open_levels.get(key)
             if before is None or RANK[finding.level] > RANK[before]:
-                self.events.append(Event(situation.now_s, "opened" if before is None else "rose", *key, finding.level))
+                self.events.append(Event(inputs.now_s, "opened" if before is None else "rose", *key, finding.level))
             self.open_levels[key] = finding.level
             finding.message % finding.values  # every value is there
 

@@ -131,14 +131,14 @@ def test_an_abort_is_claimed_however_many_uploads_there_are():
     desk = a_desk(database, session)
     desk._deliveries = {upload.pk: Delivery(upload, None, None) for upload in uploads}
     desk._tasks = {upload.pk: SimpleNamespace(done=lambda: False) for upload in uploads}
-    asyncio.run(desk.look())
+    asyncio.run(desk.poll())
     claims = [named for do, named in database.asked if do is claim_commands]
     others = [[CommandAxis.FLIGHT], [CommandAxis.SPEED], [CommandAxis.PARAMETER]]
     assert [claim["axes"] for claim in claims] == others, "and no upload more than may begin"
 
     del desk._deliveries[uploads[0].pk], desk._tasks[uploads[0].pk]
     database.asked.clear()
-    asyncio.run(desk.look())
+    asyncio.run(desk.poll())
     claims = [named for do, named in database.asked if do is claim_commands]
     assert [claim["limit"] for claim in claims if claim["axes"] == [CommandAxis.MISSION]] == [1]
 

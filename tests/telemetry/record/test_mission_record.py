@@ -16,7 +16,7 @@ from missions.services.commands.flight_progress import FlightEnd, mark_flight_en
 from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts.alerts import open_alert
-from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks, store_missing_visits
+from telemetry.services.targets_checked import LOOKBACK_S, TargetChecks, store_missing_visits
 from tests.accounts.users import client_of, somebody
 from tests.telemetry.flown import fly, record_of, route_of
 from workspace.models import Organisation, Role, User
@@ -153,7 +153,7 @@ def test_a_watch_forgets_what_it_looked_at_long_ago(mission: Mission, approval: 
     checks = TargetChecks()
     checks.check([tern.pk])
     assert checks != TargetChecks()
-    mission.targets.update(state_at=timezone.now() - 2 * timedelta(seconds=LOOKED_BACK_S))
+    mission.targets.update(state_at=timezone.now() - 2 * timedelta(seconds=LOOKBACK_S))
     checks.check([tern.pk])
     assert checks == TargetChecks()
 
@@ -225,7 +225,7 @@ def test_visits_that_no_watch_has_seen_are_stored_by_the_clock_once_the_mission_
     assert store_missing_visits() == 0
     end(mission, tern)
     assert store_missing_visits() == 0, "the watch looks first"
-    Mission.objects.filter(pk=mission.pk).update(ended_at=timezone.now() - timedelta(seconds=2 * LOOKED_BACK_S))
+    Mission.objects.filter(pk=mission.pk).update(ended_at=timezone.now() - timedelta(seconds=2 * LOOKBACK_S))
     assert store_missing_visits() == mission.targets.count()
     assert not mission.targets.filter(reached_at=None).exists()
     assert store_missing_visits() == 0

@@ -21,7 +21,7 @@ def watch() -> ListWatch:
 def doubts(watch: ListWatch, message, now_s: float, total: int | None = None) -> list[Doubt]:
     state = VehicleState(7)
     state.mission_total = total
-    watch.look(message, state, now_s)
+    watch.check(message, state, now_s)
     return [doubt for doubt, _ in watch.found]
 
 
@@ -51,8 +51,8 @@ def test_another_number_of_items_is_another_list_unless_it_is_ours(watch):
 
 
 def test_a_boot_is_doubted_and_the_first_one_is_none(watch):
-    watch.look_at_boot("one", 1.0)
-    watch.look_at_boot("one", 2.0)
+    watch.check_boot("one", 1.0)
+    watch.check_boot("one", 2.0)
     assert watch.found == []
-    watch.look_at_boot("two", 3.0)
+    watch.check_boot("two", 3.0)
     assert watch.found == [(Doubt.REBOOTED, 3.0)]

@@ -31,7 +31,7 @@ RETURNING = {AutopilotType.PX4: 4 << 16 | 5 << 24, AutopilotType.ARDUPILOT: 6}
 @pytest.fixture(autouse=True)
 def soon_silent(monkeypatch):
     for module in (delivery, dispatcher):
-        monkeypatch.setattr(module, "HEARD_WITHIN_S", 1.5)
+        monkeypatch.setattr(module, "RECEIVED_WITHIN_S", 1.5)
 
 
 def sent_unacknowledged(command: UavCommand) -> bool:

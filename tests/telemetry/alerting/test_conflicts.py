@@ -11,7 +11,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
 from planning.trajectory.waypoints import WaypointKind
-from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
+from telemetry.alerting.conflicts import MAX_MET, NEAR_M, STEP_S, Moving, conflicts, ways_of
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
@@ -41,22 +41,22 @@ def flown_with_another(seed: int, *, passes_m: float, above_m: float = 0.0) -> t
         own = flight.states[second]
         east, north = here.east + beside[0] + after_s * east_mps, here.north + beside[1] + after_s * north_mps
         other = State(second, east, north, here.height_m + above_m, east_mps, north_mps)
-        look(flight, watches, [instruments[0].values(own), instruments[1].values(other) | {"waypoint_sequence": None}], second)
+        evaluate(flight, watches, [instruments[0].values(own), instruments[1].values(other) | {"waypoint_sequence": None}], second)
     return watches, meets
 
 
-def look(flight: TrueFlight, watches: list[Watch], reported: list[dict], second: int) -> None:
+def evaluate(flight: TrueFlight, watches: list[Watch], reported: list[dict], second: int) -> None:
     now_s = START_S + second
     situations = []
     for number, (watch, values) in enumerate(zip(watches, reported, strict=True)):
         report = Report(now_s, now_s, Measurement(**values))
         uav = WatchedUav(number, 1, "Tern" if number == 0 else "Kite", MISSION, MISSION, newest=report, estimate=estimate(report))
-        situations.append(watch.situation(now_s, uav, **({"model": flight.model} if number == 0 else {})))
-    moving = [way for situation in situations for way in ways_of(situation, LIMITS.converging_s)]
-    met = meetings(moving, LIMITS.converging_s)
-    for number, (watch, situation) in enumerate(zip(watches, situations, strict=True)):
-        around = {name: getattr(situation, name) for name in ("model", "held")}
-        watch.look(watch.situation(now_s, situation.uav, meetings=tuple(met.get(number, ())), **around), [DETECTOR])
+        situations.append(watch.inputs(now_s, uav, **({"model": flight.model} if number == 0 else {})))
+    moving = [way for inputs in situations for way in ways_of(inputs, LIMITS.converging_s)]
+    met = conflicts(moving, LIMITS.converging_s)
+    for number, (watch, inputs) in enumerate(zip(watches, situations, strict=True)):
+        around = {name: getattr(inputs, name) for name in ("model", "held")}
+        watch.evaluate(watch.inputs(now_s, inputs.uav, conflicts=tuple(met.get(number, ())), **around), [DETECTOR])
 
 
 def estimate(report: Report) -> Estimate:
@@ -106,17 +106,17 @@ def a_uav(key: int, *, lat_m: float = 0.0, height_m: float | None = 100.0, organ
 
 
 def test_of_a_pair_the_one_with_the_smaller_key_is_told():
-    met = meetings([a_uav(7), a_uav(3, lat_m=12.0)], 20.0)
+    met = conflicts([a_uav(7), a_uav(3, lat_m=12.0)], 20.0)
     assert list(met) == [3] and (met[3][0].other_id, round(met[3][0].lateral_m)) == (7, 12)
 
 
 def test_uavs_of_different_organisations_are_told_nothing_of_each_other():
-    assert not meetings([a_uav(1), a_uav(2, organisation=2)], 20.0)
+    assert not conflicts([a_uav(1), a_uav(2, organisation=2)], 20.0)
 
 
 def test_a_height_that_is_not_known_counts_as_the_same():
-    assert meetings([a_uav(1), a_uav(2, height_m=None)], 20.0)[1][0].height_m == 0.0
-    assert not meetings([a_uav(1), a_uav(2, height_m=300.0)], 20.0)
+    assert conflicts([a_uav(1), a_uav(2, height_m=None)], 20.0)[1][0].height_m == 0.0
+    assert not conflicts([a_uav(1), a_uav(2, height_m=300.0)], 20.0)
 
 
 def test_pairs_far_away_from_each_other_are_found_among_many():
@@ -125,13 +125,13 @@ def test_pairs_far_away_from_each_other_are_found_among_many():
     moving = [a_uav(key, lat_m=float(chance.uniform(0.0, 20_000.0))) for key in range(60)]
     apart_m = {(one.uav_id, two.uav_id): abs(one.ahead[0][1] - two.ahead[0][1]) * 111_195.0 for one in moving for two in moving}
     near = {pair for pair, metres in apart_m.items() if pair[0] < pair[1] and metres <= NEAR_M}
-    assert near and near == {(key, meeting.other_id) for key, met in meetings(moving, 20.0).items() for meeting in met}
+    assert near and near == {(key, conflict.other_id) for key, met in conflicts(moving, 20.0).items() for conflict in met}
 
 
 def test_in_a_crowd_each_is_told_of_those_that_come_nearest():
     crowd = [a_uav(key, lat_m=float(key)) for key in range(40)]
-    met = meetings(crowd, 20.0)
-    reported = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
+    met = conflicts(crowd, 20.0)
+    reported = {(key, conflict.other_id) for key, conflicts_of in met.items() for conflict in conflicts_of}
     assert len(reported) <= 40 * MAX_MET
     assert {(key, key + 1) for key in range(39)} <= reported
 
@@ -169,39 +169,39 @@ def ways(key: int, measured: Measurement, line: RouteLine | None) -> list[Moving
     report = Report(START_S, START_S, measured)
     uav = WatchedUav(key, 1, f"UAV {key}", MISSION, MISSION, newest=report, estimate=estimate(report))
     model = None if line is None else FlightModel(line, None, 15.0, 20.0)
-    return ways_of(Watch().situation(START_S, uav, model=model), LIMITS.converging_s)
+    return ways_of(Watch().inputs(START_S, uav, model=model), LIMITS.converging_s)
 
 
 def test_one_that_takes_off_is_seen_to_meet_another_on_its_leg_before_it_moves_there():
     """It stands 20 m high at the begin of its leg, at rest but for its climb; after 4 s of that and 8 s of its leg it is at the other."""
     climbing = ways(1, reported(at(0.0, 0.0), 20.0, climb_mps=2.5), a_line())
     crossing = ways(2, reported(at(80.0, -60.0), LEVEL_M, north_mps=5.0), None)
-    nearest = meetings([*climbing, *crossing], LIMITS.converging_s)[1][0]
+    nearest = conflicts([*climbing, *crossing], LIMITS.converging_s)[1][0]
     assert (nearest.in_s, nearest.lateral_m, nearest.height_m) == (pytest.approx(12.0, abs=1.0), pytest.approx(0.0, abs=3.0), 0.0)
 
 
 def test_one_that_takes_off_under_the_others_way_is_seen_to_come_up_to_it():
     climbing = ways(1, reported(at(0.0, 0.0), 2.0, climb_mps=2.5), a_line())
     above = ways(2, reported(at(-110.0, 0.0), LEVEL_M), a_line(from_east_m=-200.0, arrives_s=0.0))
-    nearest = meetings([*climbing, *above], LIMITS.converging_s)[1][0]
+    nearest = conflicts([*climbing, *above], LIMITS.converging_s)[1][0]
     assert (nearest.in_s, nearest.lateral_m) == (pytest.approx(11.0, abs=2.0), pytest.approx(0.0, abs=3.0)) and nearest.height_m < 8.0
 
 
 def test_simulated_twins_are_in_no_other_uavs_way():
     near = [ways(1, reported(at(0.0, 0.0), 29.0), None)[0], ways(2, reported(at(5.0, 3.0), 29.0), None)[0]]
-    assert meetings(near, LIMITS.converging_s)[1]
-    assert not meetings([near[0], replace(near[1], is_twin=True)], LIMITS.converging_s)[1]
-    assert meetings([replace(one, is_twin=True) for one in near], LIMITS.converging_s)[1]
+    assert conflicts(near, LIMITS.converging_s)[1]
+    assert not conflicts([near[0], replace(near[1], is_twin=True)], LIMITS.converging_s)[1]
+    assert conflicts([replace(one, is_twin=True) for one in near], LIMITS.converging_s)[1]
 
 
 def test_a_pair_with_several_ways_has_one_alert():
     both = [*ways(1, reported(at(0.0, 0.0), 29.0, climb_mps=1.0), a_line()), *ways(2, reported(at(5.0, 3.0), 29.0), a_line())]
     assert len(both) == 4
-    met = tuple(meetings(both, LIMITS.converging_s)[1])
+    met = tuple(conflicts(both, LIMITS.converging_s)[1])
     assert len(met) > 1
     report = Report(START_S, START_S, reported(at(0.0, 0.0), 29.0))
     uav = WatchedUav(1, 1, "UAV 1", MISSION, MISSION, newest=report)
-    found = DETECTOR.detect(Watch().situation(START_S, uav, meetings=met))
+    found = DETECTOR.detect(Watch().inputs(START_S, uav, conflicts=met))
     assert [(finding.subject, finding.level) for finding in found] == [("2", CRITICAL)]
 
 

@@ -1,6 +1,6 @@
 """What a second of alerts costs: looks at 200 UAVs in the air, with zones, links, commands and energy, and some alerts open.
 
-python -m benchmarks.alert_looks [UAVs]     needs an empty database of its own (DATABASE_URL); everything is rolled back
+python -m benchmarks.alert_polls [UAVs]     needs an empty database of its own (DATABASE_URL); everything is rolled back
 """
 
 import copy
@@ -24,7 +24,7 @@ from missions.services.approval.document import content_sha256  # noqa: E402
 from telemetry.alerting.detector_input import WatchedUav  # noqa: E402
 from telemetry.estimation.report import Report  # noqa: E402
 from telemetry.models import Alert, UavLink  # noqa: E402
-from telemetry.services.alerts.alerting import Memories, look  # noqa: E402
+from telemetry.services.alerts.alerting import DetectorStates, poll_alerts  # noqa: E402
 from tests.inspection.ground import zone  # noqa: E402
 from tests.missions.flights import an_operator, approved, fleet  # noqa: E402
 from tests.missions.worlds import world  # noqa: E402
@@ -49,7 +49,7 @@ def main(count: int) -> None:
             zone((5.0 + 0.05 * (number % 50), 50.0 + 0.05 * (number // 50)), name=f"zone {number}")
         zone((10.0, 57.0), 0.5, name="near")
         waypoints = document["routes"][0]["route"]["waypoints"]
-        memories, begun = Memories(), datetime(2026, 11, 22, 12, tzinfo=UTC)
+        detector_states, begun = DetectorStates(), datetime(2026, 11, 22, 12, tzinfo=UTC)
         spent_s, queries = [], 0
         for second in range(WARM + SECONDS):
             now = begun + timedelta(seconds=second)
@@ -57,7 +57,7 @@ def main(count: int) -> None:
             watched = [_watched(uav, number, mission, approval, waypoints, second, now) for number, uav in enumerate(uavs)]
             with CaptureQueriesContext(connection) as seen:
                 before_s, cpu_s = time.perf_counter(), _cpu_s()
-                look(watched=watched, now=now, memories=memories)
+                poll_alerts(watched=watched, now=now, detector_states=detector_states)
                 spent_s.append((_cpu_s() - cpu_s, time.perf_counter() - before_s))
             queries = max(queries, len(seen)) if second >= WARM else 0
         cpu, wall = (sorted(column) for column in zip(*spent_s[WARM:], strict=True))

@@ -12,7 +12,7 @@ from simulation.assessment.flown import Ending, FloatArray, FlownRoute, FlownTra
 
 
 @dataclass(frozen=True)
-class Meeting:
+class ClosestApproach:
     """The moment at which two UAVs, by their places in the mission, were nearest to each other."""
 
     uavs: tuple[int, int]
@@ -25,7 +25,7 @@ class Meeting:
         return math.hypot(self.beside_m, self.height_m)
 
 
-def meetings_of(routes: Sequence[FlownRoute], *, step_s: float) -> list[Meeting]:
+def closest_approaches_of(routes: Sequence[FlownRoute], *, step_s: float) -> list[ClosestApproach]:
     """One for each pair that was in the air at the same time; the tracks are read every step_s of the mission's time."""
     frame = frame_of(routes)
     if frame is None:
@@ -41,7 +41,7 @@ def meetings_of(routes: Sequence[FlownRoute], *, step_s: float) -> list[Meeting]
         nearest = int(np.argmin((by**2).sum(axis=1)))
         east_m, north_m, up_m = by[nearest].tolist()
         pair = (routes[one].uav, routes[other].uav)
-        found.append(Meeting(pair, math.hypot(east_m, north_m), abs(up_m), float(shared[nearest]) * step_s))
+        found.append(ClosestApproach(pair, math.hypot(east_m, north_m), abs(up_m), float(shared[nearest]) * step_s))
     return found
 
 

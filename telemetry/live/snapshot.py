@@ -16,7 +16,7 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Look:
+class Snapshot:
     """`texts` by language; what has no words is under SAME_IN_ALL."""
 
     shown: Mapping[Key, Shown] = field(default_factory=dict)
@@ -31,28 +31,28 @@ class Look:
         return entry is not None and entry.is_for(mission)
 
 
-def look(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Look) -> Look:
+def read_snapshot(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Snapshot) -> Snapshot:
     """An object that changes while it is read may be newer than its version: then the next look finds it changed, and tells it again."""
     shown = shown_live(organisation_id, missions)
     texts = {language: _texts(shown, language, before.texts.get(language, {})) for language in {SAME_IN_ALL, *languages}}
-    return Look(shown, texts)
+    return Snapshot(shown, texts)
 
 
-def look_once(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> Look:
+def page_snapshot(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> Snapshot:
     """Of one page alone; without texts where it is what has the ETag `known`."""
     shown = shown_live(organisation_id, [] if mission is None else [mission])
-    seen = Look({key: entry for key, entry in shown.items() if entry.is_for(mission)})
-    if known and known == etag_of(seen, language):
-        return seen
-    return Look(seen.shown, {each: _texts(seen.shown, each, {}) for each in {SAME_IN_ALL, language}})
+    snapshot = Snapshot({key: entry for key, entry in shown.items() if entry.is_for(mission)})
+    if known and known == etag_of(snapshot, language):
+        return snapshot
+    return Snapshot(snapshot.shown, {each: _texts(snapshot.shown, each, {}) for each in {SAME_IN_ALL, language}})
 
 
-def etag_of(seen: Look, language: str) -> str:
-    versions = sorted((*key, entry.version) for key, entry in seen.shown.items())
+def etag_of(snapshot: Snapshot, language: str) -> str:
+    versions = sorted((*key, entry.version) for key, entry in snapshot.shown.items())
     return f'"{sha256(repr((language, versions)).encode()).hexdigest()[:32]}"'
 
 
-def changed_between(before: Look, now: Look, mission: UUID | None) -> set[Key]:
+def changed_between(before: Snapshot, now: Snapshot, mission: UUID | None) -> set[Key]:
     """What pages of the mission, or of the whole organisation, are to be told: changed, come, or gone."""
     changed = {
         key
