@@ -120,7 +120,7 @@ class VerdictSerializer(serializers.Serializer):
     level = serializers.ChoiceField(choices=LEVELS)
     findings = FindingSerializer(many=True)
     routes = RehearsedRouteSerializer(many=True)
-    closest_approaches = ClosestApproachSerializer(many=True, help_text="the nearest that two UAVs came to each other in the air")
+    meetings = ClosestApproachSerializer(many=True, help_text="the nearest that two UAVs came to each other in the air")
 
 
 class RehearsalRunSerializer(serializers.Serializer):

@@ -793,6 +793,19 @@ export interface components {
             /** @description why each target that is still open is left */
             reasons?: components["schemas"]["OpenTargetReasonRequest"][];
         };
+        ClosestApproach: {
+            /** @description places in the mission */
+            uavs: number[];
+            /** Format: double */
+            beside_m: number;
+            /** Format: double */
+            height_m: number;
+            /**
+             * Format: double
+             * @description after the mission's departure
+             */
+            at_s: number;
+        };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         ClosingInputRequest: {
             /** @description what became of the UAV; kept as a note */
@@ -2752,19 +2765,6 @@ export interface components {
             wind: string | null;
             /** Format: date-time */
             waypoint: string | null;
-        };
-        Meeting: {
-            /** @description places in the mission */
-            uavs: number[];
-            /** Format: double */
-            beside_m: number;
-            /** Format: double */
-            height_m: number;
-            /**
-             * Format: double
-             * @description after the mission's departure
-             */
-            at_s: number;
         };
         MetLeg: {
             /** @description index of the UAV */
@@ -7331,7 +7331,7 @@ export interface components {
             findings: components["schemas"]["Finding"][];
             routes: components["schemas"]["RehearsedRoute"][];
             /** @description the nearest that two UAVs came to each other in the air */
-            meetings: components["schemas"]["Meeting"][];
+            meetings: components["schemas"]["ClosestApproach"][];
         };
         /**
          * @description * `pass` - Pass
@@ -7881,6 +7881,7 @@ export type ChangeProperties = components['schemas']['ChangeProperties'];
 export type Charging = components['schemas']['Charging'];
 export type Circle = components['schemas']['Circle'];
 export type CloseInputRequest = components['schemas']['CloseInputRequest'];
+export type ClosestApproach = components['schemas']['ClosestApproach'];
 export type ClosingInputRequest = components['schemas']['ClosingInputRequest'];
 export type Command = components['schemas']['Command'];
 export type CommandDetail = components['schemas']['CommandDetail'];
@@ -8039,7 +8040,6 @@ export type LostLinkRequest = components['schemas']['LostLinkRequest'];
 export type MatchEnum = components['schemas']['MatchEnum'];
 export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
-export type Meeting = components['schemas']['Meeting'];
 export type MetLeg = components['schemas']['MetLeg'];
 export type MetOnReturn = components['schemas']['MetOnReturn'];
 export type Mission = components['schemas']['Mission'];
