@@ -15,7 +15,7 @@ from django.utils import timezone
 from accounts.services import end_sessions
 from workspace.api_tokens import hash_token
 from workspace.audit import person_facts, record_change
-from workspace.field_encryption import CannotUnseal, seal, unseal
+from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import Organisation, RecoveryCode, SecondFactor, User
 
 STEP_S = 30
@@ -118,7 +118,7 @@ def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
         raise WrongCode(TRIES)
     with transaction.atomic():
         SecondFactor.objects.filter(user=user).delete()
-        factor = SecondFactor.objects.create(user=user, sealed_seed=seal(seed, of=_name_of(user)), last_step=step)
+        factor = SecondFactor.objects.create(user=user, sealed_seed=encrypt(seed, of=_name_of(user)), last_step=step)
         codes = _keep_recovery_codes(factor)
         record(user, user, "second factor set up")
     return codes
@@ -191,7 +191,7 @@ def require_second_factor(*, actor: User, required: bool) -> None:
             )
 
 
-def seal_with_the_key_of_today() -> int:
+def encrypt_with_current_key() -> int:
     """Seeds that were sealed with an old secret key, so that it can be taken away. Returns how many were looked at."""
     if not settings.SECRET_KEY_FALLBACKS:
         return 0
@@ -200,10 +200,10 @@ def seal_with_the_key_of_today() -> int:
     for factor in factors:
         name = _name_of(factor.user)
         try:
-            sealed = seal(unseal(factor.sealed_seed, of=name), of=name)
-        except CannotUnseal:
+            encrypted = encrypt(decrypt(factor.sealed_seed, of=name), of=name)
+        except CannotDecrypt:
             continue
-        count += SecondFactor.objects.filter(pk=factor.pk, sealed_seed=factor.sealed_seed).update(sealed_seed=sealed)
+        count += SecondFactor.objects.filter(pk=factor.pk, sealed_seed=factor.sealed_seed).update(sealed_seed=encrypted)
     return count
 
 
@@ -232,8 +232,8 @@ def _take_code(factor: SecondFactor, code: str) -> bool:
     if not is_of_an_app(code):
         return False
     try:
-        seed = unseal(factor.sealed_seed, of=_name_of(factor.user))
-    except CannotUnseal:
+        seed = decrypt(factor.sealed_seed, of=_name_of(factor.user))
+    except CannotDecrypt:
         return False
     step = matching_step(code, seed, at_s=timezone.now().timestamp(), after=factor.last_step)
     if step is None:

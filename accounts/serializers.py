@@ -121,7 +121,7 @@ class TokenListSerializer(serializers.Serializer):
     results = TokenSerializer(many=True)
 
 
-class ProofSerializer(serializers.Serializer):
+class ReauthenticationSerializer(serializers.Serializer):
     password = serializers.CharField(trim_whitespace=False, max_length=4_096)
 
 

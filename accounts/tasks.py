@@ -12,4 +12,4 @@ def forget_old_sign_ins() -> None:
 
 @shared_task(time_limit=60, soft_time_limit=50)
 def seal_second_factors() -> None:
-    second_factors.seal_with_the_key_of_today()
+    second_factors.encrypt_with_current_key()

@@ -85,7 +85,7 @@ def main() -> None:
     measured(asked[:100], 1)  # the first ones load the graph and its indices
     for threads in options.threads:
         print(f"{threads} threads by turns: {measured(asked, threads)}")
-        with mock.patch.object(planner, "in_turn", nullcontext):
+        with mock.patch.object(planner, "hold_planning_lock", nullcontext):
             print(f"{threads} threads at once:  {measured(asked, threads)}", flush=True)
 
 

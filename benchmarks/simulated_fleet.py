@@ -44,7 +44,7 @@ from planning.energy.conditions import Conditions  # noqa: E402
 from simulation.flight.states import Mode  # noqa: E402
 from simulation.management.commands.run_simulator import SWITCH_S  # noqa: E402
 from simulation.models import SimulatedVehicle, Simulation, SimulationState  # noqa: E402
-from simulation.rehearsing.weather_scenario import Named, named_sky, sky_to_json  # noqa: E402
+from simulation.rehearsing.weather_scenario import Named, named_scenario, scenario_to_json  # noqa: E402
 from simulation.simulator.flight import Flight  # noqa: E402
 from simulation.simulator.options import Options  # noqa: E402
 from simulation.simulator.process import Simulator  # noqa: E402
@@ -157,7 +157,7 @@ def simulate(port: int) -> None:
 def simulation_of(uavs: list[Uav], speed: float) -> Simulation:
     ends_at = timezone.now() + timedelta(hours=1)
     simulation = Simulation.objects.create(organisation=uavs[0].organisation, speed=speed, lifetime_ends_at=ends_at)
-    calm = sky_to_json(named_sky(Named.CALM, Conditions()))
+    calm = scenario_to_json(named_scenario(Named.CALM, Conditions()))
     SimulatedVehicle.objects.bulk_create(
         SimulatedVehicle(
             simulation=simulation, sequence=number, uav=uav, name=uav.name, system_id=uav.mavlink_system_id or 0, airframe="iris",

@@ -2,7 +2,7 @@
 
 from config.celery import app as celery_app
 from config.compiled_core import use_compiled_directory
-from operation.garbage import collect_rarely
+from operation.garbage_collection import collect_rarely
 
 collect_rarely()
 use_compiled_directory()

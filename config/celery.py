@@ -11,7 +11,7 @@ from celery.signals import beat_init, task_postrun, worker_before_create_process
 
 from config.task_instrumentation import LoopPulse, watch_tasks
 from config.worker_shutdown import SoftEnd
-from operation.garbage import give_back, keep_what_is_there
+from operation.garbage_collection import freeze_startup_objects, trim_memory
 from operation.program import program_begins
 from operation.tracing import begin_tracing
 
@@ -29,7 +29,7 @@ MAKES_NO_PLANS = {"data", "flight", "simulation"}
 @worker_before_create_process.connect
 def keep_before_fork(**_: object) -> None:
     """What a look for garbage walks through it writes to, and has no longer in common with the process it came from: 80 MiB of each."""
-    keep_what_is_there()
+    freeze_startup_objects()
 
 
 @worker_process_init.connect
@@ -40,12 +40,12 @@ def warm_up_process(**_: object) -> None:
 
         begin_tracing("worker")
         warm_up()
-    keep_what_is_there()
-    task_postrun.connect(give_back_after_task)  # here alone: a test that runs a task in itself has much to look through
+    freeze_startup_objects()
+    task_postrun.connect(trim_memory_after_task)  # here alone: a test that runs a task in itself has much to look through
 
 
-def give_back_after_task(**_: object) -> None:
-    give_back()
+def trim_memory_after_task(**_: object) -> None:
+    trim_memory()
 
 
 @beat_init.connect

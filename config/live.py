@@ -13,7 +13,7 @@ from django.http.request import split_domain_port, validate_host
 from operation.readiness import Readiness
 from workspace.api.authentication import bearer_token
 from workspace.api.errors import error_body
-from workspace.live.graceful_shutdown import farewell_here
+from workspace.live.graceful_shutdown import shutdown_here
 
 _readiness = Readiness()
 
@@ -64,11 +64,11 @@ class SaysGoodbye:
         self._receives = False
 
     async def __call__(self, scope: dict[str, Any], receive: Receive, send: Send) -> None:
-        farewell = farewell_here()
+        shutdown = shutdown_here()
         if not self._receives:
             self._receives = True
-            farewell.receive_signal()
-        if farewell.has_begun and scope["type"] == "websocket":
+            shutdown.receive_signal()
+        if shutdown.has_begun and scope["type"] == "websocket":
             await _refuse(send)
         else:
             await self.application(scope, receive, send)

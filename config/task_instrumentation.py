@@ -15,7 +15,7 @@ from celery.bootsteps import StartStopStep
 from django.conf import settings
 from prometheus_client.multiprocess import mark_process_dead
 
-from operation import pulse
+from operation import loop_heartbeats
 from operation.log_context import about, facts
 from operation.metrics import PROCESSES_FOLDER, TASK_SECONDS, TASKS
 from operation.program import program_begins
@@ -54,19 +54,19 @@ class LoopPulse(StartStopStep):
 
     def stop(self, worker: Any) -> None:
         self._timer.cancel()
-        pulse.rest("the worker")
+        loop_heartbeats.stop("the worker")
 
 
 class WatchedScheduler(PersistentScheduler):
     """Celery's own, which says that it goes round."""
 
     def tick(self, *arguments: Any, **named: Any) -> Any:
-        pulse.beat("the schedule", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
+        loop_heartbeats.send_heartbeat("the schedule", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
         return super().tick(*arguments, **named)
 
 
 def _worker_goes_round() -> None:
-    pulse.beat("the worker", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
+    loop_heartbeats.send_heartbeat("the worker", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
 
 
 def _is_redis_away() -> bool:

@@ -13,14 +13,14 @@ application = get_wsgi_application()
 import config.urls  # noqa: E402, F401 (Django first; before the first request comes in)
 from config.warming import warm_up_beside, warming_faults  # noqa: E402
 from missions.services import warm_up  # noqa: E402
-from operation.garbage import keep_what_is_there  # noqa: E402
+from operation.garbage_collection import freeze_startup_objects  # noqa: E402
 from operation.program import program_begins  # noqa: E402
 from operation.readiness import database_faults, redis_faults  # noqa: E402
 
 
 def _warm_up() -> None:
     warm_up()
-    keep_what_is_there()
+    freeze_startup_objects()
 
 
 program_begins("web", database_faults, redis_faults, warming_faults)

@@ -17,7 +17,7 @@ from prometheus_client import CONTENT_TYPE_LATEST, CollectorRegistry, generate_l
 from prometheus_client.multiprocess import MultiProcessCollector
 from prometheus_client.registry import REGISTRY
 
-from operation import pulse
+from operation import loop_heartbeats
 from operation.address import Address, address_of_environment
 from operation.metrics import BUILD, PROCESSES_FOLDER
 from operation.readiness import Readiness
@@ -40,7 +40,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path == "/metrics":
             self._answer(200, CONTENT_TYPE_LATEST, metrics_text())
         elif path == "/healthz":
-            self._notify("alive", [f"{loop} hangs" for loop in pulse.hanging()])
+            self._notify("alive", [f"{loop} hangs" for loop in loop_heartbeats.hanging()])
         elif path == "/readyz":
             try:
                 self._notify("ready", self.server.readiness.faults())

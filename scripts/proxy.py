@@ -9,7 +9,18 @@ from operation.address_limits import COSTLY
 from operation.json_lines import is_asked_for
 from scripts import page_headers, proxy_limits
 from scripts.places import PROGRAMS_WITH_METRICS, WEB_PROGRAMS, CannotStart, Places, health_socket
-from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
+from scripts.proxy_site import (
+    ALIVE,
+    Site,
+    came_over_http,
+    certificates,
+    entrances,
+    error_json,
+    plain_server,
+    quoted,
+    upstream_scheme,
+    upstreams,
+)
 
 MAX_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -190,11 +201,11 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
     mark = "$" if site.resolver else ""
     web, live, uav_link = (
-        (f"{spoken_scheme}://{mark}{name}", tls)
-        for name, (spoken_scheme, tls) in {
-            "web": spoken(site, site.web),
-            "live": spoken(site, site.live),
-            "uav_link": spoken(site, site.for_uavs),
+        (f"{upstream_scheme_of}://{mark}{name}", tls)
+        for name, (upstream_scheme_of, tls) in {
+            "web": upstream_scheme(site, site.web),
+            "live": upstream_scheme(site, site.live),
+            "uav_link": upstream_scheme(site, site.for_uavs),
         }.items()
     )
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.

@@ -104,7 +104,7 @@ def certificates(site: Site) -> str:
 """
 
 
-def spoken(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
+def upstream_scheme(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
     """How the programs at these addresses are spoken to: the scheme, and what nginx is told of TLS."""
     if site.trust is None:
         return "http", ""

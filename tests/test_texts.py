@@ -13,7 +13,7 @@ NOT_FOR_PEOPLE = re.compile(
     re.S,
 )
 ELEMENT = re.compile(r"<(script|style|code|kbd|svg)\b.*?</\1>|<[^<>]*>|\b[a-z-]+=\"[^\"]*\"", re.S)
-SPOKEN = re.compile(r'(?:aria-label|title|placeholder|alt)="([^"]*)"')
+ATTRIBUTES = re.compile(r'(?:aria-label|title|placeholder|alt)="([^"]*)"')
 SCRIPT_LITERAL = re.compile(r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|`(?:[^`\\]|\\.)*`)', re.S)
 SENTENCE = re.compile(r"^\W*[A-Z][a-z]* [a-z]{2,}|[a-z]{2,} [a-z]{2,} [a-z]+[.?!]$|^\W*[A-Z][a-z]+[.?!]$")
 FOR_DEVELOPERS = re.compile(r"(?:Error|RegExp)\(\s*$")
@@ -63,7 +63,7 @@ def _templates() -> list[Path]:
 @pytest.mark.parametrize("template", _templates(), ids=lambda path: str(path.relative_to(texts.TEMPLATES)))
 def test_a_template_has_no_text_that_cannot_be_translated(template: Path) -> None:
     source = NOT_FOR_PEOPLE.sub("", template.read_text())
-    words = [line.strip(" ·\n") for line in (*SPOKEN.findall(source), *ELEMENT.sub("\n", source).split("\n"))]
+    words = [line.strip(" ·\n") for line in (*ATTRIBUTES.findall(source), *ELEMENT.sub("\n", source).split("\n"))]
     assert [line for line in words if re.search(r"[A-Za-z]{2}", re.sub(r"&\w+;", "", line)) and line not in OWN_NAMES] == []
 
 

@@ -12,25 +12,25 @@ NONCE_BYTES = 12  # SP 800-38D, 5.2.1.1
 SALT = "workspace.sealing"
 
 
-class CannotUnseal(Exception):
+class CannotDecrypt(Exception):
     """It was sealed for something else, or with a key that is not named any more."""
 
 
-def seal(secret: bytes, *, of: str) -> str:
+def encrypt(secret: bytes, *, of: str) -> str:
     """`of` says what it belongs to: nobody can put it elsewhere."""
     nonce = token_bytes(NONCE_BYTES)
     return b64encode(nonce + _cipher(settings.SECRET_KEY).encrypt(nonce, secret, of.encode())).decode()
 
 
-def unseal(sealed: str, *, of: str) -> bytes:
-    """Also what was sealed with an old secret key that is still named. Raises CannotUnseal."""
-    content = b64decode(sealed)
+def decrypt(encrypted: str, *, of: str) -> bytes:
+    """Also what was sealed with an old secret key that is still named. Raises CannotDecrypt."""
+    content = b64decode(encrypted)
     for key in (settings.SECRET_KEY, *settings.SECRET_KEY_FALLBACKS):
         try:
             return _cipher(key).decrypt(content[:NONCE_BYTES], content[NONCE_BYTES:], of.encode())
         except InvalidTag:
             continue
-    raise CannotUnseal
+    raise CannotDecrypt
 
 
 def _cipher(secret_key: str) -> AESGCM:

@@ -17,7 +17,7 @@ from django.db.backends.base.base import BaseDatabaseWrapper
 from psycopg import abc, pq
 from psycopg.adapt import PyFormat, Transformer
 
-from workspace.jobs.planning_lock import waiting
+from workspace.jobs.planning_lock import without_planning_lock
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +69,7 @@ def _rows_at_once(prepared: _Prepared, statement: str, parameters: Sequence[Any]
     values = transformer.dump_sequence(parameters, [PyFormat.TEXT] * len(parameters))
     result = None
     if name in known:
-        result = waiting(server.pgconn.exec_prepared, name, values)
+        result = without_planning_lock(server.pgconn.exec_prepared, name, values)
         state = result.error_field(pq.DiagnosticField.SQLSTATE)
         if state == _TYPES_CHANGED:  # a migration beside us
             _checked(server.pgconn.exec_(b"DEALLOCATE " + name), server)
@@ -78,7 +78,7 @@ def _rows_at_once(prepared: _Prepared, statement: str, parameters: Sequence[Any]
     if result is None:
         _checked(server.pgconn.prepare(name, _numbered(statement).encode()), server)
         known.add(name)
-        result = waiting(server.pgconn.exec_prepared, name, values)
+        result = without_planning_lock(server.pgconn.exec_prepared, name, values)
     transformer.set_pgresult(_checked(result, server))
     return transformer.load_rows(0, result.ntuples, tuple)
 

@@ -17,9 +17,9 @@ from accounts import second_factors
 from accounts.login import record_sign_in, sign_in, who_is_half_in
 from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, new_seed
 from workspace.api.signed_in import SignedInPageRequest
-from workspace.field_encryption import CannotUnseal, seal, unseal
+from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, count_attempt
 
 SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
 MAX_CODE_LENGTH = 60
@@ -40,7 +40,7 @@ class CodeAndPasswordForm(CodeForm):
 
     def clean_password(self) -> str:
         try:
-            take_turn(PASSWORD_CHANGES, str(self.user.pk))
+            count_attempt(PASSWORD_CHANGES, str(self.user.pk))
         except HeldBack as error:
             raise forms.ValidationError(_("Too many tries. Wait 15 min, then try again.")) from error
         password: str = self.cleaned_data["password"]
@@ -141,10 +141,10 @@ class SetUpPage(AccessMixin, FormView):
         """The same one for as long as the page is looked at: an app may have read it."""
         name = f"new second factor of {self.person.pk}"
         try:
-            return unseal(self.request.session[SEED], of=name)
-        except (KeyError, CannotUnseal):
+            return decrypt(self.request.session[SEED], of=name)
+        except (KeyError, CannotDecrypt):
             seed = new_seed()
-            self.request.session[SEED] = seal(seed, of=name)
+            self.request.session[SEED] = encrypt(seed, of=name)
             return seed
 
 

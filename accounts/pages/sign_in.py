@@ -25,7 +25,7 @@ class SignInForm(AuthenticationForm):
         if not (name and self.cleaned_data.get("password")):
             return super().clean()
         try:
-            this_try = try_to_sign_in(name=name, address=address_of(request), known_browser=mark_of(request, name))
+            this_try = try_to_sign_in(name=name, address=address_of(request), trusted_device=mark_of(request, name))
         except HeldBack as held:
             record_sign_in(request, SignInOutcome.HELD_BACK, name=name)
             raise ValidationError(_held_back(held), code="locked") from held

@@ -42,7 +42,7 @@ HERE_WITHIN = timedelta(minutes=5)
 DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)
 
 
-def _people(request: SignedInRequest) -> QuerySet[User]:
+def _users(request: SignedInRequest) -> QuerySet[User]:
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
     return User.objects.filter(organisation_id=request.user.organisation_id, is_service=False).annotate(
         valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
@@ -51,7 +51,7 @@ def _people(request: SignedInRequest) -> QuerySet[User]:
 
 def _person(request: SignedInRequest, user_id: int) -> User:
     try:
-        return _people(request).get(pk=user_id)
+        return _users(request).get(pk=user_id)
     except User.DoesNotExist as error:
         raise Http404 from error
 
@@ -83,7 +83,7 @@ class PersonList(APIView):
         responses=PersonPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        people = _people(request).filter(_named(request.query_params.get("text", "")[:200]))
+        people = _users(request).filter(_named(request.query_params.get("text", "")[:200]))
         if role := asked_choice(request, "role", Role.values):
             people = people.filter(role=role)
         if access := asked_choice(request, "access", ["in", "out", "here"]):

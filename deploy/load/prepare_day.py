@@ -72,7 +72,7 @@ def make_ground(extracts: Sequence[Path]) -> None:
     call_command("build_graph", stdout=StringIO())
 
 
-def make_people(organisation: Organisation, number: int, password: str) -> list[User]:
+def make_users(organisation: Organisation, number: int, password: str) -> list[User]:
     """One hash for all: nobody waits for a password to be made, and each sign-in still pays for looking at it."""
     stored, people = make_password(password), []
     for role, share in ROLES.items():
@@ -193,7 +193,7 @@ def main() -> None:
         make_ground(options.osm)
     organisation = Organisation.objects.create(name="Working day")
     password = secrets.token_urlsafe(12)
-    people = make_people(organisation, options.people, password)
+    people = make_users(organisation, options.people, password)
     operators = [person for person in people if person.role == Role.OPERATOR]
     facts = {"name": "Day", "cruise_speed_mps": SPEED_MPS}
     uav_type = create_uav_type(organisation=organisation, actor=operators[0], values=facts)

@@ -19,7 +19,8 @@ from deploy.load.day.book import Book
 from deploy.load.day.client import Client
 from deploy.load.day.companions import Companion
 from deploy.load.day.flying import FlyingOperator
-from deploy.load.day.people import (
+from deploy.load.day.site import Site
+from deploy.load.day.users import (
     Administers,
     AsksForPlans,
     KeepsZones,
@@ -28,7 +29,6 @@ from deploy.load.day.people import (
     Watches,
     gives_up_quietly,
 )
-from deploy.load.day.site import Site
 
 FOLDER = Path(os.environ["SPANWISE_DAY"])
 SITE = Site.read(FOLDER)

@@ -50,13 +50,13 @@ class CommonGroundAdmin(ReadOnlyAdmin):
     organisation_path = None
 
     def get_list_display(self, request: HttpRequest) -> list[Any]:
-        return _without_people(super().get_list_display(request), request)
+        return _without_users(super().get_list_display(request), request)
 
     def get_search_fields(self, request: HttpRequest) -> list[Any]:
-        return _without_people(super().get_search_fields(request), request)
+        return _without_users(super().get_search_fields(request), request)
 
     def get_fields(self, request: HttpRequest, obj: Any = None) -> list[Any]:
-        return _without_people(super().get_fields(request, obj), request)
+        return _without_users(super().get_fields(request, obj), request)
 
 
 class CuratedAdmin(HistoryAdmin):
@@ -101,7 +101,7 @@ def stale_sentence(subject: str, key: int | None, reader: User) -> str:
     )
 
 
-def _without_people(names: Iterable[Any], request: HttpRequest) -> list[Any]:
+def _without_users(names: Iterable[Any], request: HttpRequest) -> list[Any]:
     if user_of(request).operates_installation:
         return list(names)
     return [name for name in names if str(name).partition("__")[0] not in PEOPLE]

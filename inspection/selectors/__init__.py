@@ -12,10 +12,10 @@ from inspection.selectors.assets import (
     zones,
 )
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
-from inspection.selectors.ground import GroundSummary, ground_edition, ground_extent, ground_revision, ground_summary
-from inspection.selectors.terrain import ground_heights_m, has_terrain, terrain_edition
+from inspection.selectors.ground import GroundSummary, ground_dataset_version, ground_extent, ground_revision, ground_summary
+from inspection.selectors.terrain import ground_heights_m, has_terrain, terrain_dataset_version
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
-from inspection.selectors.tiles import NoSuchTile, tile_of_edition, vector_tile
+from inspection.selectors.tiles import NoSuchTile, tile_of_version, vector_tile
 
 __all__ = [
     "TILE_RECIPE",
@@ -31,15 +31,15 @@ __all__ = [
     "assets_on_the_ground",
     "current_graph",
     "graph_of_version",
-    "ground_edition",
+    "ground_dataset_version",
     "ground_extent",
     "ground_heights_m",
     "ground_revision",
     "ground_summary",
     "has_terrain",
     "references_of",
-    "terrain_edition",
-    "tile_of_edition",
+    "terrain_dataset_version",
+    "tile_of_version",
     "vector_tile",
     "voltage_text",
     "with_external_id",

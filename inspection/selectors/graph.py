@@ -27,8 +27,8 @@ from inspection.network.snapshot_file import (
     write_network,
 )
 from inspection.network.zones.zone_index import ZoneIndex
-from inspection.selectors.ground import ground_edition
-from inspection.selectors.zone_table import zone_table_of_edition
+from inspection.selectors.ground import ground_dataset_version
+from inspection.selectors.zone_table import zone_table_of_version
 from inspection.zones.reach import BoolArray, ZoneTable
 
 logger = logging.getLogger(__name__)
@@ -104,12 +104,12 @@ def graph_of_version(version: int) -> InspectionGraph:
 
 def zones_in_force() -> ZoneIndex:
     """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
-    return zones_of_edition(ground_edition())
+    return zones_of_edition(ground_dataset_version())
 
 
 def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
     """The zones of an edition of the ground that has just been read: they are at least as new as that."""
-    return zones_of_table(zone_table_of_edition(key))
+    return zones_of_table(zone_table_of_version(key))
 
 
 def zones_of_table(table: ZoneTable, chosen: BoolArray | None = None) -> ZoneIndex:

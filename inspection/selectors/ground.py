@@ -11,9 +11,9 @@ from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Groun
 from inspection.network.snapshot_file import LAYOUT
 
 Extent_deg = tuple[float, float, float, float]  # west, south, east, north
-Edition = tuple[int, datetime | None]  # of the ground: its revision, and when that came about
+DatasetVersion = tuple[int, datetime | None]  # of the ground: its revision, and when that came about
 
-_extent: tuple[Edition, Extent_deg | None] | None = None
+_extent: tuple[DatasetVersion, Extent_deg | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ def held_ground_revision() -> int:
     return 0 if row is None else int(row[0])
 
 
-def ground_edition() -> Edition:
+def ground_dataset_version() -> DatasetVersion:
     """The revision and when it came about. Two databases may have the same revision, and one that was rolled back has it twice."""
     return Ground.objects.values_list("revision", "changed_at").first() or (0, None)
 
@@ -53,11 +53,13 @@ def ground_edition() -> Edition:
 def ground_extent() -> Extent_deg | None:
     """West, south, east, north of all assets. Costs one small query until the ground changes."""
     global _extent
-    edition = ground_edition()
+    dataset_version = ground_dataset_version()
     remembered = _extent
-    if remembered is None or remembered[0] != edition or edition[1] is None:  # a ground without an edition has never been marked as changed
+    if (
+        remembered is None or remembered[0] != dataset_version or dataset_version[1] is None
+    ):  # a ground without an edition has never been marked as changed
         extent = Asset.objects.filter(vanished_at=None).aggregate(extent=Extent("centre"))["extent"]
-        _extent = remembered = edition, extent
+        _extent = remembered = dataset_version, extent
     return remembered[1]
 
 

@@ -15,9 +15,9 @@ from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.snapshot_file import LAYOUT
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.graph import SnapshotRow, graph_for, network_for, zones_of_table
-from inspection.selectors.ground import Edition
-from inspection.selectors.terrain import FloatArray, ground_heights_m, has_terrain, terrain_edition
-from inspection.selectors.zone_table import zone_table_of_edition
+from inspection.selectors.ground import DatasetVersion
+from inspection.selectors.terrain import FloatArray, ground_heights_m, has_terrain, terrain_dataset_version
+from inspection.selectors.zone_table import zone_table_of_version
 from inspection.zones.reach import BoolArray, ZoneTable
 from workspace.prepared_statements import prepared_rows
 
@@ -76,7 +76,7 @@ class PlanningGround:
 
     snapshot: SnapshotRow | None
     table: ZoneTable
-    edition: Edition
+    dataset_version: DatasetVersion
 
     def zones(self, chosen: BoolArray | None = None) -> ZoneIndex:
         """All zones, or those where the mask (z,) is true."""
@@ -95,11 +95,11 @@ class PlanningRead(NamedTuple):
     """What one statement has told."""
 
     snapshot: SnapshotRow | None
-    edition: Edition
+    dataset_version: DatasetVersion
     points: Mapping[int, PointAsset]
 
     def ground(self) -> PlanningGround:
-        return PlanningGround(self.snapshot, zone_table_of_edition(self.edition), self.edition)
+        return PlanningGround(self.snapshot, zone_table_of_version(self.dataset_version), self.dataset_version)
 
 
 def planning_read(points: Sequence[int] = ()) -> PlanningRead:
@@ -115,30 +115,30 @@ def planning_read(points: Sequence[int] = ()) -> PlanningRead:
     return PlanningRead(None if version is None else (version, ground_revision, digest), (revision or 0, changed_at), found)
 
 
-def edition_now() -> Edition:
+def current_dataset_version() -> DatasetVersion:
     return next(((revision, changed_at) for revision, changed_at in prepared_rows(_EDITION)), (0, None))
 
 
-def has_terrain_at(edition: Edition) -> bool:
+def has_terrain_at(dataset_version: DatasetVersion) -> bool:
     """Whether there is any terrain model. What brings one in, or takes it out, makes a new edition."""
-    return has_terrain() if edition[1] is None else _had_terrain(edition)  # a ground never marked as changed has no edition
+    return has_terrain() if dataset_version[1] is None else _had_terrain(dataset_version)  # a ground never marked as changed has no edition
 
 
-def heights_at(edition: Edition) -> Callable[[FloatArray], FloatArray] | None:
+def heights_at(dataset_version: DatasetVersion) -> Callable[[FloatArray], FloatArray] | None:
     """ground_heights_m over this edition of the ground, without asking for a newer one each time; None where no terrain model is."""
-    return partial(ground_heights_m, edition=edition) if has_terrain_at(edition) else None
+    return partial(ground_heights_m, dataset_version=dataset_version) if has_terrain_at(dataset_version) else None
 
 
-def terrain_at(edition: Edition) -> tuple[int | None, int]:
+def terrain_at(dataset_version: DatasetVersion) -> tuple[int | None, int]:
     """The edition of the terrain when this edition of the ground was first asked about, or a later one."""
-    return terrain_edition() if edition[1] is None else _terrain_of(edition)
+    return terrain_dataset_version() if dataset_version[1] is None else _terrain_of(dataset_version)
 
 
 @lru_cache(maxsize=4)
-def _had_terrain(edition: Edition) -> bool:
+def _had_terrain(dataset_version: DatasetVersion) -> bool:
     return has_terrain()
 
 
 @lru_cache(maxsize=4)
-def _terrain_of(edition: Edition) -> tuple[int | None, int]:
-    return terrain_edition()
+def _terrain_of(dataset_version: DatasetVersion) -> tuple[int | None, int]:
+    return terrain_dataset_version()

@@ -11,7 +11,7 @@ from django.contrib.gis.geos import GEOSGeometry, Polygon
 from django.db.models import Max, Min
 
 from inspection.models import DataImport, ImportKind
-from inspection.selectors.ground import ground_edition
+from inspection.selectors.ground import ground_dataset_version
 
 DEGREE_M = 111_320.0  # of latitude, and of longitude at the equator
 USUAL_STEP_M = 30.0  # where no model reaches
@@ -33,7 +33,7 @@ class TerrainModel:
 
 def terrain_models() -> list[TerrainModel]:
     """Newest first: what counts on top."""
-    return list(_models(ground_edition()))
+    return list(_models(ground_dataset_version()))
 
 
 def model_of(data_import: int) -> TerrainModel | None:
@@ -52,7 +52,7 @@ def finest_step_m(box: tuple[float, float, float, float]) -> float:
 
 
 @lru_cache(maxsize=2)
-def _models(edition: object) -> tuple[TerrainModel, ...]:
+def _models(dataset_version: object) -> tuple[TerrainModel, ...]:
     """The models as they stand at this edition of the ground."""
     rows = (
         DataImport.objects.filter(kind=ImportKind.TERRAIN, terrain_tiles__isnull=False)

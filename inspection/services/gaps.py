@@ -13,7 +13,7 @@ from inspection.models import Asset, DataGap, GapSearch, GapState
 from inspection.quality.infrastructure import Gap
 from inspection.quality.repair import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
-from inspection.selectors.ground import ground_edition
+from inspection.selectors.ground import ground_dataset_version
 from workspace.audit import record_change
 from workspace.leases import try_lock_until_end
 from workspace.models import User
@@ -28,7 +28,7 @@ _FOUND = ("asset", "other_asset", "position", "geometry", "details", "cut_off_m"
 
 def gaps_are_current() -> bool:
     """Whether the last search saw the ground as it is now, with today's rules."""
-    revision, changed_at = ground_edition()
+    revision, changed_at = ground_dataset_version()
     last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
     if last is None:
         return revision == 0
@@ -92,7 +92,7 @@ def _decide(gap: DataGap, state: GapState, note: str, actor: User) -> DataGap:
 
 def _search_and_store() -> GapSearch:
     started_s, started_at = perf_counter(), timezone.now()
-    _, changed_at = ground_edition()
+    _, changed_at = ground_dataset_version()
     ground = gap_ground()
     found = search(ground)
     there = _still_there(found)

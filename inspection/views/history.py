@@ -55,7 +55,7 @@ class RevertSerializer(serializers.Serializer):
 
 
 def entry_json(entry: AuditEntry, reader: User) -> dict[str, Any]:
-    before, after = differing(_for_people(entry.before), _for_people(entry.after))
+    before, after = differing(_for_users(entry.before), _for_users(entry.after))
     return {
         "id": entry.pk,
         "action": entry.action,
@@ -69,7 +69,7 @@ def entry_json(entry: AuditEntry, reader: User) -> dict[str, Any]:
     }
 
 
-def _for_people(facts: dict[str, Any] | None) -> dict[str, Any] | None:
+def _for_users(facts: dict[str, Any] | None) -> dict[str, Any] | None:
     return facts and {name: value for name, value in facts.items() if name not in OF_THE_SOURCE}
 
 

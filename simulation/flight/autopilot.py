@@ -5,7 +5,7 @@ import math
 from simulation.flight.airframe import OwnAction
 from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
-from simulation.flight.manoeuvre_context import Cockpit
+from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import Hold, Land, Manoeuvre, Return
 from simulation.flight.mission import Mission
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
@@ -23,13 +23,13 @@ class Failsafes:
         self._gps_lost_since_s: float | None = None
         self._has_acted_on_gps = False
 
-    def step(self, cockpit: Cockpit, mode: Mode, battery_percent: float, *, is_gps_lost: bool) -> Manoeuvre | None:
+    def step(self, context: ManoeuvreContext, mode: Mode, battery_percent: float, *, is_gps_lost: bool) -> Manoeuvre | None:
         """What to do from now on; None: as before."""
-        manoeuvre = self._gps(cockpit, mode, is_gps_lost=is_gps_lost)
-        return self._battery(cockpit, mode, battery_percent) or manoeuvre
+        manoeuvre = self._gps(context, mode, is_gps_lost=is_gps_lost)
+        return self._battery(context, mode, battery_percent) or manoeuvre
 
-    def _battery(self, cockpit: Cockpit, mode: Mode, percent: float) -> Manoeuvre | None:
-        settings = cockpit.settings
+    def _battery(self, context: ManoeuvreContext, mode: Mode, percent: float) -> Manoeuvre | None:
+        settings = context.settings
         thresholds = (settings.battery_warn_percent, settings.battery_low_percent, settings.battery_critical_percent)
         level = sum(percent <= threshold for threshold in thresholds)
         if level <= self._battery_level:
@@ -37,33 +37,33 @@ class Failsafes:
             return None
         self._battery_level = level
         if level == 1:
-            cockpit.report(f"Battery {percent:.0f} %", Severity.WARNING)
+            context.report(f"Battery {percent:.0f} %", Severity.WARNING)
             return None
         action = settings.battery_low_action if level == 2 else settings.battery_critical_action
         severity = Severity.WARNING if level == 2 else Severity.CRITICAL
-        return _act(cockpit, mode, action, f"Battery {'low' if level == 2 else 'critical'}: {percent:.0f} %", severity)
+        return _act(context, mode, action, f"Battery {'low' if level == 2 else 'critical'}: {percent:.0f} %", severity)
 
-    def _gps(self, cockpit: Cockpit, mode: Mode, *, is_gps_lost: bool) -> Manoeuvre | None:
+    def _gps(self, context: ManoeuvreContext, mode: Mode, *, is_gps_lost: bool) -> Manoeuvre | None:
         if not is_gps_lost:
             if self._gps_lost_since_s is not None:
-                cockpit.report("GPS fix again")
+                context.report("GPS fix again")
             self._gps_lost_since_s, self._has_acted_on_gps = None, False
             return None
         if self._gps_lost_since_s is None:
-            self._gps_lost_since_s = cockpit.now_s
-            cockpit.report("No GPS fix, dead reckoning", Severity.WARNING)
-        if self._has_acted_on_gps or cockpit.now_s - self._gps_lost_since_s < cockpit.settings.gps_lost_patience_s:
+            self._gps_lost_since_s = context.now_s
+            context.report("No GPS fix, dead reckoning", Severity.WARNING)
+        if self._has_acted_on_gps or context.now_s - self._gps_lost_since_s < context.settings.gps_lost_patience_s:
             return None
         self._has_acted_on_gps = True
-        return _act(cockpit, mode, cockpit.settings.gps_lost_action, "GPS lost", Severity.CRITICAL)
+        return _act(context, mode, context.settings.gps_lost_action, "GPS lost", Severity.CRITICAL)
 
 
-def _act(cockpit: Cockpit, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
+def _act(context: ManoeuvreContext, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
     manoeuvre = _manoeuvre(action)
-    if manoeuvre is None or not cockpit.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
-        cockpit.report(why, severity)
+    if manoeuvre is None or not context.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
+        context.report(why, severity)
         return None
-    cockpit.report(f"{why}: {manoeuvre.mode}", severity)
+    context.report(f"{why}: {manoeuvre.mode}", severity)
     return manoeuvre
 
 
@@ -78,8 +78,8 @@ def _manoeuvre(action: OwnAction) -> Manoeuvre | None:
 class Autopilot:
     """`revision` counts what has changed."""
 
-    def __init__(self, body: Body, cockpit: Cockpit) -> None:
-        self.body, self.cockpit = body, cockpit
+    def __init__(self, body: Body, context: ManoeuvreContext) -> None:
+        self.body, self.context = body, context
         self.manoeuvre: Manoeuvre = Hold()
         self.is_crashed = False
         self.revision = 0
@@ -92,21 +92,21 @@ class Autopilot:
 
     @property
     def is_gps_lost(self) -> bool:
-        return self.cockpit.faults.is_gps_lost(self.now_s)
+        return self.context.faults.is_gps_lost(self.now_s)
 
     def arm(self) -> None:
-        self.cockpit.is_armed, self._armed_ticks = True, 0
+        self.context.is_armed, self._armed_ticks = True, 0
         self.body.plant.set_armed(True)
         self.body.plant.set_grounded(True)
-        self.cockpit.events.append(Armed(self.now_s))
+        self.context.events.append(Armed(self.now_s))
         self.begin(self.manoeuvre)
 
     def begin(self, manoeuvre: Manoeuvre, *, is_own: bool = False) -> None:
         if manoeuvre.mode is not self.manoeuvre.mode:
-            self.cockpit.events.append(ModeChanged(self.now_s, manoeuvre.mode, is_own))
+            self.context.events.append(ModeChanged(self.now_s, manoeuvre.mode, is_own))
         self.manoeuvre = manoeuvre
         self.revision += 1
-        manoeuvre.begin(self.cockpit)
+        manoeuvre.begin(self.context)
 
     @property
     def now_s(self) -> float:
@@ -117,12 +117,12 @@ class Autopilot:
         """0.04 s of simulated time."""
         self._ticks += 1
         self.revision += 1
-        cockpit = self.cockpit
-        cockpit.now_s = self.now_s
+        context = self.context
+        context.now_s = self.now_s
         self.body.navigate(is_gps_lost=self.is_gps_lost)
         if self.is_crashed or self._is_parked():
             return
-        self.body.air.step(cockpit.agl_m)
+        self.body.air.step(context.agl_m)
         self._fly()
         try:
             self.body.advance()
@@ -134,7 +134,7 @@ class Autopilot:
 
     def _is_parked(self) -> bool:
         """Disarmed and at rest on the ground: time passes, and nothing moves."""
-        if self.cockpit.is_armed or self.cockpit.is_in_air:
+        if self.context.is_armed or self.context.is_in_air:
             self._rest_ticks = 0
             return False
         self._rest_ticks += 1
@@ -144,41 +144,41 @@ class Autopilot:
         return True
 
     def _fly(self) -> None:
-        cockpit = self.cockpit
-        if not cockpit.is_armed:
+        context = self.context
+        if not context.is_armed:
             return
         if self.body.battery_percent <= 0.0:
-            cockpit.report("Battery empty: the motors stop", Severity.CRITICAL)
+            context.report("Battery empty: the motors stop", Severity.CRITICAL)
             self.disarm()
             return
-        own = self._failsafes.step(cockpit, self.manoeuvre.mode, self.body.battery_percent, is_gps_lost=self.is_gps_lost)
+        own = self._failsafes.step(context, self.manoeuvre.mode, self.body.battery_percent, is_gps_lost=self.is_gps_lost)
         if own is not None:
             self.begin(own, is_own=True)
-        self.manoeuvre.step(cockpit)
-        if self.manoeuvre.is_done and cockpit.is_in_air:
+        self.manoeuvre.step(context)
+        if self.manoeuvre.is_done and context.is_in_air:
             self.begin(Hold(), is_own=True)
-        elif not cockpit.is_in_air:
+        elif not context.is_in_air:
             self._wait_on_ground()
-            if not cockpit.is_armed:
+            if not context.is_armed:
                 return
-        if cockpit.camera.is_due(cockpit.now_s, cockpit.flown_m):
+        if context.camera.is_due(context.now_s, context.flown_m):
             self._take_photo()
         self._command()
 
     def _command(self) -> None:
-        cockpit = self.cockpit
+        context = self.context
         above_m = max(self.body.above_standing_m, 0.0)
-        command = cockpit.guidance.step(GUIDANCE_STEP_S, cockpit.here, above_m=above_m, effort=self.body.motion.effort)
+        command = context.guidance.step(GUIDANCE_STEP_S, context.here, above_m=above_m, effort=self.body.motion.effort)
         (east, north, up), (a_east, a_north, a_up) = command.velocity, command.acceleration
-        if not cockpit.is_in_air and not self.manoeuvre.lifts_off:
+        if not context.is_in_air and not self.manoeuvre.lifts_off:
             up = -1.0
         u, v, _ = command.along
-        if cockpit.looks_at is not None:
-            x, y = cockpit.looks_at[0] - cockpit.here[0], cockpit.looks_at[1] - cockpit.here[1]
+        if context.looks_at is not None:
+            x, y = context.looks_at[0] - context.here[0], context.looks_at[1] - context.here[1]
             if math.hypot(x, y) > 0.5:
                 self._heading_rad = math.atan2(x, y)
-        elif cockpit.heading_deg is not None:
-            self._heading_rad = math.radians(cockpit.heading_deg)
+        elif context.heading_deg is not None:
+            self._heading_rad = math.radians(context.heading_deg)
         elif math.hypot(u, v) > 0.2:
             self._heading_rad = math.atan2(u, v)
         self.body.plant.fly((north, east, -up), (a_north, a_east, -a_up), self._heading_rad)
@@ -186,28 +186,28 @@ class Autopilot:
     def _wait_on_ground(self) -> None:
         """Armed, and not off the ground: not for long."""
         self._armed_ticks += 1
-        if self._armed_ticks * GUIDANCE_STEP_S > self.cockpit.settings.disarm_on_ground_s and not (
+        if self._armed_ticks * GUIDANCE_STEP_S > self.context.settings.disarm_on_ground_s and not (
             self.manoeuvre.lifts_off and not self.manoeuvre.is_done
         ):
-            self.cockpit.report("Disarmed: no take-off")
+            self.context.report("Disarmed: no take-off")
             self.disarm()
 
     def _look_around(self) -> None:
-        cockpit, body = self.cockpit, self.body
-        cockpit.here, cockpit.velocity, cockpit.agl_m = body.believed(), body.velocity, body.agl_m
-        cockpit.facing_deg = math.degrees(body.motion.heading_rad) % 360.0
-        if cockpit.is_in_air:
-            cockpit.flown_m += math.hypot(cockpit.velocity[0], cockpit.velocity[1]) * GUIDANCE_STEP_S
+        context, body = self.context, self.body
+        context.here, context.velocity, context.agl_m = body.believed(), body.velocity, body.agl_m
+        context.facing_deg = math.degrees(body.motion.heading_rad) % 360.0
+        if context.is_in_air:
+            context.flown_m += math.hypot(context.velocity[0], context.velocity[1]) * GUIDANCE_STEP_S
 
     def _touch(self) -> None:
         """Off the ground, onto it, or into it."""
-        cockpit, body = self.cockpit, self.body
-        if not cockpit.is_in_air:
-            if cockpit.is_armed and body.above_standing_m > STEADY_M:
+        context, body = self.context, self.body
+        if not context.is_in_air:
+            if context.is_armed and body.above_standing_m > STEADY_M:
                 body.plant.set_grounded(False)
             if body.above_standing_m > OFF_GROUND_M:
-                cockpit.is_in_air = True
-                cockpit.events.append(TookOff(self.now_s))
+                context.is_in_air = True
+                context.events.append(TookOff(self.now_s))
             return
         contact = body.contact()
         if contact is Contact.OVERTURNED:
@@ -215,44 +215,44 @@ class Autopilot:
         elif contact is Contact.HARD:
             self._crash(f"It hit the ground at {body.impact_mps:.1f} m/s.")
         elif contact is Contact.SOFT:
-            if cockpit.is_armed and not self.manoeuvre.is_landing:
-                cockpit.report("Touched the ground outside of a landing", Severity.WARNING)
+            if context.is_armed and not self.manoeuvre.is_landing:
+                context.report("Touched the ground outside of a landing", Severity.WARNING)
             self._landed()
 
     def _landed(self) -> None:
-        cockpit = self.cockpit
-        cockpit.is_in_air = False
+        context = self.context
+        context.is_in_air = False
         self.body.plant.set_armed(False)
         self.body.plant.set_grounded(True)
-        cockpit.events.append(LandedAt(self.now_s, self.body.position))
-        self.manoeuvre.step(cockpit)  # a mission's last item is told before the motors are
+        context.events.append(LandedAt(self.now_s, self.body.position))
+        self.manoeuvre.step(context)  # a mission's last item is told before the motors are
         self.disarm()
 
     def disarm(self) -> None:
-        cockpit = self.cockpit
+        context = self.context
         self.body.plant.set_armed(False)
-        if cockpit.is_armed:
-            cockpit.is_armed = False
-            cockpit.events.append(Disarmed(self.now_s))
-        if not cockpit.is_in_air:
+        if context.is_armed:
+            context.is_armed = False
+            context.events.append(Disarmed(self.now_s))
+        if not context.is_in_air:
             self.body.plant.set_grounded(True)
-            cockpit.camera.stop()
-            cockpit.heading_deg = cockpit.looks_at = None
+            context.camera.stop()
+            context.heading_deg = context.looks_at = None
             if self.manoeuvre.mode is not Mode.HOLD:
                 self.begin(Hold(), is_own=True)
         self.revision += 1
 
     def _crash(self, reason: str) -> None:
-        cockpit = self.cockpit
+        context = self.context
         self.is_crashed = True
-        cockpit.is_in_air = False
+        context.is_in_air = False
         self.disarm()
-        cockpit.events.append(Crashed(self.now_s, self.body.position, reason))
-        cockpit.report(f"Crashed: {reason}", Severity.CRITICAL)
+        context.events.append(Crashed(self.now_s, self.body.position, reason))
+        context.report(f"Crashed: {reason}", Severity.CRITICAL)
         self.body.stop()
 
     def _take_photo(self) -> None:
-        cockpit, motion = self.cockpit, self.body.motion
-        position = cockpit.position_of(cockpit.here)
+        context, motion = self.context, self.body.motion
+        position = context.position_of(context.here)
         item = self.manoeuvre.index if isinstance(self.manoeuvre, Mission) else None
-        cockpit.events.append(PhotoTaken(self.now_s, cockpit.camera.number, position, motion.altitude_amsl_m, cockpit.facing_deg, item))
+        context.events.append(PhotoTaken(self.now_s, context.camera.number, position, motion.altitude_amsl_m, context.facing_deg, item))

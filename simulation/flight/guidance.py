@@ -15,7 +15,7 @@ GATE_LEASH_M = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class GovernorRules:
+class SpeedLimiterRules:
     """The reference slows from `lag_m` behind it on and waits at `most_lag_m`; likewise beside it.
 
     `effort` is the share of the horizontal acceleration that is asked for; above `high_effort` the speed falls by up to `fall_per_s` of
@@ -33,8 +33,8 @@ class GovernorRules:
     effort_time_s: float = 0.4
 
 
-class Governor:
-    def __init__(self, rules: GovernorRules) -> None:
+class SpeedLimiter:
+    def __init__(self, rules: SpeedLimiterRules) -> None:
         self._rules = rules
         self._effort = 0.0
         self._share = 1.0
@@ -162,10 +162,10 @@ class Guidance:
     way beyond: no waypoint is left out because the wind blew the UAV past it.
     """
 
-    def __init__(self, airframe: Airframe, rules: GuidanceRules | None = None, governor: GovernorRules | None = None) -> None:
+    def __init__(self, airframe: Airframe, rules: GuidanceRules | None = None, speed_limiter: SpeedLimiterRules | None = None) -> None:
         self._airframe = airframe
         self._rules = rules or GuidanceRules()
-        self._governor = Governor(governor or GovernorRules())
+        self._speed_limiter = SpeedLimiter(speed_limiter or SpeedLimiterRules())
         self._reference: Reference | None = None
         self._place: Vector = STILL
         self._is_descending = False
@@ -211,14 +211,14 @@ class Guidance:
         self.marks = []
         if reference is None:
             command = self._to_place(here, above_m)
-            self._governor.step(dt_s, lag_m=0.0, beside_m=0.0, effort=effort)
+            self._speed_limiter.step(dt_s, lag_m=0.0, beside_m=0.0, effort=effort)
             return command
         away = (reference.place[0] - here[0], reference.place[1] - here[1], reference.place[2] - here[2])
         u, v, w = reference.along
         lag_m = away[0] * u + away[1] * v + away[2] * w
         self.off_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)
         beside_m = math.sqrt(max(self.off_m**2 - lag_m**2, 0.0))
-        share = self._governor.step(dt_s, lag_m=lag_m, beside_m=beside_m, effort=effort)
+        share = self._speed_limiter.step(dt_s, lag_m=lag_m, beside_m=beside_m, effort=effort)
         if self._pending and self._beyond_m > GATE_LEASH_M:
             share = 0.0
         self._pass_gates(reference.step(dt_s, share), reference.speed_mps * dt_s, here)

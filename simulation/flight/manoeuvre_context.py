@@ -17,7 +17,7 @@ from simulation.flight.states import Haven, Severity
 
 
 @dataclass
-class Cockpit:
+class ManoeuvreContext:
     """Vectors are metres to east, north and up of the home; `here` is where the UAV takes itself to be.
 
     `looks_at` and `heading_deg` override the heading along the course, the first before the second.

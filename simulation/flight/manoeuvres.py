@@ -4,7 +4,7 @@ import math
 from typing import Protocol
 
 from simulation.flight.course import Vector, Via
-from simulation.flight.manoeuvre_context import Cockpit
+from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.states import Mode
 
 INSIDE_M = 0.1  # by which the chords may lie inside the circle
@@ -41,9 +41,9 @@ class Manoeuvre(Protocol):
     @property
     def is_landing(self) -> bool: ...
 
-    def begin(self, cockpit: Cockpit) -> None: ...
+    def begin(self, context: ManoeuvreContext) -> None: ...
 
-    def step(self, cockpit: Cockpit) -> None: ...
+    def step(self, context: ManoeuvreContext) -> None: ...
 
 
 class Hold:
@@ -54,10 +54,10 @@ class Hold:
     is_landing = False
     is_done = False
 
-    def begin(self, cockpit: Cockpit) -> None:
-        cockpit.stand()
+    def begin(self, context: ManoeuvreContext) -> None:
+        context.stand()
 
-    def step(self, cockpit: Cockpit) -> None:
+    def step(self, context: ManoeuvreContext) -> None:
         pass
 
 
@@ -72,16 +72,16 @@ class TakeOff:
         self._height_m = height_m
         self.is_done = False
 
-    def begin(self, cockpit: Cockpit) -> None:
-        east_m, north_m, up_m = cockpit.here
-        self.is_done = cockpit.is_in_air and up_m >= self._height_m - AT_HEIGHT_M
+    def begin(self, context: ManoeuvreContext) -> None:
+        east_m, north_m, up_m = context.here
+        self.is_done = context.is_in_air and up_m >= self._height_m - AT_HEIGHT_M
         if self.is_done:
-            cockpit.stand()
+            context.stand()
         else:
-            cockpit.fly_to((east_m, north_m, self._height_m))
+            context.fly_to((east_m, north_m, self._height_m))
 
-    def step(self, cockpit: Cockpit) -> None:
-        self.is_done = self.is_done or cockpit.is_there(AT_HEIGHT_M)
+    def step(self, context: ManoeuvreContext) -> None:
+        self.is_done = self.is_done or context.is_there(AT_HEIGHT_M)
 
 
 class GoTo:
@@ -95,10 +95,10 @@ class GoTo:
     def __init__(self, place: Vector) -> None:
         self._place = place
 
-    def begin(self, cockpit: Cockpit) -> None:
-        cockpit.fly_to(self._place)
+    def begin(self, context: ManoeuvreContext) -> None:
+        context.fly_to(self._place)
 
-    def step(self, cockpit: Cockpit) -> None:
+    def step(self, context: ManoeuvreContext) -> None:
         pass
 
 
@@ -113,11 +113,11 @@ class Around:
         self._centre, self._turns, self._radius_m = centre, turns, radius_m
         self.is_done = False
 
-    def begin(self, cockpit: Cockpit) -> None:
-        cockpit.fly_through([Via(point, cockpit.speed_mps) for point in around(self._centre, cockpit.here, self._turns, self._radius_m)])
+    def begin(self, context: ManoeuvreContext) -> None:
+        context.fly_through([Via(point, context.speed_mps) for point in around(self._centre, context.here, self._turns, self._radius_m)])
 
-    def step(self, cockpit: Cockpit) -> None:
-        self.is_done = self.is_done or cockpit.is_there(AT_HEIGHT_M)
+    def step(self, context: ManoeuvreContext) -> None:
+        self.is_done = self.is_done or context.is_there(AT_HEIGHT_M)
 
 
 class Land:
@@ -131,18 +131,18 @@ class Land:
         self.is_landing = False
         self.is_done = False
 
-    def begin(self, cockpit: Cockpit) -> None:
-        if self._place is None or math.dist(self._place[:2], cockpit.here[:2]) < OVER_PLACE_M:
-            cockpit.stand()
+    def begin(self, context: ManoeuvreContext) -> None:
+        if self._place is None or math.dist(self._place[:2], context.here[:2]) < OVER_PLACE_M:
+            context.stand()
         else:
-            cockpit.fly_to((self._place[0], self._place[1], cockpit.here[2]))
+            context.fly_to((self._place[0], self._place[1], context.here[2]))
 
-    def step(self, cockpit: Cockpit) -> None:
-        if not cockpit.is_in_air:
+    def step(self, context: ManoeuvreContext) -> None:
+        if not context.is_in_air:
             self.is_done = True
-        elif not self.is_landing and cockpit.is_there(OVER_PLACE_M):
+        elif not self.is_landing and context.is_there(OVER_PLACE_M):
             self.is_landing = True
-            cockpit.guidance.descend(self._place or cockpit.guidance.goal)
+            context.guidance.descend(self._place or context.guidance.goal)
 
 
 class Return:
@@ -162,29 +162,29 @@ class Return:
     def is_landing(self) -> bool:
         return self._land is not None and self._land.is_landing
 
-    def begin(self, cockpit: Cockpit) -> None:
-        east_m, north_m, up_m = cockpit.here
-        settings = cockpit.settings
-        self._goal = cockpit.nearest_rally_point()
+    def begin(self, context: ManoeuvreContext) -> None:
+        east_m, north_m, up_m = context.here
+        settings = context.settings
+        self._goal = context.nearest_rally_point()
         goal_m = self._goal[2]
         wanted_m = goal_m + settings.return_height_m if settings.return_adds_to_rally_point else max(goal_m, settings.return_height_m)
-        is_near = math.dist(self._goal[:2], cockpit.here[:2]) <= settings.return_near_m
+        is_near = math.dist(self._goal[:2], context.here[:2]) <= settings.return_near_m
         self._level_m = up_m if is_near else max(up_m, wanted_m)
         self._is_climbing = self._level_m > up_m + AT_HEIGHT_M
         if self._is_climbing:
-            cockpit.fly_to((east_m, north_m, self._level_m))
+            context.fly_to((east_m, north_m, self._level_m))
         else:
-            self._go_there(cockpit)
+            self._go_there(context)
 
-    def _go_there(self, cockpit: Cockpit) -> None:
+    def _go_there(self, context: ManoeuvreContext) -> None:
         self._is_climbing = False
         self._land = Land(self._goal)
-        self._land.begin(cockpit)
+        self._land.begin(context)
 
-    def step(self, cockpit: Cockpit) -> None:
+    def step(self, context: ManoeuvreContext) -> None:
         if self._is_climbing:
-            if cockpit.is_there(AT_HEIGHT_M):
-                self._go_there(cockpit)
+            if context.is_there(AT_HEIGHT_M):
+                self._go_there(context)
         elif self._land is not None:
-            self._land.step(cockpit)
+            self._land.step(context)
             self.is_done = self._land.is_done

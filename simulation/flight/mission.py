@@ -4,7 +4,7 @@ from simulation.flight import orders as flown
 from simulation.flight.course import Via
 from simulation.flight.events import ItemReached, MissionEnded
 from simulation.flight.guidance import Gate
-from simulation.flight.manoeuvre_context import Cockpit
+from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOff
 from simulation.flight.states import Mode
 
@@ -32,164 +32,164 @@ class Mission:
     def is_landing(self) -> bool:
         return self._part is not None and self._part.is_landing
 
-    def begin(self, cockpit: Cockpit) -> None:
+    def begin(self, context: ManoeuvreContext) -> None:
         """From where the UAV is; what was under way before is begun again, looking where the items before it had it look."""
         self._part, self._waits_until_s, self._run_end = None, None, None
         looks = [order for order in self.orders[: self.index] if isinstance(order, flown.LookAt)]
         if looks:
-            self._do(cockpit, looks[-1])
-        if cockpit.is_in_air:
-            cockpit.stand()
+            self._do(context, looks[-1])
+        if context.is_in_air:
+            context.stand()
 
-    def step(self, cockpit: Cockpit) -> None:
-        if self._stuck != cockpit.faults.stuck_item and self._run_end is not None:
+    def step(self, context: ManoeuvreContext) -> None:
+        if self._stuck != context.faults.stuck_item and self._run_end is not None:
             self._run_end = None  # to be flown from here anew, with another end
         for _ in range(MAX_ORDERS_A_STEP):
-            if self.is_done or not self._advances(cockpit):
+            if self.is_done or not self._advances(context):
                 return
 
-    def _advances(self, cockpit: Cockpit) -> bool:
+    def _advances(self, context: ManoeuvreContext) -> bool:
         """Go on with the order in hand; whether the next can be begun in this very step."""
         if self.index >= len(self.orders):
             self.is_done = True
-            cockpit.events.append(MissionEnded(cockpit.now_s))
+            context.events.append(MissionEnded(context.now_s))
             return False
         if self._part is not None:
-            return self._goes_on(cockpit, self._part)
+            return self._goes_on(context, self._part)
         if self._run_end is not None:
-            return self._runs(cockpit)
+            return self._runs(context)
         if self._waits_until_s is not None:
-            if cockpit.now_s < self._waits_until_s - 1e-6:
+            if context.now_s < self._waits_until_s - 1e-6:
                 return False
-            return self._reached(cockpit)
-        return self._begins(cockpit, self.orders[self.index])
+            return self._reached(context)
+        return self._begins(context, self.orders[self.index])
 
-    def _begins(self, cockpit: Cockpit, order: flown.Order) -> bool:
-        if isinstance(order, flown.FlyTo | flown.FlyAround) and not cockpit.is_in_air:
-            return self._starts(cockpit, TakeOff(max(cockpit.vector_of(order.place)[2], cockpit.settings.take_off_height_m)))
+    def _begins(self, context: ManoeuvreContext, order: flown.Order) -> bool:
+        if isinstance(order, flown.FlyTo | flown.FlyAround) and not context.is_in_air:
+            return self._starts(context, TakeOff(max(context.vector_of(order.place)[2], context.settings.take_off_height_m)))
         if isinstance(order, flown.FlyTo):
-            self._begin_run(cockpit)
+            self._begin_run(context)
             return True
         if isinstance(order, flown.FlyAround):
-            return self._starts(cockpit, Around(cockpit.vector_of(order.place), order.turns, order.radius_m))
+            return self._starts(context, Around(context.vector_of(order.place), order.turns, order.radius_m))
         if isinstance(order, flown.TakeOff):
-            height_m = cockpit.settings.take_off_height_m if order.place.height_m is None else cockpit.vector_of(order.place)[2]
-            return self._starts(cockpit, TakeOff(max(height_m, 1.0)))
-        if isinstance(order, flown.LandAt | flown.ReturnHome) and not cockpit.is_in_air:
-            return self._reached(cockpit)
+            height_m = context.settings.take_off_height_m if order.place.height_m is None else context.vector_of(order.place)[2]
+            return self._starts(context, TakeOff(max(height_m, 1.0)))
+        if isinstance(order, flown.LandAt | flown.ReturnHome) and not context.is_in_air:
+            return self._reached(context)
         if isinstance(order, flown.LandAt):
-            return self._starts(cockpit, Land(None if order.place.position is None else cockpit.vector_of(order.place)))
+            return self._starts(context, Land(None if order.place.position is None else context.vector_of(order.place)))
         if isinstance(order, flown.ReturnHome):
-            return self._starts(cockpit, Return())
+            return self._starts(context, Return())
         if isinstance(order, flown.Wait):
-            self._waits_until_s = cockpit.now_s + order.seconds
+            self._waits_until_s = context.now_s + order.seconds
             return True
         if isinstance(order, flown.Jump):
-            return self._jump(cockpit, order)
-        self._do(cockpit, order)
-        return self._reached(cockpit)
+            return self._jump(context, order)
+        self._do(context, order)
+        return self._reached(context)
 
-    def _starts(self, cockpit: Cockpit, part: Manoeuvre) -> bool:
+    def _starts(self, context: ManoeuvreContext, part: Manoeuvre) -> bool:
         self._part = part
-        part.begin(cockpit)
+        part.begin(context)
         return False
 
-    def _goes_on(self, cockpit: Cockpit, part: Manoeuvre) -> bool:
-        part.step(cockpit)
+    def _goes_on(self, context: ManoeuvreContext, part: Manoeuvre) -> bool:
+        part.step(context)
         if not part.is_done:
             return False
         self._part = None
         if isinstance(part, TakeOff) and not isinstance(self.orders[self.index], flown.TakeOff):
             return True  # what was begun on the ground is flown to now
-        return self._reached(cockpit)
+        return self._reached(context)
 
-    def _begin_run(self, cockpit: Cockpit) -> None:
+    def _begin_run(self, context: ManoeuvreContext) -> None:
         """Through all waypoints up to the next at which it stops, with the speeds that are set on the way."""
         vias, gates = [], {}
-        self._stuck = cockpit.faults.stuck_item
-        speed_mps, end = cockpit.speed_mps, self.index
+        self._stuck = context.faults.stuck_item
+        speed_mps, end = context.speed_mps, self.index
         for index in range(self.index, len(self.orders)):
             order = self.orders[index]
             if index == self._stuck and not isinstance(order, flown.FlyTo):
                 break
             if isinstance(order, flown.FlyTo):
-                place = cockpit.vector_of(order.place)
+                place = context.vector_of(order.place)
                 vias.append(Via(place, speed_mps, index))
-                gates[index] = Gate(place, max(order.radius_m or cockpit.settings.acceptance_m, MIN_RADIUS_M))
+                gates[index] = Gate(place, max(order.radius_m or context.settings.acceptance_m, MIN_RADIUS_M))
                 end = index
                 if order.hold_s > 0.0 or index == self._stuck or order.place.height_m is None or order.place.position is None:
                     break
             elif isinstance(order, flown.SetSpeed):
-                speed_mps = min(order.speed_mps, cockpit.airframe.max_speed_mps)
+                speed_mps = min(order.speed_mps, context.airframe.max_speed_mps)
             elif isinstance(order, flown.TakeOff | flown.FlyAround | flown.LandAt | flown.ReturnHome | flown.Wait | flown.Jump):
                 break
         self._run_end = end
-        self._turn_for(cockpit, self.orders[self.index])
-        cockpit.fly_through(vias, gates)
+        self._turn_for(context, self.orders[self.index])
+        context.fly_through(vias, gates)
 
-    def _runs(self, cockpit: Cockpit) -> bool:
-        for mark in cockpit.guidance.marks:
+    def _runs(self, context: ManoeuvreContext) -> bool:
+        for mark in context.guidance.marks:
             if mark == self._run_end:
                 break
-            self._pass(cockpit, mark)
-        if not cockpit.is_there(STOPPED_WITHIN_M) or self.index == cockpit.faults.stuck_item:
+            self._pass(context, mark)
+        if not context.is_there(STOPPED_WITHIN_M) or self.index == context.faults.stuck_item:
             return False
         assert self._run_end is not None  # noqa: S101 - asked by the caller
-        self._pass(cockpit, self._run_end - 1)
+        self._pass(context, self._run_end - 1)
         self._run_end = None
         order = self.orders[self.index]
         hold_s = order.hold_s if isinstance(order, flown.FlyTo) else 0.0
         if hold_s > 0.0:
-            self._waits_until_s = cockpit.now_s + hold_s
+            self._waits_until_s = context.now_s + hold_s
             return True
-        return self._reached(cockpit)
+        return self._reached(context)
 
-    def _pass(self, cockpit: Cockpit, mark: int) -> None:
+    def _pass(self, context: ManoeuvreContext, mark: int) -> None:
         """All items up to this one are done, those for which it does not stop among them; then the ones that follow it at once."""
         while self.index <= mark:
-            self._do(cockpit, self.orders[self.index])
-            if not self._reached(cockpit):
+            self._do(context, self.orders[self.index])
+            if not self._reached(context):
                 return
         while self.index < len(self.orders) and self._run_end is not None and self.index < self._run_end:
             order = self.orders[self.index]
             if isinstance(order, flown.FlyTo):
-                self._turn_for(cockpit, order)
+                self._turn_for(context, order)
                 return
-            self._do(cockpit, order)
-            if not self._reached(cockpit):
+            self._do(context, order)
+            if not self._reached(context):
                 return
 
-    def _turn_for(self, cockpit: Cockpit, order: flown.Order) -> None:
+    def _turn_for(self, context: ManoeuvreContext, order: flown.Order) -> None:
         if isinstance(order, flown.FlyTo):
-            cockpit.heading_deg = order.heading_deg
+            context.heading_deg = order.heading_deg
 
-    def _do(self, cockpit: Cockpit, order: flown.Order) -> None:
+    def _do(self, context: ManoeuvreContext, order: flown.Order) -> None:
         """What takes no time."""
         if isinstance(order, flown.SetSpeed):
-            cockpit.speed_mps = min(order.speed_mps, cockpit.airframe.max_speed_mps)
+            context.speed_mps = min(order.speed_mps, context.airframe.max_speed_mps)
         elif isinstance(order, flown.LookAt):
-            cockpit.looks_at = None if order.place is None else cockpit.vector_of(order.place)
+            context.looks_at = None if order.place is None else context.vector_of(order.place)
         elif isinstance(order, flown.Turn):
-            before_deg = cockpit.facing_deg if order.is_relative else 0.0
-            cockpit.heading_deg = (before_deg + order.angle_deg) % 360.0
+            before_deg = context.facing_deg if order.is_relative else 0.0
+            context.heading_deg = (before_deg + order.angle_deg) % 360.0
         elif isinstance(order, flown.TakePhotos):
-            cockpit.camera.start(order, cockpit.now_s, cockpit.flown_m)
+            context.camera.start(order, context.now_s, context.flown_m)
         elif isinstance(order, flown.StopPhotos):
-            cockpit.camera.stop()
+            context.camera.stop()
 
-    def _jump(self, cockpit: Cockpit, order: flown.Jump) -> bool:
+    def _jump(self, context: ManoeuvreContext, order: flown.Jump) -> bool:
         done = self._jumped.get(self.index, 0)
         if order.times >= 0 and done >= order.times:
-            return self._reached(cockpit)
+            return self._reached(context)
         self._jumped[self.index] = done + 1
-        cockpit.events.append(ItemReached(cockpit.now_s, self.index))
+        context.events.append(ItemReached(context.now_s, self.index))
         self.index = order.index
         return True
 
-    def _reached(self, cockpit: Cockpit) -> bool:
-        if self.index == cockpit.faults.stuck_item:
+    def _reached(self, context: ManoeuvreContext) -> bool:
+        if self.index == context.faults.stuck_item:
             return False
-        cockpit.events.append(ItemReached(cockpit.now_s, self.index))
+        context.events.append(ItemReached(context.now_s, self.index))
         self.index += 1
         self._waits_until_s = None
         return True

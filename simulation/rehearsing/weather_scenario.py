@@ -29,7 +29,7 @@ class Named(StrEnum):
 
 
 @dataclass(frozen=True)
-class Sky:
+class WeatherScenario:
     """battery_percent is the share of the rated energy that a full battery holds; turbulence is Dryden's, by the wind at 20 feet."""
 
     code: Named
@@ -40,17 +40,17 @@ class Sky:
     name: str = ""
 
 
-def named_sky(code: Named, planned: Conditions) -> Sky:
+def named_scenario(code: Named, planned: Conditions) -> WeatherScenario:
     """What a name stands for, given the conditions that the mission was planned with. Raises InvalidConditions for `own`."""
     if code is Named.CALM:
-        return Sky(code, replace(planned, wind=()))
+        return WeatherScenario(code, replace(planned, wind=()))
     if code is Named.AS_PLANNED:
-        return Sky(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned))
+        return WeatherScenario(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned))
     if code is Named.STRONG_WIND:
         strong = strong_wind(planned)
-        return Sky(code, strong, gusts_mps=STRONG_GUSTS_MPS, turbulence_mps_at_20ft=_turbulence_of(strong))
+        return WeatherScenario(code, strong, gusts_mps=STRONG_GUSTS_MPS, turbulence_mps_at_20ft=_turbulence_of(strong))
     if code is Named.WEAK_BATTERY:
-        return Sky(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned), battery_percent=WORN_BATTERY_PERCENT)
+        return WeatherScenario(code, planned, turbulence_mps_at_20ft=_turbulence_of(planned), battery_percent=WORN_BATTERY_PERCENT)
     raise InvalidConditions("conditions", "its figures are to be said")
 
 
@@ -62,7 +62,7 @@ def strong_wind(planned: Conditions) -> Conditions:
     return replace(planned, wind=tuple(layers))
 
 
-def own_sky(value: Any, planned: Conditions) -> Sky:
+def own_scenario(value: Any, planned: Conditions) -> WeatherScenario:
     """A person's own figures; what is left out is as planned. Raises InvalidConditions."""
     if not isinstance(value, Mapping):
         raise InvalidConditions("conditions", "must be a name or an object")
@@ -75,7 +75,7 @@ def own_sky(value: Any, planned: Conditions) -> Sky:
     if not isinstance(name, str) or len(name) > MAX_NAME_LENGTH:
         raise InvalidConditions("name", f"must be a text of at most {MAX_NAME_LENGTH} characters")
     turbulence = value.get("turbulence_mps_at_20ft")
-    return Sky(
+    return WeatherScenario(
         Named.OWN,
         conditions,
         gusts_mps=_within(value.get("gusts_mps"), 0.0, MAX_GUSTS_MPS, 0.0, "gusts_mps"),
@@ -85,19 +85,19 @@ def own_sky(value: Any, planned: Conditions) -> Sky:
     )
 
 
-def sky_to_json(sky: Sky) -> dict[str, Any]:
+def scenario_to_json(scenario: WeatherScenario) -> dict[str, Any]:
     return {
-        "code": str(sky.code),
-        "name": sky.name,
-        **conditions_to_json(sky.conditions),
-        "gusts_mps": sky.gusts_mps,
-        "turbulence_mps_at_20ft": sky.turbulence_mps_at_20ft,
-        "battery_percent": sky.battery_percent,
+        "code": str(scenario.code),
+        "name": scenario.name,
+        **conditions_to_json(scenario.conditions),
+        "gusts_mps": scenario.gusts_mps,
+        "turbulence_mps_at_20ft": scenario.turbulence_mps_at_20ft,
+        "battery_percent": scenario.battery_percent,
     }
 
 
-def sky_from_json(stored: Mapping[str, Any]) -> Sky:
-    return Sky(
+def scenario_from_json(stored: Mapping[str, Any]) -> WeatherScenario:
+    return WeatherScenario(
         Named(stored["code"]),
         conditions_from_json({"wind": stored["wind"], "temperature_c": stored["temperature_c"]}),
         gusts_mps=stored["gusts_mps"],

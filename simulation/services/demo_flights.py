@@ -16,7 +16,7 @@ from missions.services.commands.refused import refuse
 from missions.services.commands.steering import command_uav
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation, SimulationState
-from simulation.rehearsing.weather_scenario import Named, named_sky
+from simulation.rehearsing.weather_scenario import Named, named_scenario
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.vehicle_models import PRESENT
 from workspace.models import User
@@ -49,7 +49,7 @@ def _begin(mission: Mission, actor: User, speed: float) -> str:
     with transaction.atomic():
         approve_mission(mission=mission, actor=actor)
         loaded = mission_of_organisation(mission.organisation, mission.pk)
-        start_simulated_flights(mission=loaded, actor=actor, sky=named_sky(Named.CALM, Conditions()), speed=speed)
+        start_simulated_flights(mission=loaded, actor=actor, scenario=named_scenario(Named.CALM, Conditions()), speed=speed)
     return f"Starting the simulated UAVs of “{mission.name}”"
 
 

@@ -19,7 +19,7 @@ from missions.services.commands.refused import Reason, refuse, refuse_for
 from missions.services.fleet.uavs import change_uav, create_uav
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
-from simulation.rehearsing.weather_scenario import Sky
+from simulation.rehearsing.weather_scenario import WeatherScenario
 from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.simulated_flights import FLOWN, start_simulated_flights
 from simulation.vehicle_models import PRESENT
@@ -36,7 +36,7 @@ def fly_simulated_copy(
     *,
     mission: Mission,
     actor: User,
-    sky: Sky,
+    scenario: WeatherScenario,
     speed: float = 1.0,
     flavour: VehicleFlavour = VehicleFlavour.PX4,
     seed: int = 7,
@@ -63,7 +63,9 @@ def fly_simulated_copy(
         else:
             _bring_back_twins(copy, actor)
         loaded = mission_of_organisation(copy.organisation, copy.pk)
-        return start_simulated_flights(mission=loaded, actor=actor, sky=sky, speed=speed, flavour=flavour, seed=seed, faults=faults)
+        return start_simulated_flights(
+            mission=loaded, actor=actor, scenario=scenario, speed=speed, flavour=flavour, seed=seed, faults=faults
+        )
 
 
 def _copy_in_use(mission: Mission) -> Mission | None:

@@ -14,7 +14,7 @@ from missions.services.fleet.rows import SystemIdQuota
 from missions.services.fleet.uavs import change_uav
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.rehearsing.flying import RouteToFly
-from simulation.rehearsing.weather_scenario import Sky, sky_to_json
+from simulation.rehearsing.weather_scenario import WeatherScenario, scenario_to_json
 from simulation.services.fleet import StandIn
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.simulations import check_quota, hold_starts, lifetime_end, note_start
@@ -30,7 +30,7 @@ def start_simulated_flights(
     *,
     mission: Mission,
     actor: User,
-    sky: Sky,
+    scenario: WeatherScenario,
     speed: float = 1.0,
     flavour: VehicleFlavour = VehicleFlavour.PX4,
     seed: int = 7,
@@ -58,7 +58,7 @@ def start_simulated_flights(
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True):
             uav = places[route.uav].uav
             assert uav is not None  # noqa: S101 - _why_not looks
-            _vehicle(simulation, route, stand_in, reachable(uav, actor), sky, flavour).save()
+            _vehicle(simulation, route, stand_in, reachable(uav, actor), scenario, flavour).save()
         note_start(simulation, actor, speed=speed, uavs=len(plan.routes), faults=faults)
     return simulation
 
@@ -105,7 +105,9 @@ def _refuse_flown(places: Mapping[int, MissionUav], routes: Sequence[RouteToFly]
         raise Refused(reasons)
 
 
-def _vehicle(simulation: Simulation, route: RouteToFly, stand_in: StandIn, uav: Uav, sky: Sky, flavour: VehicleFlavour) -> SimulatedVehicle:
+def _vehicle(
+    simulation: Simulation, route: RouteToFly, stand_in: StandIn, uav: Uav, scenario: WeatherScenario, flavour: VehicleFlavour
+) -> SimulatedVehicle:
     """On the ground where its approved route takes off."""
     take_off = route.route.take_off
     return SimulatedVehicle(
@@ -120,5 +122,5 @@ def _vehicle(simulation: Simulation, route: RouteToFly, stand_in: StandIn, uav: 
         position=Point(*take_off.position, srid=4326),
         ground_amsl_m=take_off.altitude_amsl_m,
         heading_deg=uav.heading_deg or 0.0,
-        conditions=sky_to_json(sky),
+        conditions=scenario_to_json(scenario),
     )

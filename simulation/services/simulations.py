@@ -15,7 +15,7 @@ from django.utils import timezone
 
 from inspection.geodesy import LonLat
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState, VehicleFlavour
-from simulation.rehearsing.weather_scenario import Sky, sky_to_json
+from simulation.rehearsing.weather_scenario import WeatherScenario, scenario_to_json
 from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
 from workspace.audit import record_change
@@ -58,7 +58,7 @@ def start_pool(
     actor: User,
     uavs: Sequence[PoolUav],
     lifetime_s: float,
-    sky: Sky,
+    scenario: WeatherScenario,
     airframe: str,
     flavour: VehicleFlavour = VehicleFlavour.PX4,
     speed: float = 1.0,
@@ -85,7 +85,7 @@ def start_pool(
                 position=Point(*uav.position, srid=4326),
                 ground_amsl_m=uav.ground_amsl_m,
                 heading_deg=uav.heading_deg,
-                conditions=sky_to_json(sky),
+                conditions=scenario_to_json(scenario),
                 port=ports[number],
             )
             for number, uav in enumerate(uavs)
@@ -100,7 +100,7 @@ def change_simulation(
     actor: User,
     vehicle: SimulatedVehicle | None = None,
     speed: float | None = None,
-    sky: Sky | None = None,
+    scenario: WeatherScenario | None = None,
     faults: Mapping[str, Any] | None = None,
 ) -> SimulationChange:
     """Of one vehicle, or of all; the speed is everybody's. Raises IsOver."""
@@ -108,7 +108,7 @@ def change_simulation(
         held = Simulation.objects.select_for_update().get(pk=simulation.pk)
         if not held.is_present or held.end_wanted_at is not None:
             raise IsOver
-        reported = None if sky is None else sky_to_json(sky)
+        reported = None if scenario is None else scenario_to_json(scenario)
         if speed is not None:
             Simulation.objects.filter(pk=held.pk).update(speed=speed)
         if reported is not None:  # a vehicle that is put on the ground anew finds the same air

@@ -19,7 +19,7 @@ NOTHING_STANDS = Standing(NO_PLACES, NO_PLACES, np.zeros(0), np.zeros(0))
 
 
 def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> Surroundings:
-    terrain = heights_at(ground.edition)
+    terrain = heights_at(ground.dataset_version)
     return Surroundings(ground.table, _standing(plan, ground, terrain), _flat if terrain is None else terrain, plan.departs_s)
 
 

@@ -4252,9 +4252,6 @@ export interface components {
             done: number;
             total: number;
         };
-        ProofRequest: {
-            password: string;
-        };
         /** @description What a file would change. Nothing of it counts before somebody applies it. */
         Proposal: {
             /** Format: uuid */
@@ -4478,6 +4475,9 @@ export interface components {
         ReasonInputRequest: {
             /** @description kept in the mission's history */
             reason: string;
+        };
+        ReauthenticationRequest: {
+            password: string;
         };
         RecordApproval: {
             /** Format: uuid */
@@ -8131,7 +8131,6 @@ export type PresentReturns = components['schemas']['PresentReturns'];
 export type Profile = components['schemas']['Profile'];
 export type ProfileInputRequest = components['schemas']['ProfileInputRequest'];
 export type Progress = components['schemas']['Progress'];
-export type ProofRequest = components['schemas']['ProofRequest'];
 export type Proposal = components['schemas']['Proposal'];
 export type ProposalFault = components['schemas']['ProposalFault'];
 export type ProposalJob = components['schemas']['ProposalJob'];
@@ -8149,6 +8148,7 @@ export type ReachabilityReasonCodeEnum = components['schemas']['ReachabilityReas
 export type ReachableAssets = components['schemas']['ReachableAssets'];
 export type ReachableFlight = components['schemas']['ReachableFlight'];
 export type ReasonInputRequest = components['schemas']['ReasonInputRequest'];
+export type ReauthenticationRequest = components['schemas']['ReauthenticationRequest'];
 export type RecordApproval = components['schemas']['RecordApproval'];
 export type RecordCollection = components['schemas']['RecordCollection'];
 export type RecordFeature = components['schemas']['RecordFeature'];

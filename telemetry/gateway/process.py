@@ -20,7 +20,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Frame, message_of
 from missions.services.commands.commands import CHANNEL
-from operation import pulse
+from operation import loop_heartbeats
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.dispatcher import Dispatcher
 from telemetry.gateway.fleet import KnownUav, known_uavs
@@ -199,7 +199,7 @@ class Gateway:
             await asyncio.sleep(interval_s)
 
     async def _end(self, loops: list[asyncio.Task[None]]) -> None:
-        pulse.rest(LOOP)
+        loop_heartbeats.stop(LOOP)
         await _cancel(loops)
         await self._close_desk()
         self.listeners.close()
@@ -267,7 +267,7 @@ class Gateway:
 
     async def _tick(self) -> None:
         """Nobody can command a UAV through a gateway without its database: it then no longer says that a ground station is there."""
-        pulse.beat(LOOP, within_s=HANGS_AFTER_S)
+        loop_heartbeats.send_heartbeat(LOOP, within_s=HANGS_AFTER_S)
         now_s, is_manned = time.time(), time.monotonic() - self.leasing.answered_s <= settings.GATEWAY_ALONE_S
         if is_manned != self._is_manned:
             self._is_manned = is_manned

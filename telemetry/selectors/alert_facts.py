@@ -67,7 +67,7 @@ def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[S
     return {uav_id: tuple(words[-MAX_TEXTS:]) for uav_id, words in found.items()}
 
 
-def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:
+def closed_by_users(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:
     """UAVs, missions and subjects whose alert of a code a person has closed since the UAV was started last."""
     started = UavCommand.objects.filter(
         uav=OuterRef("uav"), mission=OuterRef("mission"), kind=CommandKind.START, state=CommandState.APPLIED,

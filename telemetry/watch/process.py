@@ -16,7 +16,7 @@ from django.db import close_old_connections, connection, transaction
 
 from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
-from operation import pulse
+from operation import loop_heartbeats
 from operation.metrics import ESTIMATED_UAVS, ESTIMATOR_ERROR_M, ESTIMATOR_INNOVATIONS, ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.estimation.innovation import innovation
@@ -154,14 +154,14 @@ class Watch:
         logger.info("watch %s has begun", self.options.holder)
         wait_s = 0.0  # the first at once: UAVs may have been without a watch
         while not self._stop.wait(wait_s):
-            pulse.beat(LOOP, within_s=HANGS_AFTER_S)
+            loop_heartbeats.send_heartbeat(LOOP, within_s=HANGS_AFTER_S)
             try:
                 close_old_connections()
                 self.round(time.time())
             except DATABASE_UNAVAILABLE as error:
                 self._go_on_without_database(error)
             wait_s = _until_next(time.time())
-        pulse.rest(LOOP)
+        loop_heartbeats.stop(LOOP)
         self._give_back()
 
     def stop(self) -> None:

@@ -10,7 +10,7 @@ from django.test import Client
 from django.utils import timezone
 
 from accounts.services import MAX_TOKENS, make_token
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Role, SignInEntry, User
 
@@ -26,7 +26,7 @@ def _no_tries_yet(settings: Any) -> None:
 
 @pytest.fixture
 def user() -> User:
-    person = somebody(Role.VIEWER)
+    person = a_user(Role.VIEWER)
     person.set_password(OLD)
     person.save()
     return person
@@ -164,7 +164,7 @@ def test_a_revoked_token_works_no_more_and_stays_in_the_list(client: Client) -> 
 
 
 def test_nobody_revokes_the_tokens_of_somebody_else(client: Client) -> None:
-    create_api_token(user=somebody(), name="theirs", expires_at=timezone.now() + timedelta(days=1))
+    create_api_token(user=a_user(), name="theirs", expires_at=timezone.now() + timedelta(days=1))
     token = ApiToken.objects.get()
     assert client.delete(f"/api/v1/account/tokens/{token.pk}").status_code == 404
     token.refresh_from_db()
@@ -203,7 +203,7 @@ def test_a_lost_token_opens_no_other_door(user: User, method: str, path: str, bo
 
 def test_somebody_sees_their_own_sign_ins_and_nobody_elses(client: Client, user: User) -> None:
     SignInEntry.objects.create(user=user, outcome="wrong", address="203.0.113.1", user_agent="Firefox")
-    SignInEntry.objects.create(user=somebody(), outcome="signed-in")
+    SignInEntry.objects.create(user=a_user(), outcome="signed-in")
     rows = client.get("/api/v1/account/sign-ins").json()["results"]
     assert [(row["username"], row["outcome"], row["address"]) for row in rows] == [(user.username, "wrong", "203.0.113.1")]
 

@@ -15,7 +15,7 @@ from accounts.users import OperatorsAlone, change_people, delete_person
 from missions.models import Approval, InspectionTarget, MissionUav, Route, UavType, Waypoint, WaypointKind
 from telemetry.models import UnknownVehicle
 from tests.accounts.test_invitations import FORM
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.test_admin import form_of, point
 from tests.missions.worlds import UAV_AT
 from tests.workspace.test_foreign_rows import everything, rows_of
@@ -76,7 +76,7 @@ def test_every_page_of_the_admin_says_whose_rows_it_shows(homes: list[Organisati
 def test_administrators_of_two_organisations_find_none_of_each_others_rows_at_any_address(homes: list[Organisation], own: int) -> None:
     rows = [rows_in_the_admin(home) for home in homes]
     mine, foreign = homes[own], homes[1 - own]
-    client = client_of(somebody(Role.ADMINISTRATOR, mine))
+    client = client_of(a_user(Role.ADMINISTRATOR, mine))
     before = everything(mine)
     asked = 0
     for model, row in rows[1 - own].items():
@@ -96,7 +96,7 @@ def test_administrators_of_two_organisations_find_none_of_each_others_rows_at_an
 def test_lists_filters_searches_and_actions_reach_own_rows_alone(homes: list[Organisation], own: int) -> None:
     rows = [rows_in_the_admin(home) for home in homes]
     mine, foreign = homes[own], homes[1 - own]
-    client = client_of(somebody(Role.ADMINISTRATOR, mine))
+    client = client_of(a_user(Role.ADMINISTRATOR, mine))
     before = everything(mine)
     for model, row in rows[1 - own].items():
         if model is Organisation:
@@ -118,7 +118,7 @@ def test_lists_filters_searches_and_actions_reach_own_rows_alone(homes: list[Org
 
 def test_choices_of_a_form_are_own_rows_and_a_foreign_one_is_refused(homes: list[Organisation]) -> None:
     types = [UavType.objects.create(organisation=home, name=f"Quad of {home}") for home in homes]
-    client = client_of(somebody(Role.ADMINISTRATOR, homes[0]))
+    client = client_of(a_user(Role.ADMINISTRATOR, homes[0]))
     page = client.get(reverse("admin:missions_uav_add"))
     offered = page.content.decode()
     assert types[0].name in offered
@@ -138,7 +138,7 @@ def test_choices_of_a_form_are_own_rows_and_a_foreign_one_is_refused(homes: list
 
 
 def test_nobody_is_moved_to_another_organisation_and_no_password_is_set(homes: list[Organisation]) -> None:
-    administrator, person = somebody(Role.ADMINISTRATOR, homes[0]), somebody(Role.VIEWER, homes[0])
+    administrator, person = a_user(Role.ADMINISTRATOR, homes[0]), a_user(Role.VIEWER, homes[0])
     client = client_of(administrator)
     address = reverse("admin:workspace_user_change", args=[person.pk])
     form = form_of(client.get(address))
@@ -164,7 +164,7 @@ def test_an_installation_operator_sees_all_organisations(homes: list[Organisatio
 
 
 def test_nobody_else_takes_an_installation_operators_account_over() -> None:
-    operator, administrator = User.objects.create_superuser("root"), somebody(Role.ADMINISTRATOR)
+    operator, administrator = User.objects.create_superuser("root"), a_user(Role.ADMINISTRATOR)
     client = client_of(administrator)
     assert client.post(reverse("admin:workspace_user_change", args=[operator.pk]), {"email": "a@example.org"}).status_code == 403
     assert client.post(reverse("admin:workspace_user_delete", args=[operator.pk]), {"post": "yes"}).status_code == 403
@@ -181,7 +181,7 @@ def test_nobody_else_takes_an_installation_operators_account_over() -> None:
 
 
 def test_whoever_has_the_machine_names_installation_operators() -> None:
-    person = somebody(Role.ADMINISTRATOR)
+    person = a_user(Role.ADMINISTRATOR)
     call_command("installation_operator", person.username)
     person.refresh_from_db()
     assert person.operates_installation
@@ -190,7 +190,7 @@ def test_whoever_has_the_machine_names_installation_operators() -> None:
     person.refresh_from_db()
     assert not person.operates_installation
     with pytest.raises(CommandError):
-        call_command("installation_operator", somebody(Role.VIEWER).username)
+        call_command("installation_operator", a_user(Role.VIEWER).username)
 
 
 def test_the_first_person_of_an_organisation_is_invited_from_the_machine(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,7 +10,7 @@ from django.http import HttpResponse
 from django.test import Client
 from django.utils import timezone
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, Invitation, Organisation, Role, SignInEntry, User
 
 pytestmark = pytest.mark.django_db
@@ -34,7 +34,7 @@ def _no_tries_yet(settings: Any) -> None:
 
 @pytest.fixture
 def administrator() -> User:
-    return somebody(Role.ADMINISTRATOR)
+    return a_user(Role.ADMINISTRATOR)
 
 
 @pytest.fixture
@@ -167,7 +167,7 @@ def test_a_mail_server_that_is_away_leaves_the_link_to_be_handed_over(client: Cl
 
 
 def test_invitations_of_another_organisation_are_not_there(client: Client) -> None:
-    other = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Others"))
+    other = a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Others"))
     theirs = invite(client_of(other)).json()["id"]
     assert states(client) == []
     assert client.delete(f"/api/v1/invitations/{theirs}").status_code == 404

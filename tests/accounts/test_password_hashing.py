@@ -5,7 +5,7 @@ from django.contrib.auth import authenticate
 from django.contrib.auth.hashers import identify_hasher, make_password
 from django.test import RequestFactory
 
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 
 pytestmark = pytest.mark.django_db
 PASSWORD = "north-abutment-41"
@@ -18,7 +18,7 @@ def test_a_new_password_is_argon2id_with_the_stated_cost() -> None:
 
 
 def test_an_older_password_lets_in_and_is_made_anew() -> None:
-    user = somebody()
+    user = a_user()
     user.password = make_password(PASSWORD, hasher="pbkdf2_sha256")
     user.save()
     asked = RequestFactory().post("/sign-in")

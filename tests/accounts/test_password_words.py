@@ -7,7 +7,7 @@ from django.contrib.auth.password_validation import validate_password
 from django.core.exceptions import ValidationError
 
 from accounts.invitations import invite
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -29,7 +29,7 @@ REFUSED = [
 
 
 def is_taken(password: str, organisation: str = "Havel Netz") -> bool:
-    user = somebody(organisation=Organisation.objects.get_or_create(name=organisation)[0])
+    user = a_user(organisation=Organisation.objects.get_or_create(name=organisation)[0])
     try:
         validate_password(password, user)
     except ValidationError as error:
@@ -60,7 +60,7 @@ def test_a_site_names_words_of_its_own(settings: Any) -> None:
 
 
 def test_an_invitation_counts_the_words_of_the_organisation_that_invites(client: Any) -> None:
-    boss = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Havel Netz"))
+    boss = a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Havel Netz"))
     _, token = invite(organisation=boss.organisation, actor=boss, role=Role.VIEWER, email="", days=1)
     answers = {"username": "newcomer", "password1": "Havel-Netz-2026", "password2": "Havel-Netz-2026"}
     assert client.post(f"/invitation/{token}", answers).status_code == 200

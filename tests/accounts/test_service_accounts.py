@@ -13,7 +13,7 @@ from django.utils import timezone
 
 from accounts.services import make_service_account
 from accounts.users import NoAdministratorLeft, delete_person, save_person
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.workspace.api.described_answers import openapi_document
 from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Organisation, Role, User
@@ -30,7 +30,7 @@ def _quick_hashes(settings: Any) -> None:
 
 @pytest.fixture
 def administrator() -> User:
-    user = somebody(Role.ADMINISTRATOR)
+    user = a_user(Role.ADMINISTRATOR)
     user.set_password(PASSWORD)
     user.save()
     return user
@@ -133,13 +133,13 @@ def test_a_token_is_revoked_alone(client: Client) -> None:
     token = ApiToken.objects.filter(user=account["id"]).order_by("pk")[0]
     assert send(client, "delete", f"{ACCOUNTS}/{account['id']}/tokens/{token.pk}").json()["is_valid"] is False
     assert (first.get("/api/v1/missions").status_code, second.get("/api/v1/missions").status_code) == (401, 200)
-    own = ApiToken.objects.create(user=somebody(), token_sha256="a" * 64, expires_at=timezone.now() + timedelta(days=1))
+    own = ApiToken.objects.create(user=a_user(), token_sha256="a" * 64, expires_at=timezone.now() + timedelta(days=1))
     assert send(client, "delete", f"{ACCOUNTS}/{account['id']}/tokens/{own.pk}").status_code == 404, "a person's"
 
 
 def test_it_stays_when_whoever_made_it_is_gone(client: Client, administrator: User) -> None:
     asks = program(client, made(client))
-    other = somebody(Role.ADMINISTRATOR)
+    other = a_user(Role.ADMINISTRATOR)
     delete_person(user=administrator, actor=other)
     assert asks.get("/api/v1/missions").status_code == 200
 
@@ -164,7 +164,7 @@ def test_a_token_is_made_within_a_quarter_of_an_hour_of_the_password_alone(clien
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR, Role.CURATOR])
 def test_administrators_alone_see_them(client: Client, role: Role) -> None:
     account = made(client)
-    other = client_of(somebody(role))
+    other = client_of(a_user(role))
     assert other.get(ACCOUNTS).status_code == 403
     assert send(other, "post", ACCOUNTS, {"name": "mine", "role": "viewer"}).status_code == 403
     assert send(other, "post", f"{ACCOUNTS}/{account['id']}/tokens", {"name": "mine"}).status_code == 403
@@ -194,7 +194,7 @@ def test_people_and_programs_are_apart(client: Client) -> None:
     account = made(client)
     assert account["username"] not in {row["username"] for row in client.get("/api/v1/people").json()["results"]}
     assert send(client, "patch", f"/api/v1/people/{account['id']}", {"email": "a@example.org"}).status_code == 404
-    person = somebody()
+    person = a_user()
     assert client.get(f"{ACCOUNTS}/{person.pk}").status_code == 404
 
 
@@ -222,20 +222,20 @@ def test_the_history_names_the_account_and_who_made_it(client: Client, administr
 
 
 def test_the_admin_gives_it_no_address_and_no_other_name(client: Client) -> None:
-    account = make_service_account(actor=somebody(Role.ADMINISTRATOR), name="crm", role=Role.VIEWER)
+    account = make_service_account(actor=a_user(Role.ADMINISTRATOR), name="crm", role=Role.VIEWER)
     page = client.get(f"/admin/workspace/user/{account.pk}/change/").content.decode()
     assert 'name="role"' in page
     assert not any(f'name="{name}"' in page for name in ("username", "email", "password"))
 
 
 def test_the_command_makes_a_token_of_one() -> None:
-    account = make_service_account(actor=somebody(Role.ADMINISTRATOR), name="crm", role=Role.VIEWER)
+    account = make_service_account(actor=a_user(Role.ADMINISTRATOR), name="crm", role=Role.VIEWER)
     call_command("api_token", account.username, stdout=StringIO())
     assert ApiToken.objects.get().user == account
 
 
 def test_another_organisations_are_not_there(client: Client) -> None:
-    stranger = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere"))
+    stranger = a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere"))
     account = make_service_account(actor=stranger, name="erp", role=Role.VIEWER)
     made(client)
     create_api_token(user=account, name="x", expires_at=timezone.now() + timedelta(days=1))

@@ -8,7 +8,7 @@ from django.test import Client
 from django.urls import reverse
 
 from accounts.users import NoAdministratorLeft, change_people, delete_person
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -19,7 +19,7 @@ LIST = "admin:workspace_user_changelist"
 @pytest.fixture
 def administrator() -> User:
     User.objects.filter(role=Role.ADMINISTRATOR).delete()
-    return somebody(Role.ADMINISTRATOR)
+    return a_user(Role.ADMINISTRATOR)
 
 
 @pytest.fixture
@@ -52,7 +52,7 @@ def form_of(client: Client, person: User) -> dict[str, Any]:
 def test_several_accounts_are_changed_at_once_and_each_is_in_the_history(
     client: Client, administrator: User, action: str, before: tuple[Role, bool], after: tuple[Role, bool]
 ) -> None:
-    people = [somebody(before[0]) for _ in range(2)]
+    people = [a_user(before[0]) for _ in range(2)]
     User.objects.filter(pk__in=[person.pk for person in people]).update(is_active=before[1])
     assert "2 " in act(client, action, *people)
     assert set(User.objects.filter(pk__in=[person.pk for person in people]).values_list("role", "is_active")) == {after}
@@ -64,7 +64,7 @@ def test_several_accounts_are_changed_at_once_and_each_is_in_the_history(
 
 @pytest.mark.parametrize("action", ["make_viewers", "make_curators", "keep_out"])
 def test_the_last_administrator_keeps_role_and_access(client: Client, administrator: User, action: str) -> None:
-    other = somebody(Role.OPERATOR)
+    other = a_user(Role.OPERATOR)
     assert "This would leave no administrator who can sign in" in act(client, action, other, administrator)
     administrator.refresh_from_db()
     other.refresh_from_db()
@@ -81,7 +81,7 @@ def test_the_last_administrators_form_is_refused_too(client: Client, administrat
 
 
 def test_the_last_administrator_cannot_be_deleted_alone_or_among_others(client: Client, administrator: User) -> None:
-    somebody(Role.OPERATOR)
+    a_user(Role.OPERATOR)
     assert "no administrator" in act(client, "delete_selected", *User.objects.all(), post="yes")
     answer = client.post(reverse("admin:workspace_user_delete", args=[administrator.pk]), {"post": "yes"}, follow=True)
     assert "no administrator" in answer.content.decode()
@@ -89,14 +89,14 @@ def test_the_last_administrator_cannot_be_deleted_alone_or_among_others(client: 
 
 
 def test_an_administrator_who_is_kept_out_does_not_count(administrator: User) -> None:
-    other = somebody(Role.ADMINISTRATOR)
+    other = a_user(Role.ADMINISTRATOR)
     change_people(users=[other], actor=administrator, is_active=False)
     with pytest.raises(NoAdministratorLeft):
         delete_person(user=administrator, actor=other)
 
 
 def test_with_another_administrator_the_role_can_be_given_up(client: Client, administrator: User) -> None:
-    somebody(Role.ADMINISTRATOR)
+    a_user(Role.ADMINISTRATOR)
     form = form_of(client, administrator) | {"role": "curator"}
     assert client.post(reverse("admin:workspace_user_change", args=[administrator.pk]), form).status_code == 302
     administrator.refresh_from_db()
@@ -106,7 +106,7 @@ def test_with_another_administrator_the_role_can_be_given_up(client: Client, adm
 @pytest.mark.django_db(transaction=True)
 def test_who_takes_an_administrators_role_holds_others_up_until_it_is_done(administrator: User) -> None:
     """So that of two who demote each other the second sees what the first did."""
-    other = somebody(Role.ADMINISTRATOR)
+    other = a_user(Role.ADMINISTRATOR)
     with transaction.atomic():
         change_people(users=[other], actor=administrator, role=Role.VIEWER)
         with connection.cursor() as cursor:
@@ -119,7 +119,7 @@ def test_who_takes_an_administrators_role_holds_others_up_until_it_is_done(admin
 def test_people_are_found_by_mail_and_organisation() -> None:
     client = client_of(User.objects.create_superuser("root"))
     grid = Organisation.objects.create(name="Grid North")
-    person = somebody(Role.OPERATOR, grid)
+    person = a_user(Role.OPERATOR, grid)
     User.objects.filter(pk=person.pk).update(email="ann@example.org")
     for question in ("?q=ann@example", "?q=Grid+North", f"?organisation__id__exact={grid.pk}", "?role__exact=operator"):
         assert person.username in client.get(reverse(LIST) + question).content.decode()
@@ -128,7 +128,7 @@ def test_people_are_found_by_mail_and_organisation() -> None:
 def test_an_organisation_that_has_anything_is_not_deleted() -> None:
     client = client_of(User.objects.create_superuser("root"))
     empty, full = Organisation.objects.create(name="Empty"), Organisation.objects.create(name="Full")
-    somebody(Role.VIEWER, full)
+    a_user(Role.VIEWER, full)
     delete = "admin:workspace_organisation_delete"
     assert client.post(reverse(delete, args=[full.pk]), {"post": "yes"}).status_code == 403
     assert client.post(reverse(delete, args=[empty.pk]), {"post": "yes"}).status_code == 302
@@ -137,7 +137,7 @@ def test_an_organisation_that_has_anything_is_not_deleted() -> None:
 
 
 def test_the_whole_history_shows_what_changed(client: Client, administrator: User) -> None:
-    person = somebody(Role.VIEWER)
+    person = a_user(Role.VIEWER)
     change_people(users=[person], actor=administrator, role=Role.CURATOR)
     entry = AuditEntry.objects.get()
     page = client.get(reverse("admin:workspace_auditentry_change", args=[entry.pk])).content.decode()

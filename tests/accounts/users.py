@@ -9,7 +9,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, Role, User
 _numbers = count(1)
 
 
-def somebody(role: Role = Role.OPERATOR, organisation: Organisation | None = None) -> User:
+def a_user(role: Role = Role.OPERATOR, organisation: Organisation | None = None) -> User:
     organisation_id = organisation.pk if organisation else DEFAULT_ORGANISATION_ID
     return User.objects.create_user(f"{role.value}-{next(_numbers)}", role=role, organisation_id=organisation_id)
 

@@ -37,7 +37,7 @@ KEEPS = "SPANWISE_CHAOS_KEEPS"  # set: logs and data stay for whoever looks for 
 @dataclass
 class Site:
     installation: Installation
-    people: dict[str, Any]  # what tests.chaos.people has told
+    people: dict[str, Any]  # what tests.chaos.users has told
 
     def client(self, number: int = 0, *, keeps: bool = True) -> Client:
         """Of an operator; there are as many as `people` made."""
@@ -85,12 +85,12 @@ def demo_site(
     with shipped(name, counts, settings=settings, folder=folder) as installation:
         for command in DEMO:
             installation.manage(*[message.format(demo=installation.places.state / "demo") for message in command])
-        yield Site(installation, people_of(installation))
+        yield Site(installation, users_of(installation))
 
 
-def people_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
+def users_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
     """Operators with tokens, made beside those that may be there, and what they ask with."""
-    command = [sys.executable, "-m", "tests.chaos.people", str(organisation)]
+    command = [sys.executable, "-m", "tests.chaos.users", str(organisation)]
     reported = subprocess.run(  # noqa: S603
         command, env=installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=True
     ).stdout

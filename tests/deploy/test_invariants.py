@@ -21,7 +21,7 @@ from telemetry.models import AlertLevel, AlertNote, InspectionResult, TelemetryR
 from telemetry.services.alerts.alerts import acknowledge_alert, note_alert, open_alert
 from telemetry.services.links.companion_reports import take_reports
 from telemetry.services.results import EndedFlight, NewResult, take_results
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions import flights, worlds
 from workspace.jobs.services import create_job, finish_job, start_job
 from workspace.models import AuditEntry, IdempotencyKey
@@ -32,7 +32,7 @@ LONG_AGO = timedelta(hours=1)
 @pytest.fixture
 def day(db: None, tmp_path: Path) -> Promises:
     """A small working day in which everything was kept, and its book."""
-    book, user = Book(tmp_path), somebody()
+    book, user = Book(tmp_path), a_user()
     flights.ground(tmp_path / "ground.tif")
     here, [uav] = worlds.world(), flights.fleet(link="http")
     mission = flights.dispatched(user, [uav], [here.towers[3]])
@@ -153,7 +153,7 @@ def _command_forgotten() -> None:
 
 
 def _half_an_answer() -> None:
-    IdempotencyKey.objects.create(user=somebody(), key=str(uuid4()), request_sha256="")
+    IdempotencyKey.objects.create(user=a_user(), key=str(uuid4()), request_sha256="")
 
 
 PLANTED: list[tuple[str, Callable[[], object]]] = [

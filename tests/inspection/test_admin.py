@@ -16,7 +16,7 @@ from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.selectors import ground_revision
 from inspection.services import WrongGeometry, save_asset
 from missions.models import InspectionTarget, Mission, Uav
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from workspace.models import ApiToken, AuditEntry, Role, User
 
@@ -31,7 +31,7 @@ CURATED_MODELS = {  # infrastructure, zones, terrain, and the imports and graphs
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -57,7 +57,7 @@ def point(lon: float, lat: float) -> str:
 @pytest.mark.parametrize(("app", "model"), MODELS)
 def test_every_list_opens_for_administrators_but_that_of_organisations_which_is_for_operators(app: str, model: str) -> None:
     address = reverse(f"admin:{app}_{model}_changelist")
-    assert client_of(somebody(Role.ADMINISTRATOR)).get(address).status_code == (403 if model == "organisation" else 200)
+    assert client_of(a_user(Role.ADMINISTRATOR)).get(address).status_code == (403 if model == "organisation" else 200)
     assert client_of(User.objects.create_superuser("root")).get(address).status_code == 200
 
 
@@ -76,7 +76,7 @@ def test_the_admins_first_page_lists_all_models_for_administrators_and_curated_o
 
     assert listed(client_of(User.objects.create_superuser("root")).get("/admin/")) == MODELS
     others = [entry for entry in MODELS if entry[1] != "organisation"]
-    assert listed(client_of(somebody(Role.ADMINISTRATOR)).get("/admin/")) == others
+    assert listed(client_of(a_user(Role.ADMINISTRATOR)).get("/admin/")) == others
     assert listed(client.get("/admin/")) == sorted(("inspection", model) for model in CURATED_MODELS)
 
 
@@ -95,7 +95,7 @@ def test_strangers_are_sent_to_the_programs_own_sign_in() -> None:
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
 def test_other_roles_are_refused_and_not_sent_in_circles(role: Role) -> None:
-    assert client_of(somebody(role)).get("/admin/", follow=True).status_code == 403
+    assert client_of(a_user(role)).get("/admin/", follow=True).status_code == 403
 
 
 @pytest.mark.parametrize("make", [tower, line, railway, bridge, zone])
@@ -290,7 +290,7 @@ def test_who_changes_an_imported_zone_hears_that_it_stays_so(client: Client) -> 
 
 
 def test_a_uavs_place_is_a_point_that_can_be_dragged() -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     address = reverse("admin:missions_uav_add")
     page = client.get(address)
     assert "data-is-point" in page.content.decode()
@@ -300,8 +300,8 @@ def test_a_uavs_place_is_a_point_that_can_be_dragged() -> None:
 
 
 def test_tokens_are_revoked_and_never_made_here() -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
-    token = ApiToken.objects.create(user=somebody(), token_sha256="0" * 64, expires_at="2100-01-01T00:00Z")
+    client = client_of(a_user(Role.ADMINISTRATOR))
+    token = ApiToken.objects.create(user=a_user(), token_sha256="0" * 64, expires_at="2100-01-01T00:00Z")
     page = client.get(change_address(token)).content.decode()
     assert "0" * 64 not in page
     assert client.get(reverse("admin:workspace_apitoken_add")).status_code == 403
@@ -311,7 +311,7 @@ def test_tokens_are_revoked_and_never_made_here() -> None:
 
 
 def test_what_the_program_writes_cannot_be_changed(client: Client, curator: User) -> None:
-    administrator = client_of(somebody(Role.ADMINISTRATOR))
+    administrator = client_of(a_user(Role.ADMINISTRATOR))
     entry = AuditEntry.objects.create(organisation=curator.organisation, actor=curator, action="x", subject_type="x", subject_id="1")
     assert administrator.post(change_address(entry), {"action": "y"}).status_code == 403
     assert administrator.post(reverse("admin:workspace_auditentry_delete", args=[entry.pk]), {"post": "yes"}).status_code == 403

@@ -10,7 +10,7 @@ from django.utils import timezone
 from inspection.admin.curated import MAX_CONCURRENT
 from inspection.models import Asset, AssetSet, DataGap, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services import StaleRevision, save_asset, save_zone
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line, tower, zone
 from tests.inspection.test_admin import area, change_address, form_of, point
 from workspace.models import AuditEntry, Role, User
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def act(client: Client, model: str, action: str, rows: Any, **more: Any) -> Any:
 def test_a_form_from_before_somebody_elses_change_is_shown_back_and_says_who(client: Client) -> None:
     asset = tower(ref="18")
     form = form_of(client.get(change_address(asset)))
-    other = somebody(Role.CURATOR)
+    other = a_user(Role.CURATOR)
     asset.height_m = 31.0
     save_asset(asset=asset, actor=other)
     answer = client.post(change_address(asset), form | {"ref": "19"})
@@ -75,7 +75,7 @@ def test_a_zone_that_an_import_changed_in_the_meantime_is_not_overwritten(client
 
 def test_the_history_of_an_asset_shows_author_before_and_after(client: Client, curator: User) -> None:
     asset = tower(ref="18")
-    other = somebody(Role.CURATOR)
+    other = a_user(Role.CURATOR)
     asset.ref, asset.height_m = "<b>19</b>", 31.5
     save_asset(asset=asset, actor=other)
     form = form_of(client.get(change_address(asset)))
@@ -136,7 +136,7 @@ def test_more_than_a_request_can_change_is_refused_whole(client: Client) -> None
 def test_deleting_several_supports_numbers_the_others_anew_once(client: Client) -> None:
     supports = [tower((10.0 + n / 100, 56.0), osm_id=None, osm_type="") for n in range(3)]
     row = line(*[support.centre.coords for support in supports], osm_id=None, osm_type="")
-    save_asset(asset=row, actor=somebody(Role.CURATOR))
+    save_asset(asset=row, actor=a_user(Role.CURATOR))
     act(client, "asset", "delete_selected", supports[:1], post="yes")
     supports[2].refresh_from_db()
     assert (supports[2].place_on_line, supports[2].places_on_line) == (2, 2)
@@ -189,6 +189,6 @@ def test_versions_do_not_load_what_they_hold(client: Client, django_assert_max_n
 @pytest.mark.parametrize(("text", "fault"), [('{"day": "MON"}', "are a list"), ('[{"startDateTime": "soon"}]', "schedule")])
 def test_a_schedule_that_is_none_is_shown_back_with_its_fault(client: Client, text: str, fault: str) -> None:
     stored = zone()
-    save_zone(zone=stored, actor=somebody(Role.CURATOR))
+    save_zone(zone=stored, actor=a_user(Role.CURATOR))
     answer = client.post(change_address(stored), form_of(client.get(change_address(stored))) | {"schedule": text})
     assert fault in str(answer.context["adminform"].form.errors["schedule"])

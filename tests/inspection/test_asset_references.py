@@ -12,7 +12,7 @@ from django.test.utils import CaptureQueriesContext
 from inspection.models import Asset, AssetReference
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.imports.osm_files import small_line, write_osm
 from workspace.models import AuditEntry, Organisation, Role
 
@@ -23,7 +23,7 @@ TOWER = {"kind": "tower", "geometry": {"type": "Point", "coordinates": [9.5, 47.
 
 @pytest.fixture
 def curator() -> Client:
-    return client_of(somebody(Role.CURATOR))
+    return client_of(a_user(Role.CURATOR))
 
 
 def write(client: Client, method: str, path: str, body: dict[str, Any], etag: str = "*") -> Any:
@@ -59,7 +59,7 @@ def test_an_import_leaves_them_and_the_row_as_the_source_has_it(tmp_path: Path, 
 def test_they_are_one_organisations(curator: Client) -> None:
     asset = write(curator, "POST", "assets", TOWER | GIVEN).json()
     assert {name: asset["properties"][name] for name in GIVEN} == GIVEN
-    other = client_of(somebody(Role.CURATOR, Organisation.objects.create(name="Other")))
+    other = client_of(a_user(Role.CURATOR, Organisation.objects.create(name="Other")))
     assert given_of(other, asset["id"]) == {"external_id": "", "attributes": {}}
     assert other.get("/api/v1/assets?external_id=SAP-100").json()["features"] == []
     assert write(other, "PATCH", f"assets/{asset['id']}", {"external_id": "mine"}).status_code == 200
@@ -94,7 +94,7 @@ def test_a_change_needs_the_asset_as_it_is_and_is_audited(curator: Client) -> No
 
 def test_only_curators_write_them(curator: Client) -> None:
     asset = write(curator, "POST", "assets", TOWER).json()["id"]
-    assert write(client_of(somebody(Role.OPERATOR)), "PATCH", f"assets/{asset}", GIVEN).status_code == 403
+    assert write(client_of(a_user(Role.OPERATOR)), "PATCH", f"assets/{asset}", GIVEN).status_code == 403
     assert not AssetReference.objects.exists()
 
 
@@ -111,7 +111,7 @@ def test_the_list_reads_them_in_one_query(curator: Client) -> None:
 
 def test_an_asset_that_is_brought_back_has_them_again(curator: Client) -> None:
     asset = write(curator, "POST", "assets", TOWER | GIVEN).json()["id"]
-    other = client_of(somebody(Role.CURATOR, Organisation.objects.create(name="Other")))
+    other = client_of(a_user(Role.CURATOR, Organisation.objects.create(name="Other")))
     write(other, "PATCH", f"assets/{asset}", {"external_id": "mine"})
     assert curator.delete(f"/api/v1/assets/{asset}", headers={"If-Match": "*"}).status_code == 204
     assert not AssetReference.objects.exists()

@@ -10,7 +10,7 @@ from inspection.models import Asset, DataImport, GraphSnapshot, TerrainTile, Zon
 from inspection.network.snapshot_file import LAYOUT
 from inspection.selectors import asset_detail, asset_label
 from inspection.services import mark_ground_changed
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, square, tower, zone
 from workspace.models import Role
 
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 def found(client: Client, query: str = "") -> list[int]:

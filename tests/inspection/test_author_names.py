@@ -11,7 +11,7 @@ from django.utils import timezone
 from inspection.models import DataGap, DataImport, ImportProposal, NoFlyZone
 from inspection.services import find_gaps, save_zone
 from inspection.services.gaps import dismiss_gap
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.inspection.imports.zone_sets import SETS, stored
 from workspace.models import Organisation, Role, User
@@ -22,7 +22,7 @@ OTHERS = "another organisation"
 
 @pytest.fixture
 def neighbour() -> User:
-    return somebody(Role.CURATOR, Organisation.objects.create(name="Neighbours"))
+    return a_user(Role.CURATOR, Organisation.objects.create(name="Neighbours"))
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def zone(neighbour: User) -> NoFlyZone:
 
 
 def operator() -> User:
-    user = somebody(Role.ADMINISTRATOR)
+    user = a_user(Role.ADMINISTRATOR)
     user.is_installation_operator = True
     user.save()
     return user
@@ -113,15 +113,15 @@ PLACES = [
 @pytest.mark.usefixtures("zone")
 def test_a_name_is_read_within_its_organisation_and_by_installation_operators(place: Any, neighbour: User, tmp_path: Path) -> None:
     name_for = place(neighbour, tmp_path)
-    colleague = somebody(Role.CURATOR, neighbour.organisation)
+    colleague = a_user(Role.CURATOR, neighbour.organisation)
     assert name_for(client_of(colleague)) == neighbour.username
     assert name_for(client_of(operator())) == neighbour.username
-    assert name_for(client_of(somebody(Role.ADMINISTRATOR))) == OTHERS
+    assert name_for(client_of(a_user(Role.ADMINISTRATOR))) == OTHERS
 
 
 @pytest.mark.usefixtures("zone")
 def test_the_words_are_in_the_readers_language() -> None:
-    answer = client_of(somebody(Role.CURATOR)).get("/api/v1/history", headers={"Accept-Language": "de"})
+    answer = client_of(a_user(Role.CURATOR)).get("/api/v1/history", headers={"Accept-Language": "de"})
     assert answer.json()["results"][0]["actor"] == "jemand aus einer anderen Organisation"
 
 
@@ -130,9 +130,9 @@ def test_a_history_cannot_be_searched_for_people_of_others(neighbour: User) -> N
     def changes_by(name: str, reader: User) -> int:
         return len(client_of(reader).get("/api/v1/history", {"actor": name}).json()["results"])
 
-    reader = somebody(Role.ADMINISTRATOR)
+    reader = a_user(Role.ADMINISTRATOR)
     assert changes_by(neighbour.username, reader) == changes_by("nobody", reader) == 0
-    assert changes_by(neighbour.username, somebody(Role.CURATOR, neighbour.organisation)) == 1
+    assert changes_by(neighbour.username, a_user(Role.CURATOR, neighbour.organisation)) == 1
     assert changes_by(neighbour.username, operator()) == 1
 
 
@@ -153,7 +153,7 @@ def test_the_admin_names_people_of_others_to_installation_operators_alone(neighb
         assert answer.status_code == 200, page
         return answer.content.decode()
 
-    outsider, knowing = somebody(Role.ADMINISTRATOR), operator()
+    outsider, knowing = a_user(Role.ADMINISTRATOR), operator()
     assert not [page for page in pages if neighbour.username in shown_to(outsider, page)]
     assert not [page for page in pages[:-1] if neighbour.username not in shown_to(knowing, page)]
     assert f"by {OTHERS}" in shown_to(outsider, pages[0])
@@ -162,7 +162,7 @@ def test_the_admin_names_people_of_others_to_installation_operators_alone(neighb
 
 
 def test_the_admin_tells_no_name_of_others_to_whom_came_too_late(neighbour: User, zone: NoFlyZone) -> None:
-    address, outsider = f"/admin/inspection/noflyzone/{zone.pk}/change/", client_of(somebody(Role.ADMINISTRATOR))
+    address, outsider = f"/admin/inspection/noflyzone/{zone.pk}/change/", client_of(a_user(Role.ADMINISTRATOR))
     page = outsider.post(address, {"name": "A", "expected_revision": 0}).content.decode()
     assert f"{OTHERS} has changed this in the meantime" in page
     assert neighbour.username not in page

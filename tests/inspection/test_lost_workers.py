@@ -22,7 +22,7 @@ from inspection.models import ImportKind, ImportProposal, NoFlyZone, ProposedCha
 from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals.pipeline import ask_to_apply, start_proposal
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from workspace.jobs.job_watch import INTERVAL_S
 from workspace.jobs.services import cancel_job, requeue_lost_jobs
 from workspace.models import Job, JobState, Role, User
@@ -114,7 +114,7 @@ def proposal_of(curator: User) -> ImportProposal:
 
 def test_a_file_whose_reader_and_applier_were_killed_is_read_and_applied_once_and_nothing_of_them_is_left(tmp_path: Path) -> None:
     queue = f"lost-{uuid4()}"
-    curator = somebody(Role.CURATOR)
+    curator = a_user(Role.CURATOR)
     proposal = proposal_of(curator)
     left = lambda: list((tmp_path / "uploads").glob("*/*"))  # noqa: E731
 
@@ -153,7 +153,7 @@ def test_a_file_whose_reader_and_applier_were_killed_is_read_and_applied_once_an
 
 def test_a_reading_that_is_cancelled_in_the_middle_of_a_long_statement_ends_and_leaves_nothing(tmp_path: Path) -> None:
     queue = f"lost-{uuid4()}"
-    proposal = proposal_of(somebody(Role.CURATOR))
+    proposal = proposal_of(a_user(Role.CURATOR))
     with worker(queue, tmp_path):
         with table_held(ZoneSet):
             read_proposal.apply_async([str(proposal.job_id)], queue=queue)

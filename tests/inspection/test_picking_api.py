@@ -8,7 +8,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from inspection.models import Asset
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower
 from workspace.models import Role
 
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 def post(client: Client, path: str, body: Any) -> HttpResponse:

@@ -12,7 +12,7 @@ from django.test import Client
 from inspection.models import Asset
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line, tower
 from workspace.models import AuditEntry, Role
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.CURATOR))
+    return client_of(a_user(Role.CURATOR))
 
 
 def delete(client: Client, **body: object):
@@ -66,7 +66,7 @@ def test_a_region_that_is_none_is_refused(client: Client, body: dict[str, object
 
 
 def test_operators_delete_no_region() -> None:
-    assert delete(client_of(somebody(Role.OPERATOR)), bbox=[0, 0, 1, 1]).status_code == 403
+    assert delete(client_of(a_user(Role.OPERATOR)), bbox=[0, 0, 1, 1]).status_code == 403
 
 
 def test_the_command_shows_what_would_go_before_it_goes() -> None:

@@ -21,7 +21,7 @@ from inspection.selectors import scene as selector
 from inspection.selectors.ground_data import ground_data
 from inspection.selectors.terrain import ground_heights_m
 from inspection.services import import_osm, import_terrain, import_zones, mark_ground_changed
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from workspace.models import Role
@@ -34,7 +34,7 @@ WITHIN_M = 0.5
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 def scene(client: Client, bbox: str = BOX) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from missions.models import Mission, MissionState
 from telemetry.models import UavLink
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.imports.osm_files import small_line, write_osm
 from tests.inspection.imports.zone_sets import zone_file
 from tests.missions.api import mission_body, post
@@ -40,7 +40,7 @@ FLOWN = (10.008, 56.0)  # on the line that the mission inspects
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -94,7 +94,7 @@ def row_of_masts(number: int, lon: float = FAR) -> list[tuple[str, float, float]
 
 
 def flown_mission(here: World, state: MissionState = MissionState.ACTIVE) -> Mission:
-    made = post(client_of(somebody(Role.OPERATOR)), "missions", mission_body(here.towers[1], here.towers[5], plan=True)).json()
+    made = post(client_of(a_user(Role.OPERATOR)), "missions", mission_body(here.towers[1], here.towers[5], plan=True)).json()
     Mission.objects.filter(pk=made["id"]).update(state=state)
     return Mission.objects.get(pk=made["id"])
 
@@ -308,7 +308,7 @@ def test_a_bound_that_is_no_percentage_is_refused(client: Client, percent: Any) 
     (Role.CURATOR, ("curate",), 202), (Role.CURATOR, ("read", "plan", "fly"), 403), (Role.OPERATOR, (), 403), (Role.VIEWER, (), 403),
 ])  # fmt: skip
 def test_it_takes_the_scope_curate(role: Role, scopes: tuple[str, ...], status: int) -> None:
-    user = somebody(role)
+    user = a_user(role)
     assert asked(with_token(user, *scopes), zone_file(("A", FAR))).status_code == status
 
 

@@ -7,7 +7,7 @@ from django.test import Client
 
 from inspection.models import NoFlyZone
 from missions.models import Waypoint
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import mission_body, patch, post
 from tests.missions.plane import apart_m
@@ -23,7 +23,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def error_of(response: Any, status: int) -> dict[str, Any]:

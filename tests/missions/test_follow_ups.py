@@ -6,7 +6,7 @@ import pytest
 from django.test import Client
 
 from missions.models import Mission, MissionState, TargetState
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
 from tests.missions.worlds import World, world
 from workspace.models import Organisation, Role
@@ -21,7 +21,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 @pytest.fixture
@@ -76,6 +76,6 @@ def test_a_mission_that_missed_nothing_or_is_not_over_has_none(client: Client, f
 
 
 def test_a_viewer_and_another_organisation_cannot(flown: Mission) -> None:
-    assert follow_up(client_of(somebody(Role.VIEWER)), flown).status_code == 403
-    stranger = client_of(somebody(Role.OPERATOR, Organisation.objects.create(name="Other")))
+    assert follow_up(client_of(a_user(Role.VIEWER)), flown).status_code == 403
+    stranger = client_of(a_user(Role.OPERATOR, Organisation.objects.create(name="Other")))
     assert follow_up(stranger, flown).status_code == 404

@@ -3,7 +3,7 @@
 import pytest
 from django.test import Client
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import World, world
 
@@ -17,7 +17,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def test_a_first_plan_has_none_before_it(here: World, client: Client) -> None:

@@ -9,7 +9,7 @@ import pytest
 from django.test import Client
 
 from inspection.models import NoFlyZone
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
 from tests.missions.test_by_hand import as_wished, longest_leg, planned_with, put
 from tests.missions.worlds import World, world, zone_around
@@ -27,7 +27,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def look(client: Client, mission: dict[str, Any], waypoints: list[dict[str, Any]]) -> dict[str, Any]:
@@ -131,7 +131,7 @@ def test_where_nobody_flies_there_is_nothing_to_look_at(here: World, client: Cli
     wished = [{"position": [10.0, 56.0], "altitude_agl_m": 60.0, "was": 0}]
     assert post(client, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 400
     assert post(client, f"missions/{uuid4()}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 404
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert post(viewer, f"missions/{mission['id']}/routes/0/waypoints/look", {"waypoints": wished}).status_code == 403
 
 

@@ -9,7 +9,7 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Mission, Route, Waypoint
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, post
 from tests.missions.worlds import World, world, zone_around
 from workspace.models import Role
@@ -27,7 +27,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def planned(client: Client, here: World, departs_at: datetime | None = None) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from django.test import Client
 from django.utils.translation import override
 
 from missions.models import Mission, MissionState, MissionUav, Uav, UavState, UavType
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 
@@ -29,7 +29,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 @pytest.fixture

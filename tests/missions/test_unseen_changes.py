@@ -7,7 +7,7 @@ from django.http import HttpResponse
 from django.test import Client
 
 from missions.models import MissionState, UavCommand
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import World, world
@@ -23,7 +23,7 @@ def here() -> World:
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_a_change_without_the_revision_that_was_seen_is_refused(
 def test_an_edit_of_the_same_second_is_not_approved_unseen(client: Client, here: World, person: User) -> None:
     mission = planned(person, fleet(), here.towers[:2])
     seen = client.get(f"/api/v1/missions/{mission.pk}")["ETag"]
-    other = client_of(somebody())
+    other = client_of(a_user())
     assert patch(other, f"missions/{mission.pk}", {"targets": [{"asset": here.towers[3].pk}], "plan": True}).status_code == 200
     answer = post(client, f"missions/{mission.pk}/approve", **{"If-Match": seen})
     assert (answer.status_code, answer.json()["error"]["code"]) == (412, "mission_changed")

@@ -13,7 +13,7 @@ from django.test import Client
 
 from missions import tasks
 from missions.models import MissionUav
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from workspace.api import waiting
@@ -32,7 +32,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 @pytest.fixture(autouse=True)
@@ -137,7 +137,7 @@ def test_who_has_enough_large_plans_is_told_before_any_work(here: World, client:
         assert int(refused["Retry-After"]) > 0
         assert post(client, "missions", mission_body(*body(here)["targets"], plan=True)).status_code == 429
         assert post(client, "plans", plan_body(here.towers[0])).status_code == 200  # a small one needs no worker
-        assert post(client_of(somebody(Role.OPERATOR)), "plans", body(here)).status_code == 202
+        assert post(client_of(a_user(Role.OPERATOR)), "plans", body(here)).status_code == 202
         cancel_job(job=Job.objects.filter(created_by__isnull=False).last())
         assert post(client, "plans", body(here)).status_code == 202
 
@@ -160,7 +160,7 @@ def test_a_plan_that_is_made_is_stored_however_many_others_are_open(here: World,
 
 def test_of_requests_at_the_same_moment_none_gets_past_the_limit(here: World, settings: Any) -> None:
     settings.MAX_OPEN_PLANS = 1
-    user, statuses = somebody(Role.OPERATOR), []
+    user, statuses = a_user(Role.OPERATOR), []
 
     def ask(client: Client) -> None:
         try:

@@ -17,7 +17,7 @@ from operation import metrics
 from operation.exposition import metrics_text
 from simulation.simulator import process as simulator_process
 from telemetry.gateway import figures as gateway_figures
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 
 DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 BOUNDED = {
@@ -77,7 +77,7 @@ def test_labels_take_few_values() -> None:
 
 @pytest.mark.django_db
 def test_a_request_is_counted_by_the_pattern_of_its_address_and_never_by_the_address() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     labels = {"route": "api/v1/missions/<uuid:mission_id>", "method": "GET", "status": "404"}
     before = REGISTRY.get_sample_value("spanwise_http_requests_total", labels) or 0
     for number in range(3):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from operation import pulse
+from operation import loop_heartbeats
 from operation.address import WrongAddress, address_of
 from operation.exposition import Exposition
 from operation.readiness import Readiness
@@ -28,7 +28,7 @@ def faults() -> list[str]:
 @pytest.fixture(autouse=True)
 def _no_other_loops(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever went round in other tests is over."""
-    monkeypatch.setattr(pulse, "_due_s", {})
+    monkeypatch.setattr(loop_heartbeats, "_due_s", {})
 
 
 @pytest.fixture(params=["tcp", "unix"])
@@ -62,15 +62,15 @@ def test_one_that_cannot_work_lives_all_the_same(served_at: str, faults: list[st
 
 
 def test_a_loop_that_hangs_is_no_life(served_at: str) -> None:
-    pulse.beat("the loop", within_s=-1.0)
+    loop_heartbeats.send_heartbeat("the loop", within_s=-1.0)
     try:
         assert probe("live", served_at=served_at)[:2] == (1, '{"alive": false, "reasons": ["the loop hangs"]}')
-        pulse.beat("the loop", within_s=-1.0, excuse=lambda: True)
+        loop_heartbeats.send_heartbeat("the loop", within_s=-1.0, excuse=lambda: True)
         assert probe("live", served_at=served_at)[0] == 0
-        pulse.beat("the loop", within_s=3_600.0)
+        loop_heartbeats.send_heartbeat("the loop", within_s=3_600.0)
         assert probe("live", served_at=served_at)[0] == 0
     finally:
-        pulse.rest("the loop")
+        loop_heartbeats.stop("the loop")
 
 
 def test_where_nobody_tells_there_is_no_life_and_without_an_address_no_question(tmp_path: Path) -> None:

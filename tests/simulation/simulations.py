@@ -10,24 +10,24 @@ from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation
-from simulation.rehearsing.weather_scenario import Named, Sky, named_sky
+from simulation.rehearsing.weather_scenario import Named, WeatherScenario, named_scenario
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.services.simulations import PoolUav, start_pool
 from simulation.services.simulator_leases import LeasedSimulation, take_simulation
 from workspace.models import User
 
 HERE = LonLat(10.0, 56.0)
-CALM: Sky = named_sky(Named.CALM, Conditions())
+CALM: WeatherScenario = named_scenario(Named.CALM, Conditions())
 LONG_AGO = timezone.now() - timedelta(hours=1)
 
 
 def pool(actor: User, count: int = 2, **more: Any) -> Simulation:
-    values = {"lifetime_s": 600.0, "sky": CALM, "airframe": "iris"} | more
+    values = {"lifetime_s": 600.0, "scenario": CALM, "airframe": "iris"} | more
     return start_pool(organisation=actor.organisation, actor=actor, uavs=[PoolUav(HERE) for _ in range(count)], **values)
 
 
 def stand_ins(mission: Mission, actor: User, **more: Any) -> Simulation:
-    return start_simulated_flights(mission=mission_of_organisation(mission.organisation, mission.pk), actor=actor, sky=CALM, **more)
+    return start_simulated_flights(mission=mission_of_organisation(mission.organisation, mission.pk), actor=actor, scenario=CALM, **more)
 
 
 def taken(holder: str = "one/a", *flown: Simulation, most_load: float = 60.0) -> LeasedSimulation | None:

@@ -14,7 +14,7 @@ from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.demo_missions import DEMO_MISSIONS, remove_demo_data, want_demo_missions
 from simulation.services.simulations import end_simulation
 from simulation.tasks import fly_demo_missions
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import carry
 from workspace.jobs.services import MAX_ATTEMPTS, requeue_lost_jobs
 from workspace.models import Job, JobState, Role, User
@@ -26,7 +26,7 @@ REAL_TIME, _planned_only, FAST = (demo.name for demo in DEMO_MISSIONS)
 @pytest.fixture
 def administrator(demo_region: None, db: None) -> User:
     call_command("load_demo")
-    return somebody(role=Role.ADMINISTRATOR)
+    return a_user(role=Role.ADMINISTRATOR)
 
 
 @pytest.fixture

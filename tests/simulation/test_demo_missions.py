@@ -16,7 +16,7 @@ from simulation.services.demo_missions import (
     remove_demo_data,
     want_demo_missions,
 )
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.simulation.rehearsals.random_rehearsals import rehearse_mission
 from tests.simulation.rehearsals.test_random_rehearsals import faults_of
 from workspace.models import Job, Role, User
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture
 def administrator(demo_region: None, db: None) -> User:
     call_command("load_demo")
-    return somebody(role=Role.ADMINISTRATOR)
+    return a_user(role=Role.ADMINISTRATOR)
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_each_is_planned_with_energy(administrator: User) -> None:
 def test_each_passes_its_own_rehearsal(administrator: User) -> None:
     for mission in make(administrator):
         calm = not mission.conditions.get("wind")
-        found = rehearse_mission(mission, seed=3, sky="calm" if calm else "as-planned")
+        found = rehearse_mission(mission, seed=3, scenario="calm" if calm else "as-planned")
         assert found is not None
         assert faults_of(found) == []
 
@@ -95,7 +95,7 @@ def test_two_who_ask_get_one_job(administrator: User) -> None:
 
 
 def test_only_administrators_make_and_remove_them(administrator: User, client: Client) -> None:
-    operator = client_of(somebody(Role.OPERATOR))
+    operator = client_of(a_user(Role.OPERATOR))
     assert operator.get("/api/v1/demo-data").json()["can_be_made"] is True
     assert operator.post("/api/v1/demo-data", "{}", content_type="application/json", HTTP_IDEMPOTENCY_KEY="1").status_code == 403
     assert operator.delete("/api/v1/demo-data").status_code == 403

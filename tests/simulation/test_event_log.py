@@ -21,7 +21,7 @@ from telemetry.models import AlertLevel, FlightEvent, VehicleText
 from telemetry.selectors import events as telemetry_events
 from telemetry.services import NewRecord, store_records
 from telemetry.services.alerts.alerts import acknowledge_alert, close_alert, open_alert
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.flights import carry, dispatched, fleet
 from tests.missions.worlds import world
@@ -34,7 +34,7 @@ LATE = "%(uav)s: no telemetry for %(seconds)s s."
 
 @pytest.fixture
 def person() -> User:
-    user = somebody()
+    user = a_user()
     user.first_name, user.last_name = "Ada", "Marsh"
     user.save()
     return user
@@ -263,8 +263,8 @@ def test_as_many_queries_for_many_events_as_for_few(client, mission, tern):
 
 
 def test_viewers_read_it_and_others_organisations_do_not(client, mission):
-    assert client_of(somebody(Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/events").status_code == 200
-    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    assert client_of(a_user(Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/events").status_code == 200
+    stranger = client_of(a_user(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
     assert stranger.get(f"/api/v1/missions/{mission.pk}/events").status_code == 404
     assert stranger.get("/api/v1/live/events").json()["results"] == []
     assert Client().get(f"/api/v1/missions/{mission.pk}/events").status_code == 401

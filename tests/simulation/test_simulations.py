@@ -13,7 +13,7 @@ from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, ch
 from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
 from simulation.simulator.options import Options, options_of_settings
 from simulation.simulator.process import Simulator
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import world
 from tests.simulation.simulations import LONG_AGO, fresh, lose, pool, stand_ins, taken
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture

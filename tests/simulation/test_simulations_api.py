@@ -9,7 +9,7 @@ from django.test import Client
 
 from missions.models import CredentialKind, Uav, UavCredential
 from simulation.models import Simulation, SimulationChange
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.flights import approved, fleet
 from tests.missions.worlds import world
@@ -23,7 +23,7 @@ MOTOR = {"faults": {"motor_failed": 1}}
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture
@@ -60,9 +60,9 @@ def test_one_of_several_is_ended_and_is_over_then(client, person):
     shown = client.get(f"/api/v1/simulations/{simulation.pk}").json()
     assert [(vehicle["state"], vehicle["message"]) for vehicle in shown["vehicles"]] == [("ended", "Somebody ended it."), ("wanted", "")]
     assert error(patch(client, f"simulated-vehicles/{first.pk}", MOTOR), 409)["code"] == "simulation_over"
-    viewer = client_of(somebody(Role.VIEWER, person.organisation))
+    viewer = client_of(a_user(Role.VIEWER, person.organisation))
     assert viewer.delete(f"/api/v1/simulated-vehicles/{second.pk}").status_code == 403
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Others")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Others")))
     assert stranger.delete(f"/api/v1/simulated-vehicles/{second.pk}").status_code == 404
 
 
@@ -154,14 +154,14 @@ def test_a_key_that_is_made_is_shown_nowhere(client, person):
 def test_viewers_see_and_others_organisations_do_not(client, person):
     simulation = pool(person)
     vehicle = simulation.vehicles.first()
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert viewer.get(f"/api/v1/simulations/{simulation.pk}").status_code == 200
     assert len(viewer.get("/api/v1/simulations").json()["results"]) == 1
     assert error(post(viewer, "simulations", {"uavs": [{"position": HERE}]}), 403)
     assert error(patch(viewer, f"simulated-vehicles/{vehicle.pk}", MOTOR), 403)
     assert viewer.delete(f"/api/v1/simulations/{simulation.pk}").status_code == 403
 
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert stranger.get("/api/v1/simulations").json()["results"] == []
     for path in (f"simulations/{simulation.pk}", f"simulated-vehicles/{vehicle.pk}"):
         assert error(stranger.get(f"/api/v1/{path}"), 404)
@@ -171,6 +171,6 @@ def test_viewers_see_and_others_organisations_do_not(client, person):
 
 
 def test_without_the_demo_region_no_demo_missions_can_be_made() -> None:
-    administrator = client_of(somebody(role=Role.ADMINISTRATOR))
+    administrator = client_of(a_user(role=Role.ADMINISTRATOR))
     assert administrator.get("/api/v1/demo-data").json() == {"can_be_made": False, "job": None, "missions": 0, "uavs": 0}
     assert administrator.post("/api/v1/demo-data", "{}", content_type="application/json", HTTP_IDEMPOTENCY_KEY="1").status_code == 409

@@ -16,7 +16,7 @@ from missions.services.commands.dispatch import abort_mission, dispatch_mission
 from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.simulations import change_simulation, end_simulation
 from telemetry.models import Alert, AlertLevel, TelemetryRecord, UavLink, UavWatch
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, fleet, ground
 from tests.missions.worlds import world
 from tests.simulation.simulations import fresh, pool, stand_ins
@@ -54,7 +54,7 @@ def simulator_program(gateway_port: int, log_dir: Path, *, name: str = "test") -
 def mission(settings, tmp_path) -> Mission:
     settings.FLIGHT_LOG_DIR = tmp_path
     ground(tmp_path / "hill.tif", 100.0)
-    return approved(somebody(), fleet("Tern"), world().towers[:1])[0]
+    return approved(a_user(), fleet("Tern"), world().towers[:1])[0]
 
 
 def applied(command: UavCommand) -> None:
@@ -138,7 +138,7 @@ def test_a_missions_uav_is_lost_with_a_simulator_that_is_killed_in_mid_air(missi
 def test_a_uav_of_the_pool_is_reached_as_it_says_and_stands_there_anew_after_a_kill(settings, tmp_path):
     port = free_port()
     settings.SIMULATOR_PORTS = f"{port}-{port}"
-    simulation = pool(somebody(), 1)
+    simulation = pool(a_user(), 1)
     with simulator_program(free_port(), tmp_path) as first:
         assert received(port, "a heartbeat")
         first.kill()

@@ -25,7 +25,7 @@ from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.property_tests.random_flights import cut_out
 from tests.missions.property_tests.random_missions import put_random_zones
 from tests.simulation.flight_witness import things_hit, waypoints_missed, zones_entered
-from tests.simulation.rehearsals.rehearsed import loaded, skies
+from tests.simulation.rehearsals.rehearsed import loaded, scenarios
 
 pytestmark = [pytest.mark.django_db, pytest.mark.long]
 
@@ -66,8 +66,8 @@ def test_a_mission_past_towers_hits_and_misses_nothing(region_file: Any, file_na
     mission = create_mission(organisation=person.organisation, author=person, name="Real", request=request)
     mission = plan_mission(mission=mission, actor=person)
     plan, ground = plan_to_fly(loaded(mission)), planning_read().ground()
-    (sky,) = skies(mission, conditions)
-    maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
+    (scenario,) = scenarios(mission, conditions)
+    maker = vehicle_maker(plan.stand_ins, scenario, heights_at(ground.dataset_version))
     flown = fly(plan.routes, maker, turnaround_s=600.0, seed=5, on_progress=lambda share: None)
     verdict = judge(flown, surroundings_of(plan, ground), limits_of_settings())
     targets = [target for route in verdict.routes for target in route.targets]

@@ -5,7 +5,7 @@ from django.utils import timezone
 
 from missions.models import Approval, UavCommand
 from telemetry.models import UnknownVehicle
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import world
 from workspace.models import Role
@@ -27,7 +27,7 @@ def rows() -> dict[str, object]:
 
 
 def test_what_uavs_were_told_is_shown_and_not_changed(rows):
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     for path, key in rows.items():
         listed = client.get(f"/admin/{path}/")
         assert listed.status_code == 200, path
@@ -43,7 +43,7 @@ def test_what_uavs_were_told_is_shown_and_not_changed(rows):
 
 @pytest.mark.parametrize("role", [Role.OPERATOR, Role.VIEWER])
 def test_nobody_else_sees_it(role, rows):
-    client = client_of(somebody(role))
+    client = client_of(a_user(role))
     for path in rows:
         assert client.get(f"/admin/{path}/").status_code in (302, 403)
     assert client.get("/api/v1/unknown-vehicles").status_code == 403

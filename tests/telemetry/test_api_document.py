@@ -12,7 +12,7 @@ from django.utils import timezone
 
 from inspection.tasks import apply_proposal, read_proposal
 from missions.tasks import solve_plan
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.worlds import world
 from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
 from tests.workspace.live.proxied_site import Door
@@ -54,7 +54,7 @@ def run_here(task: str, *, args: list[str], retry: bool) -> None:
 
 def test_every_example_of_the_document_runs(live_server: Any, here: Door) -> None:
     world()
-    token = create_api_token(user=somebody(Role.ADMINISTRATOR), name="example", expires_at=timezone.now() + timedelta(hours=1))
+    token = create_api_token(user=a_user(Role.ADMINISTRATOR), name="example", expires_at=timezone.now() + timedelta(hours=1))
     assert list(examples()) == SECTIONS
     names: dict[str, Any] = {}
     with mock.patch("workspace.tasks.current_app.send_task", side_effect=run_here):

@@ -10,7 +10,7 @@ from missions.models import Mission, Uav
 from telemetry.models import PositionEstimate
 from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.services import retention, store_records
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import START, at, record
 from workspace.models import Organisation, Role
@@ -30,7 +30,7 @@ def estimated(uav: Uav, mission: Mission | None, second: float, **values: Any) -
 
 
 def listed(mission: Mission, query: str = "", role: Role = Role.VIEWER) -> dict[str, Any]:
-    answer = client_of(somebody(role)).get(f"/api/v1/missions/{mission.pk}/estimates?{query}")
+    answer = client_of(a_user(role)).get(f"/api/v1/missions/{mission.pk}/estimates?{query}")
     assert answer.status_code == 200, answer.content
     return answer.json()
 
@@ -42,7 +42,7 @@ def test_estimates_are_listed_in_their_order_page_by_page(mission):
     estimated(tern, mission, 1.0, replaced_at=at(3))
     estimated(kite, None, 9.0)
     first = listed(mission, "limit=3")
-    rest = client_of(somebody(Role.VIEWER)).get(first["next"]).json()
+    rest = client_of(a_user(Role.VIEWER)).get(first["next"]).json()
     moments = [feature["properties"]["estimated_for"] for page in (first, rest) for feature in page["features"]]
     assert moments == sorted(moments)
     assert len(moments) == 5
@@ -62,12 +62,12 @@ def test_estimates_can_be_chosen_by_uav_time_and_what_became_of_them(mission):
     assert len(listed(mission, "replaced=true")["features"]) == 1
     assert len(listed(mission, "replaced=false")["features"]) == 4
     assert len(listed(mission, "from=2026-11-22T12:00:01Z&to=2026-11-22T12:00:03Z")["features"]) == 3
-    assert client_of(somebody()).get(f"/api/v1/missions/{mission.pk}/estimates?replaced=no").status_code == 400
+    assert client_of(a_user()).get(f"/api/v1/missions/{mission.pk}/estimates?replaced=no").status_code == 400
 
 
 def test_of_another_organisation_nothing_is_told(mission):
     estimated(a_uav("Kite"), mission, 1.0)
-    stranger = somebody(Role.VIEWER, Organisation.objects.create(name="Others"))
+    stranger = a_user(Role.VIEWER, Organisation.objects.create(name="Others"))
     assert client_of(stranger).get(f"/api/v1/missions/{mission.pk}/estimates").status_code == 404
 
 

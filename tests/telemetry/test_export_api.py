@@ -12,7 +12,7 @@ from django.test import Client
 from missions.models import Mission, Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import record
 from workspace.models import Role
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 @pytest.fixture

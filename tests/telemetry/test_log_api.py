@@ -14,7 +14,7 @@ from missions.models import Mission, Uav
 from telemetry.models import FlightLog, TelemetryRecord, VehicleText
 from telemetry.selectors.log import LogFilter, latest_record, records_that_match
 from telemetry.services import store_records
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import START, at, record
 from workspace.models import Organisation, Role
@@ -26,7 +26,7 @@ DAY = "from=2026-11-22T00:00:00Z"
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 @pytest.fixture
@@ -154,7 +154,7 @@ def test_a_clock_that_is_a_little_off_changes_nothing(client: Client, kite: Uav)
 
 
 def test_another_organisations_log_is_not_there(kite: Uav) -> None:
-    stranger = client_of(somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere")))
     flown(kite, 3)
     mission = Mission.objects.create(name="Bexley")
     TelemetryRecord.objects.update(mission=mission)

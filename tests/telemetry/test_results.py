@@ -12,7 +12,7 @@ from inspection.models import AssetReference
 from missions.models import InspectionTarget, Mission, TargetState, Uav
 from missions.services.commands.flight_progress import mark_started
 from telemetry.models import InspectionResult, TelemetryStream
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
 from workspace.models import Organisation, Role, User
@@ -33,7 +33,7 @@ def person() -> User:
 
 @pytest.fixture
 def client(person: User) -> Client:
-    return client_of(somebody(Role.VIEWER, person.organisation))
+    return client_of(a_user(Role.VIEWER, person.organisation))
 
 
 @pytest.fixture
@@ -131,7 +131,7 @@ def test_nobody_reads_results_or_ids_of_another_organisation(client: Client, mis
     settle(mission, 0, NOON)
     assert results(client)[0]["asset"]["external_id"] == ""
     assert places(client, external_id="theirs") == []
-    assert results(client_of(somebody(Role.VIEWER, other))) == []
+    assert results(client_of(a_user(Role.VIEWER, other))) == []
 
 
 def test_results_of_a_deleted_mission_are_gone(client: Client, mission: Mission) -> None:

@@ -7,7 +7,7 @@ import pytest
 from django.db import connection
 from django.test import Client
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -20,7 +20,7 @@ API = ["/api/v1/missions", "/api/v1/uavs", "/api/v1/assets", "/api/v1/zones", "/
 @pytest.fixture
 def signed_in(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Client]:
     """An administrator whose session is there, as the database is not any more."""
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     with monkeypatch.context() as away:
         connection.close()
         away.setitem(connection.settings_dict, "HOST", str(tmp_path))

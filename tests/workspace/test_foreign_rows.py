@@ -32,7 +32,7 @@ from missions.models import (
 from simulation.models import Rehearsal
 from simulation.vehicle_models import SimulatedVehicle, Simulation
 from telemetry.models import Alert, AlertLevel, FlightLog
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
 from tests.workspace.sessions.test_roles import SAFE, stand_in
@@ -54,7 +54,7 @@ OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.br
 
 def rows_of(home: Organisation) -> dict[str, Model]:
     """One of everything that an address can name."""
-    keeper = somebody(Role.ADMINISTRATOR, home)
+    keeper = a_user(Role.ADMINISTRATOR, home)
     at = Point(*UAV_AT, srid=4326)
     soon = timezone.now() + timedelta(hours=1)
     uav = a_uav("Tern", home)
@@ -130,7 +130,7 @@ def test_what_each_address_names_is_in_the_table() -> None:
 def test_rows_of_another_organisation_are_answered_like_rows_that_are_nowhere(role: Role) -> None:
     home, elsewhere = Organisation.objects.create(name="Home"), Organisation.objects.create(name="Elsewhere")
     rows = rows_of(home)
-    client = client_of(somebody(role, elsewhere))
+    client = client_of(a_user(role, elsewhere))
     before = everything(elsewhere)
     asked = 0
     for method, path, kinds in operations():
@@ -160,7 +160,7 @@ def answer(client: Client, method: str, path: str, values: Sequence[Any]) -> tup
 def test_the_same_rows_are_there_for_their_own() -> None:
     home = Organisation.objects.create(name="Home")
     rows = rows_of(home)
-    client = client_of(somebody(Role.ADMINISTRATOR, home))
+    client = client_of(a_user(Role.ADMINISTRATOR, home))
     for name, address in {
         "mission_id": "missions/{}", "uav_id": "uavs/{}", "base_id": "bases/{}", "type_id": "uav-types/{}", "command_id": "commands/{}",
         "selection_id": "selections/{}", "alert_id": "alerts/{}", "offer_id": "replan-offers/{}", "job_id": "jobs/{}",

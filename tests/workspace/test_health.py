@@ -10,7 +10,7 @@ from django.db.migrations.recorder import MigrationRecorder
 from django.test import Client, override_settings
 
 from inspection.models import Asset, GraphSnapshot
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 
 DEAD_REDIS = {"default": {"BACKEND": "django.core.cache.backends.redis.RedisCache", "LOCATION": "unix:///nonexistent/redis.sock"}}
 pytestmark = pytest.mark.django_db
@@ -76,7 +76,7 @@ def test_not_ready_without_the_database(monkeypatch: pytest.MonkeyPatch) -> None
 @pytest.mark.usefixtures("ground")
 @pytest.mark.urls("tests.workspace.api.echo_urls")
 def test_without_redis_the_api_goes_on_and_ready_says_so() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     with override_settings(CACHES=DEAD_REDIS):
         assert ready() == (503, {"ready": False, "reasons": ["Redis cannot be reached"]})
         assert Client().get("/healthz").status_code == 200

@@ -21,7 +21,7 @@ from config.environment import log_settings
 from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
 from operation.redaction import without_secrets
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 from workspace.api_tokens import create_api_token
 from workspace.models import Role, User
@@ -119,7 +119,7 @@ def _a_day() -> dict[str, str]:
     assert kite.report(report()).status_code == 200
     Client().post(f"{LINK}/telemetry", "{}", content_type="application/json", headers={"Authorization": "Bearer spu_wrong-but-secret"})
     secrets["wrong token of a UAV"] = "spu_wrong-but-secret"
-    operator = client_of(somebody(Role.OPERATOR))
+    operator = client_of(a_user(Role.OPERATOR))
     made = operator.post(f"/api/v1/uavs/{kite.uav.pk}/credentials", {"kind": "mavlink-key"}, content_type="application/json")
     secrets["signing key"] = made.json()["secret"]
     return secrets
@@ -177,7 +177,7 @@ def test_a_line_names_what_the_work_is_about(logs: dict[str, io.StringIO]) -> No
 @override_settings(LOG_REQUESTS=True)
 def test_a_request_has_an_id_that_its_lines_and_its_answer_name(logs: dict[str, io.StringIO]) -> None:
     mission = "00000000-0000-4000-8000-000000000000"
-    answer = client_of(somebody()).get(f"/api/v1/missions/{mission}", headers={"X-Request-ID": "from-the-proxy-1"})
+    answer = client_of(a_user()).get(f"/api/v1/missions/{mission}", headers={"X-Request-ID": "from-the-proxy-1"})
     assert answer["X-Request-ID"] == "from-the-proxy-1"
     reported = [line for line in lines(logs) if line["logger"] == "spanwise.request"]
     assert [(line["request"], line["mission"]) for line in reported] == [("from-the-proxy-1", mission)]
@@ -187,7 +187,7 @@ def test_a_request_has_an_id_that_its_lines_and_its_answer_name(logs: dict[str, 
 
 @pytest.mark.django_db
 def test_who_is_refused_is_told_by_number_whatever_they_came_with(logs: dict[str, io.StringIO]) -> None:
-    viewer = somebody(Role.VIEWER)
+    viewer = a_user(Role.VIEWER)
     token = create_api_token(user=viewer, name="ci", expires_at=timezone.now() + timedelta(days=1))
     assert client_of(viewer).post("/api/v1/missions", {}, content_type="application/json").status_code == 403
     answer = Client().post("/api/v1/missions", {}, content_type="application/json", headers={"Authorization": f"Bearer {token}"})

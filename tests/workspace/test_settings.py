@@ -11,7 +11,7 @@ from django.conf import settings
 from django.test import override_settings
 
 from config.private_servers import broker_url
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 
 
 @pytest.mark.parametrize(
@@ -39,7 +39,7 @@ def test_celery_and_the_cache_use_the_same_database_of_the_same_redis() -> None:
 @pytest.mark.django_db
 def test_a_session_of_the_key_before_holds_while_that_key_is_named() -> None:
     with override_settings(SECRET_KEY="the-key-of-before", SECRET_KEY_FALLBACKS=[]):
-        client = client_of(somebody())
+        client = client_of(a_user())
         assert client.get("/account").status_code == 200
     with override_settings(SECRET_KEY="the-key-of-today", SECRET_KEY_FALLBACKS=["the-key-of-before"]):
         assert client.get("/account").status_code == 200

@@ -18,8 +18,8 @@ def label_of(words: str) -> str:
     """Return "altitude AGL [m]" of "altitude agl m"."""
     *rest, last = words.split(" ")
     unit = UNITS.get(last) if rest else None
-    spoken = [ABBREVIATIONS.get(word.lower(), word) for word in (rest if unit else [*rest, last])]
-    return " ".join([*spoken, f"[{unit}]"] if unit else spoken)
+    words_shown = [ABBREVIATIONS.get(word.lower(), word) for word in (rest if unit else [*rest, last])]
+    return " ".join([*words_shown, f"[{unit}]"] if unit else words_shown)
 
 
 def label(models: Iterable[type[Model]]) -> None:

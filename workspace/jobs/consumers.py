@@ -56,7 +56,7 @@ class JobConsumer(SignedInSocket):
     async def _follow(self, user: User) -> None:
         loop = asyncio.get_running_loop()
         seen: Any = None
-        spoken_s = checked_s = loop.time()
+        answered_s = checked_s = loop.time()
         while True:
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 if loop.time() - checked_s >= CHECK_PERSON_INTERVAL_S:
@@ -74,12 +74,12 @@ class JobConsumer(SignedInSocket):
                     except Job.DoesNotExist:
                         return self.hang_up(ENDED)
                     await self.send(message)
-                    seen, spoken_s = version, loop.time()
+                    seen, answered_s = version, loop.time()
                     if not is_open:
                         return self.hang_up(ENDED)
-            if loop.time() - spoken_s >= KEEPALIVE_INTERVAL_S:
+            if loop.time() - answered_s >= KEEPALIVE_INTERVAL_S:
                 await self.send('{"type":"still-there"}')
-                spoken_s = loop.time()
+                answered_s = loop.time()
             if await wait_for_event(self._has_message, POLL_INTERVAL_S):
                 await asyncio.sleep(MESSAGE_INTERVAL_S)
             self._has_message.clear()

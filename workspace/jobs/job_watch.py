@@ -14,7 +14,7 @@ from typing import Any
 
 from django.db import DatabaseError, connection, connections
 
-from workspace.jobs.services import JobCancelled, JobLost, give_back_job, report_progress
+from workspace.jobs.services import JobCancelled, JobLost, release_job, report_progress
 from workspace.models import Job
 
 logger = logging.getLogger(__name__)
@@ -58,7 +58,7 @@ class JobWatch:
     def _give_back(self) -> None:
         """The worker ends before the work does. Without a database the lease runs out by itself."""
         try:
-            give_back_job(job=self.job)
+            release_job(job=self.job)
         except DatabaseError as error:
             logger.warning("job %s is not given back: %r", self.job.pk, error)
 

@@ -11,44 +11,44 @@ from typing import TypeVar
 
 TIMEOUT_S = 0.25  # a turn is a courtesy: who waits longer, as behind a plan of many targets, goes on without
 _Found = TypeVar("_Found")
-_turn = Lock()
-_mine = local()  # of each thread: `has_turn`
+_lock = Lock()
+_mine = local()  # of each thread: `is_held`
 
 
 @contextmanager
-def in_turn() -> Iterator[bool]:
+def hold_planning_lock() -> Iterator[bool]:
     """Whether the turn was had when it began; nested ones are the same turn."""
-    if _has_turn():
+    if _is_held():
         yield True
         return
     _take()
     try:
-        yield _has_turn()
+        yield _is_held()
     finally:
-        end_turn()
+        release_planning_lock()
 
 
-def waiting(ask: Callable[..., _Found], *asked: object) -> _Found:
+def without_planning_lock(ask: Callable[..., _Found], *asked: object) -> _Found:
     """What `ask` finds; this thread's turn, if it has one, is meanwhile another's."""
-    if not _has_turn():
+    if not _is_held():
         return ask(*asked)
-    end_turn()
+    release_planning_lock()
     try:
         return ask(*asked)
     finally:
         _take()
 
 
-def end_turn() -> None:
+def release_planning_lock() -> None:
     """Give this thread's turn up, if it has one, before its block is over: whatever comes next waits for nobody."""
-    if _has_turn():
-        _mine.has_turn = False
-        _turn.release()
+    if _is_held():
+        _mine.is_held = False
+        _lock.release()
 
 
-def _has_turn() -> bool:
-    return getattr(_mine, "has_turn", False)
+def _is_held() -> bool:
+    return getattr(_mine, "is_held", False)
 
 
 def _take() -> None:
-    _mine.has_turn = _turn.acquire(timeout=TIMEOUT_S)
+    _mine.is_held = _lock.acquire(timeout=TIMEOUT_S)

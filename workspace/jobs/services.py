@@ -102,7 +102,7 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
     publish_job(job.pk)
 
 
-def give_back_job(*, job: Job) -> bool:
+def release_job(*, job: Job) -> bool:
     """The worker is told to stop: whoever gets the job's message next goes on with it at once, without waiting for the lease to run out."""
     return bool(release(_held(job), after_s=LEASE_S, state=JobState.QUEUED))
 

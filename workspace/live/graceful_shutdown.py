@@ -20,7 +20,7 @@ class Socket(Protocol):
     def hang_up(self, code: int) -> None: ...
 
 
-class Farewell:
+class GracefulShutdown:
     """Of one event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, *, spread_s: float = SPREAD_S) -> None:
@@ -59,12 +59,12 @@ class Farewell:
         os.kill(os.getpid(), signal.SIGINT)
 
 
-_farewells: WeakKeyDictionary[asyncio.AbstractEventLoop, Farewell] = WeakKeyDictionary()
+_shutdowns: WeakKeyDictionary[asyncio.AbstractEventLoop, GracefulShutdown] = WeakKeyDictionary()
 
 
-def farewell_here() -> Farewell:
+def shutdown_here() -> GracefulShutdown:
     """That of the running event loop."""
     loop = asyncio.get_running_loop()
-    if loop not in _farewells:
-        _farewells[loop] = Farewell(loop)
-    return _farewells[loop]
+    if loop not in _shutdowns:
+        _shutdowns[loop] = GracefulShutdown(loop)
+    return _shutdowns[loop]

@@ -27,7 +27,7 @@ class PreferencesMiddleware:
         self.get_response = get_response
 
     def __call__(self, request: HttpRequest) -> HttpResponse:
-        user = _whoever_has_signed_in(request)
+        user = _signed_in_user(request)
         own_language = user.language if user else ""
         zone = user.time_zone if user and not request.path.startswith("/api/") else ""
         with (
@@ -42,7 +42,7 @@ class PreferencesMiddleware:
         return response
 
 
-def _whoever_has_signed_in(request: HttpRequest) -> User | None:
+def _signed_in_user(request: HttpRequest) -> User | None:
     if settings.SESSION_COOKIE_NAME not in request.COOKIES or not isinstance(request.user, User):
         return None
     is_read = request.method in SAFE_METHODS

@@ -76,19 +76,19 @@ def network_of(address: str) -> str:
     return str(ipaddress.ip_network((found, NETWORK_BITS_OF_IPV6), strict=False).network_address)
 
 
-def try_to_sign_in(*, name: str, address: str, known_browser: str | None) -> Try:
-    """Count a try. `known_browser` is the mark of a browser in which this name has signed in before. Raises HeldBack."""
+def try_to_sign_in(*, name: str, address: str, trusted_device: str | None) -> Try:
+    """Count a try. `trusted_device` is the mark of a browser in which this name has signed in before. Raises HeldBack."""
     network = network_of(address)
     try:
-        return _try(cache, name, network, known_browser)
+        return _try(cache, name, network, trusted_device)
     except (*CACHE_UNAVAILABLE, ValueError):
         logger.warning("wrong sign-ins are counted by this process alone: the cache is away")
-        return _try(_of_process, name, network, known_browser)
+        return _try(_of_process, name, network, trusted_device)
 
 
-def _try(counts: BaseCache, name: str, network: str, known_browser: str | None) -> Try:
-    if known_browser:
-        own = _key("browser", name, known_browser)
+def _try(counts: BaseCache, name: str, network: str, trusted_device: str | None) -> Try:
+    if trusted_device:
+        own = _key("browser", name, trusted_device)
         return Try((own,), _count(counts, own, TRIES), counts)
     own, everybody = _key("pair", name, network), _key("name", name)
     left = _count(counts, own, TRIES)
@@ -100,7 +100,7 @@ def _try(counts: BaseCache, name: str, network: str, known_browser: str | None) 
     return Try((own, of_network, everybody), left, counts)
 
 
-def take_turn(purpose: str, *of_whom: str, most: int = TRIES) -> None:
+def count_attempt(purpose: str, *of_whom: str, most: int = TRIES) -> None:
     """Count something else that may be asked for only so often, such as mails to one address. Raises HeldBack."""
     key = _key(purpose, *of_whom)
     try:

@@ -54,7 +54,7 @@ class Site:
     towers: tuple[int, ...]
     box: tuple[float, float, float, float]
 
-    def people_who_are(self, role: str) -> list[str]:
+    def users_with_role(self, role: str) -> list[str]:
         return [person.name for person in self.people if person.role == role]
 
     @property

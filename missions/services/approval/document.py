@@ -14,7 +14,7 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset
-from inspection.selectors import ground_revision, terrain_edition
+from inspection.selectors import ground_revision, terrain_dataset_version
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from mavlink.approved_route import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
@@ -98,7 +98,7 @@ def approval_document(mission: Mission, *, longest_leg_m: float | None = None) -
         "ground": {
             "revision": ground_revision(),
             "graph_version": mission.graph_version,
-            "terrain": list(terrain_edition()),
+            "terrain": list(terrain_dataset_version()),
             "flat_ground_assumed": mission.flat_ground_assumed,
         },
         "conditions": conditions_to_json(conditions_from_json(mission.conditions)),

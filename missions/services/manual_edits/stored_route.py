@@ -7,7 +7,7 @@ from typing import NamedTuple
 from uuid import UUID
 
 from inspection.geodesy import LonLat
-from inspection.selectors.planning import Edition
+from inspection.selectors.planning import DatasetVersion
 from missions.models import Mission, Waypoint
 from missions.services.missions import request_of_mission
 from planning.problem import Task
@@ -55,10 +55,10 @@ class _ChangedMeanwhile(Exception):
     """The rows that were read may be of another revision."""
 
 
-def kept_route(mission: Mission, uav: int, edition: Edition) -> KeptRoute | None:
+def kept_route(mission: Mission, uav: int, dataset_version: DatasetVersion) -> KeptRoute | None:
     """Of one UAV, by its place in the mission; None where it flies none. Read once for each revision of the mission and of the ground."""
     try:
-        return _kept(mission.pk, mission.revision, uav, edition)
+        return _kept(mission.pk, mission.revision, uav, dataset_version)
     except _ChangedMeanwhile:
         return _read(mission, uav)
 
@@ -84,7 +84,7 @@ def kept_waypoints(rows: Iterable[Waypoint]) -> tuple[KeptWaypoint, ...]:
 
 
 @lru_cache(maxsize=MAX_KEPT)
-def _kept(mission_id: UUID, revision: int, uav: int, edition: Edition) -> KeptRoute | None:
+def _kept(mission_id: UUID, revision: int, uav: int, dataset_version: DatasetVersion) -> KeptRoute | None:
     mission = Mission.objects.get(pk=mission_id)
     found = _read(mission, uav)
     if Mission.objects.values_list("revision", flat=True).get(pk=mission_id) != revision or mission.revision != revision:

@@ -5,7 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
-import { proved } from "./proof.js";
+import { proved } from "./reauthentication.js";
 import { browserName } from "./sign_in_row.js";
 
 /** @import { Answer } from "../api.js" */

@@ -6,7 +6,7 @@ import { shownOnce } from "../page/shown_once.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { dayText, exactText, whenText } from "../units.js";
-import { proved } from "./proof.js";
+import { proved } from "./reauthentication.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { NewToken, Token, TokenList } from "../api_types.d.ts" */

@@ -5,10 +5,10 @@ import { startChrome } from "../page/chrome.js";
 import { notify, settle } from "../page/problem.js";
 import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
-import { mountPeople } from "./people.js";
 import { mountRules } from "./rules.js";
 import { mountServiceAccounts } from "./service_accounts.js";
 import { mountSignIns } from "./sign_ins.js";
+import { mountUsers } from "./users.js";
 
 /** @typedef {"people" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
 
@@ -16,7 +16,7 @@ import { mountSignIns } from "./sign_ins.js";
 const TABS = ["people", "invitations", "service-accounts", "sign-ins", "rules"];
 
 const lists = {
-  people: mountPeople({ notify, settle }),
+  people: mountUsers({ notify, settle }),
   invitations: mountInvitations({ notify, settle, show: () => showTab("invitations") }),
   "service-accounts": mountServiceAccounts({ notify, settle }),
   "sign-ins": mountSignIns({ notify }),

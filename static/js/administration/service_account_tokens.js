@@ -1,6 +1,6 @@
 /** The tokens of a service account, in a dialog: made with scopes and an end, shown once, revoked. */
 
-import { proved } from "../account/proof.js";
+import { proved } from "../account/reauthentication.js";
 import { SCOPES, tokenRow } from "../account/tokens.js";
 import { ApiError, get, post, remove } from "../api.js";
 import { h, icon } from "../dom.js";

@@ -1,6 +1,6 @@
 /** What a UAV proves itself with: one token and one key, made, replaced and revoked; a secret is shown once. */
 
-import { proved } from "../account/proof.js";
+import { proved } from "../account/reauthentication.js";
 import { ApiError, get, post, remove } from "../api.js";
 import { find, h, icon } from "../dom.js";
 import { announce, toast } from "../page/toast.js";

@@ -182,8 +182,9 @@ export function createTimeBar({ player, source, span: firstSpan, eventWords }) {
     const happened = source.events.findLast((one) => one.at_ms <= at_ms && at_ms - one.at_ms < near_ms);
     const summary = happened ? eventWords(happened) : "";
     write(event, summary);
-    const spoken = [words, summary].filter(Boolean).join(", ");
-    if (!isPlaying && slider.getAttribute("aria-valuetext") !== spoken) slider.setAttribute("aria-valuetext", spoken);
+    const valueText = [words, summary].filter(Boolean).join(", ");
+    if (!isPlaying && slider.getAttribute("aria-valuetext") !== valueText)
+      slider.setAttribute("aria-valuetext", valueText);
     for (const input of speeds) input.checked = Number(input.value) === speed;
   }
 

@@ -17,7 +17,7 @@ from telemetry.alerting.state_machine import Closed, Opened, changes
 from telemetry.alerting.surroundings import LinkFacts, NearZone, OnboardState
 from telemetry.selectors.alert_facts import (
     Loaded,
-    closed_by_people,
+    closed_by_users,
     estimated_by_other_watches,
     links_of,
     orders_to,
@@ -96,7 +96,7 @@ def _end_flights(situations: Iterable[DetectorInput]) -> None:
 def _with_accounts(situations: list[DetectorInput]) -> list[DetectorInput]:
     """A UAV that still lies where somebody knows of it is not reported again."""
     pairs = [(inputs.uav.uav_id, inputs.uav.mission_id) for inputs in situations if down.is_down_away(inputs)]
-    known = closed_by_people(pairs, down.CODE) if pairs else set()
+    known = closed_by_users(pairs, down.CODE) if pairs else set()
     return [
         replace(inputs, is_accounted_for=(inputs.uav.uav_id, inputs.uav.mission_id, str(inputs.uav.flight)) in known)
         for inputs in situations

@@ -66,7 +66,7 @@ def test_a_fact_is_corrected_told_in_the_history_and_brought_back(visitor: Visit
     expect(page.get_by_label("Find", exact=True)).to_be_visible()
 
 
-def somebody_says(page: Page, asset: str, **facts: object) -> None:
+def a_user_writes(page: Page, asset: str, **facts: object) -> None:
     """Another change of the asset, past this page."""
     change = """async ([path, facts]) => {
         const api = await import("/static/js/api.js");
@@ -80,7 +80,7 @@ def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visit
     finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
-    somebody_says(page, asset, operator="Theirs")
+    a_user_writes(page, asset, operator="Theirs")
     page.get_by_label("Operator").fill("Mine")
     page.get_by_role("button", name="Save").click()
     dialog = page.get_by_role("dialog")
@@ -96,7 +96,7 @@ def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor
     finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
-    somebody_says(page, asset, operator="Theirs", name="Their name")
+    a_user_writes(page, asset, operator="Theirs", name="Their name")
     page.get_by_label("Operator").fill("Mine")
     page.get_by_role("button", name="Save").click()
     dialog = page.get_by_role("dialog")

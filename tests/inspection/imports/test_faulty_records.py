@@ -10,7 +10,7 @@ from inspection.services import import_zones
 from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.imports.zone_sets import zone_file
 from workspace.models import Role, User
 
@@ -31,7 +31,7 @@ def broken(border: str) -> str:
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 def proposed(path: Path, curator: User, **parameters: Any) -> ImportProposal:

@@ -13,7 +13,7 @@ from inspection.services import AssetFileError, import_assets
 from inspection.services.curation import save_asset_reference
 from inspection.services.imports.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.assets.made_files import geojson, line, point
 from workspace.api.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import AuditEntry, Organisation, Role, User
@@ -25,7 +25,7 @@ Ids = dict[str, str]
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 def bring_in(folder: Path, ids: Ids, *, actor: User | None = None, name: str = "masts", parameters: dict[str, Any] = COLUMNS) -> DataImport:
@@ -85,7 +85,7 @@ def test_an_id_that_an_asset_outside_the_set_has_refuses_the_file(tmp_path: Path
 
 def test_ids_of_other_organisations_stand_beside_it(tmp_path: Path, curator: User) -> None:
     bring_in(tmp_path, {"a": "SAP-1"}, actor=curator)
-    other = somebody(Role.CURATOR, organisation=Organisation.objects.create(name="Others"))
+    other = a_user(Role.CURATOR, organisation=Organisation.objects.create(name="Others"))
     bring_in(tmp_path, {"a": "SAP-1", "b": "SAP-2"}, actor=other)
     assert ids_of() == {"a": "SAP-1"}
     assert ids_of(other.organisation_id) == {"a": "SAP-1", "b": "SAP-2"}
@@ -110,7 +110,7 @@ def test_a_line_in_several_parts_has_its_id_once(tmp_path: Path) -> None:
 
 
 def test_by_the_api_they_are_those_of_whoever_sent_the_file(tmp_path: Path, curator: User) -> None:
-    sender = somebody(Role.CURATOR, organisation=Organisation.objects.create(name="Others"))
+    sender = a_user(Role.CURATOR, organisation=Organisation.objects.create(name="Others"))
     rows = [({"id": "a", "sap": "SAP-1"}, point(8.0, 47.0))]
     content = geojson(tmp_path / "masts.geojson", *rows).read_bytes()
     upload = store_upload(file_name="masts.geojson", chunks=[content], created_by=None)
@@ -131,7 +131,7 @@ def test_other_organisations_see_the_column_without_its_ids(tmp_path: Path, cura
     body = {"kind": "assets", "upload": str(upload.pk), "parameters": COLUMNS}
     made = client_of(curator).post("/api/v1/imports", body, content_type="application/json").json()
     read_proposal(made["job"]["id"])
-    stranger = client_of(somebody(Role.CURATOR, organisation=Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(Role.CURATOR, organisation=Organisation.objects.create(name="Other")))
     own, foreign = (reader.get(f"/api/v1/imports/{made['id']}") for reader in (client_of(curator), stranger))
     assert b"SAP-1" in own.content
     assert foreign.status_code == 200

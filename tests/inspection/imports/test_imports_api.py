@@ -15,7 +15,7 @@ from inspection.services import save_zone
 from inspection.services.imports.uploads import store_upload
 from inspection.services.proposals import pipeline
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.jobs.services import MAX_ATTEMPTS, requeue_lost_jobs, start_job
 from workspace.models import AuditEntry, Job, JobState, Role, User
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -152,7 +152,7 @@ def _multipolygon() -> str:
 def test_of_two_curators_who_apply_one_wins_and_the_other_hears_who(client: Client, curator: User) -> None:
     ready = read(client, propose(client, zone_file(("A", 9.0))))
     assert post(client, ready, "apply").status_code == 202
-    late = post(client_of(somebody(Role.CURATOR)), ready, "discard")
+    late = post(client_of(a_user(Role.CURATOR)), ready, "discard")
     assert late.status_code == 409
     assert late.json()["error"]["details"]["decided_by"] == curator.username
 
@@ -241,7 +241,7 @@ def test_a_set_is_rolled_back_as_a_difference_like_any_other(client: Client, cur
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
 def test_only_curators_bring_data_in(role: Role) -> None:
-    other = client_of(somebody(role))
+    other = client_of(a_user(role))
     assert other.get("/api/v1/imports").status_code == 403
     assert other.post("/api/v1/imports", {"kind": "zones"}, content_type="application/json").status_code == 403
 

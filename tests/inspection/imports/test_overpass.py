@@ -11,7 +11,7 @@ from inspection.importers.osm.overpass import WrongArea, area_km2, checked_box, 
 from inspection.models import Asset, DataImport
 from inspection.services.imports import overpass
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.workspace.loopback import Server, body, serving
 from workspace.models import Role
 
@@ -34,7 +34,7 @@ def server(settings: Any) -> Iterator[Server]:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.CURATOR))
+    return client_of(a_user(Role.CURATOR))
 
 
 def ask(client: Client, box: Any = BOX) -> Any:

@@ -18,7 +18,7 @@ from inspection.services.imports.uploads import (
     upload_as_file,
     upload_folder,
 )
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.CURATOR))
+    return client_of(a_user(Role.CURATOR))
 
 
 def begin(client: Client, size_bytes: int, file_name: str = "zones.json"):
@@ -40,10 +40,10 @@ def send(client: Client, upload: str, first_byte: int, content: bytes):
 def test_files_of_one_organisation_take_no_more_room_than_they_may(client: Client, settings: Any) -> None:
     settings.UPLOADS_BYTES = 1_000
     first = begin(client, 600).json()["id"]
-    refused = begin(client_of(somebody(Role.CURATOR)), 401)
+    refused = begin(client_of(a_user(Role.CURATOR)), 401)
     assert (refused.status_code, refused.json()["error"]["code"]) == (409, "too_many_uploads")
     assert begin(client, 400).status_code == 201
-    other = client_of(somebody(Role.CURATOR, Organisation.objects.create(name="Other")))
+    other = client_of(a_user(Role.CURATOR, Organisation.objects.create(name="Other")))
     assert begin(other, 1_000).status_code == 201
     assert client.delete(f"/api/v1/uploads/{first}").status_code == 204
     assert begin(client, 600).status_code == 201
@@ -99,7 +99,7 @@ def test_a_file_over_the_limit_is_refused_before_a_byte_is_sent(client: Client, 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
 def test_only_curators_send_files(client: Client, role: Role) -> None:
     upload = begin(client, 5).json()["id"]
-    other = client_of(somebody(role))
+    other = client_of(a_user(role))
     assert begin(other, 5).status_code == 403
     assert send(other, upload, 0, b"01234").status_code == 403
     assert other.get(f"/api/v1/uploads/{upload}").status_code == 403

@@ -15,7 +15,7 @@ from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import FileRefused, Provenance
 from inspection.services.proposals.zones import apply, read
 from inspection.tasks import apply_proposal, read_proposal
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.inspection.imports.zone_sets import zone_file
 from workspace.models import AuditEntry, Role, User
 
@@ -138,7 +138,7 @@ def test_changes_and_removals_are_in_the_history_with_before_and_after(tmp_path:
 
 
 def test_what_was_looked_at_for_one_set_is_not_applied_to_another_one(tmp_path: Path) -> None:
-    curator = somebody(Role.CURATOR)
+    curator = a_user(Role.CURATOR)
     import_zones(path=written(tmp_path, ("A", 9.0), ("B", 9.2)))
     proposal = proposed(zone_file(("C", 9.1)), curator, set_name="New")
     assert proposal.difference["vanished"] == 0
@@ -152,7 +152,7 @@ def test_what_was_looked_at_for_one_set_is_not_applied_to_another_one(tmp_path: 
 @pytest.mark.django_db(transaction=True)
 def test_a_zone_that_is_edited_while_a_file_waits_for_the_ground_is_not_overwritten(tmp_path: Path) -> None:
     """Cora edits in an open transaction; Carl applies, waits for her, and finds that what he looked at no longer holds."""
-    cora, carl = somebody(Role.CURATOR), somebody(Role.CURATOR)
+    cora, carl = a_user(Role.CURATOR), a_user(Role.CURATOR)
     import_zones(path=written(tmp_path, ("A", 9.0), ("B", 9.2)))
     proposal = proposed(zone_file(("A", 9.05), ("B", 9.25)), carl)
     pipeline.ask_to_apply(proposal=proposal, parameters={}, actor=carl)
@@ -175,7 +175,7 @@ def test_a_zone_that_is_edited_while_a_file_waits_for_the_ground_is_not_overwrit
 @pytest.mark.django_db(transaction=True)
 def test_two_files_for_one_set_are_applied_one_after_the_other_and_the_second_is_looked_at_again(tmp_path: Path, settings: Any) -> None:
     settings.DATA_WORKERS = 3  # both jobs of the organisation run at once
-    cora, carl = somebody(Role.CURATOR), somebody(Role.CURATOR)
+    cora, carl = a_user(Role.CURATOR), a_user(Role.CURATOR)
     import_zones(path=written(tmp_path, ("A", 9.0)))
     proposals = [proposed(zone_file(("A", 9.05)), cora), proposed(zone_file(("A", 9.1)), carl)]
     for proposal, actor in zip(proposals, (cora, carl), strict=True):

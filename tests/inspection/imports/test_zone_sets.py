@@ -13,7 +13,7 @@ from django.utils import timezone
 from inspection.models import DataImport, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.selectors import ground_revision
 from inspection.services import save_zone
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, serving
 from workspace.models import AuditEntry, Role, User
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -46,7 +46,7 @@ def test_a_set_states_its_source_and_its_numbers(client: Client, curator: User, 
     zone = NoFlyZone.objects.get(name="A")
     zone.reason = "Checked on site"
     save_zone(zone=zone, actor=curator)
-    [listed] = client_of(somebody(Role.VIEWER)).get(SETS).json()["results"]
+    [listed] = client_of(a_user(Role.VIEWER)).get(SETS).json()["results"]
     assert (listed["name"], listed["zone_count"], listed["edited_count"], listed["version_count"]) == ("Works", 2, 1, 1)
     source = listed["source"]
     assert (source["file_name"], source["licence"], source["attribution"]) == ("Works.geojson", "CC BY 4.0", "The office")

@@ -18,7 +18,7 @@ from inspection.services.imports import subscriptions
 from inspection.services.imports.subscriptions import start_due_fetches
 from inspection.services.imports.uploads import upload_folder
 from inspection.tasks import fetch_due_subscriptions, fetch_subscription
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.imports.zone_sets import SETS, SUBSCRIPTIONS, applied, names, post, read, stored, subscribed, zone_file
 from tests.workspace.loopback import Server, body, serving
 from workspace.http_client import Fetched, fetch
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def curator() -> User:
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 @pytest.fixture
@@ -276,7 +276,7 @@ def test_a_zone_that_was_deleted_by_hand_is_proposed_on_demand_as_new(
 def test_everybody_reads_and_only_curators_change(role: Role, client: Client, source: Server, tmp_path: Path) -> None:
     stored(tmp_path, ("A", 9.0))
     subscription, key = subscribed(client, source)["id"], ZoneSet.objects.get().pk
-    other = client_of(somebody(role))
+    other = client_of(a_user(role))
     for address in (SETS, f"{SETS}/{key}", f"{SETS}/{key}/versions", SUBSCRIPTIONS, f"{SUBSCRIPTIONS}/{subscription}"):
         assert other.get(address).status_code == 200
     assert other.delete(f"{SETS}/{key}").status_code == 403

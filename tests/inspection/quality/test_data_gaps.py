@@ -16,7 +16,7 @@ from inspection.services.gaps import SEARCH_LOCK, dismiss_gap, gaps_are_current
 from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.tasks import find_gaps as find_gaps_task
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.cases import long
 from tests.inspection.ground import bridge, line, tower
 from workspace.models import AuditEntry, Role
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def curator():
-    return somebody(Role.CURATOR)
+    return a_user(Role.CURATOR)
 
 
 def counts(state=GapState.OPEN):
@@ -235,7 +235,7 @@ def test_of_two_curators_the_second_is_told(curator):
     gap = DataGap.objects.get(kind="long_span")
     mend(gap, curator)
     with pytest.raises(CannotRepair, match="Somebody has decided"):
-        repair_gap(gap=gap, action="place_towers", parameters={}, actor=somebody(Role.CURATOR))
+        repair_gap(gap=gap, action="place_towers", parameters={}, actor=a_user(Role.CURATOR))
 
 
 def test_ends_that_miss_each_other_are_joined(curator):

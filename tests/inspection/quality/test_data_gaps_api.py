@@ -4,7 +4,7 @@ import pytest
 
 from inspection.models import Asset, DataGap
 from inspection.services import find_gaps
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line, tower
 from workspace.models import Role
 
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client():
-    return client_of(somebody(Role.CURATOR))
+    return client_of(a_user(Role.CURATOR))
 
 
 @pytest.fixture
@@ -130,7 +130,7 @@ def test_a_repair_that_does_not_fit_is_refused(client, gap, body, status):
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
 @pytest.mark.parametrize("door", ["repair", "dismiss", "reopen", "undo"])
 def test_who_is_no_curator_may_only_read(gap, role, door):
-    client = client_of(somebody(role))
+    client = client_of(a_user(role))
     assert kinds(client)
     assert post(client, gap, door, {"action": "place_towers", "entries": [1]}).status_code == 403
     assert DataGap.objects.get(pk=gap.pk).state == "open"

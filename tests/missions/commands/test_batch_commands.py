@@ -14,7 +14,7 @@ from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.steering import command_uav, mission_in_hand
 from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import BELIEVED_FOR
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
@@ -31,7 +31,7 @@ def here() -> World:
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture
@@ -231,7 +231,7 @@ def test_another_organisations_missions_and_uavs_are_not_reached(two: Any, perso
     flies(foreign)
     (one,) = post(client, f"missions/{south.pk}/commands", {"kind": "return", "uavs": [foreign.pk]}).json()["results"]
     assert (one["name"], one["is_accepted"], one["reasons"][0]["code"]) == ("", False, "not_in_mission")
-    stranger = client_of(somebody(organisation=strangers))
+    stranger = client_of(a_user(organisation=strangers))
     assert post(stranger, f"missions/{north.pk}/commands", {"kind": "return"}).status_code == 404
     scopes = [{"mission": str(north.pk)}]
     assert post(stranger, "missions/commands", {"kind": "return", "missions": scopes}).status_code == 404

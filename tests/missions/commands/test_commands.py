@@ -26,7 +26,7 @@ from missions.services.commands.commands import (
 )
 from missions.services.commands.refused import Refused
 from missions.tasks import expire_commands
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 from workspace.models import AuditEntry
 
@@ -50,7 +50,7 @@ def test_what_sets_a_uav_in_motion_is_too_old_before_what_stops_it() -> None:
 
 
 def test_a_commands_way_from_the_person_to_the_vehicle() -> None:
-    person, uav = somebody(), a_uav()
+    person, uav = a_user(), a_uav()
     command = give(uav, CommandKind.HOLD, person, why="Crane on the site")
     assert (command.state, command.sequence, command.attempts) == (CommandState.QUEUED, 1, 0)
     (held,) = claim(uav)
@@ -196,7 +196,7 @@ def test_a_uav_that_is_reached_otherwise_now_is_given_nothing_by_its_former_door
 
 @pytest.mark.parametrize("change", [{"link": LinkKind.HTTP}, {"mavlink_system_id": 9}, {"allows_unsigned": True}])
 def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict) -> None:
-    person, uav = somebody(), a_uav(mavlink_system_id=7)
+    person, uav = a_user(), a_uav(mavlink_system_id=7)
     abort = give(uav, CommandKind.ABORT)
     with pytest.raises(Refused) as error:
         change_uav(uav=uav, actor=person, position=None, values=change)
@@ -210,7 +210,7 @@ def test_how_a_uav_is_reached_does_not_change_while_a_command_waits(change: dict
 def test_a_system_id_is_given_to_a_uav_that_had_none_though_a_command_waits() -> None:
     uav = a_uav()
     give(uav, CommandKind.ABORT)
-    change_uav(uav=uav, actor=somebody(), position=None, values={"mavlink_system_id": 9})
+    change_uav(uav=uav, actor=a_user(), position=None, values={"mavlink_system_id": 9})
 
 
 def test_what_is_held_is_taken_by_nobody_else_until_the_lease_runs_out() -> None:

@@ -9,7 +9,7 @@ from django.conf import settings
 from redis import Redis
 
 from missions.models import Mission
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.test_lost_planners import mission_to_plan, own_queue, wait_until, worker
 from tests.missions.worlds import world
 from workspace import tasks
@@ -52,7 +52,7 @@ def done(job: Job) -> tuple[int, int, int]:
 
 
 def test_a_job_longer_than_the_broker_waits_is_done_once(tmp_path: Path, deliveries: Deliveries, record_property: Any) -> None:
-    job = mission_to_plan(somebody(Role.OPERATOR), world())
+    job = mission_to_plan(a_user(Role.OPERATOR), world())
     more = environment_of(deliveries)
     with own_queue() as queue, worker(queue, tmp_path, app="tests.missions.property_tests.impatient_planners", processes=2, **more):
         tasks.send_job(job)
@@ -62,7 +62,7 @@ def test_a_job_longer_than_the_broker_waits_is_done_once(tmp_path: Path, deliver
 
 
 def test_a_job_that_is_sent_five_times_is_done_once(tmp_path: Path, deliveries: Deliveries, record_property: Any) -> None:
-    job = mission_to_plan(somebody(Role.OPERATOR), world())
+    job = mission_to_plan(a_user(Role.OPERATOR), world())
     more = environment_of(deliveries)
     with own_queue() as queue, worker(queue, tmp_path, app="tests.missions.property_tests.impatient_planners", processes=2, **more):
         for _ in range(OFTEN):

@@ -12,7 +12,7 @@ from missions.services.commands.planned_starts import LEAD_S, MAX_GAP_S, begin_p
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
 from telemetry.models import UavLink, UavWatch
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
@@ -222,7 +222,7 @@ def test_over_the_api(crossing, person) -> None:
     assert (stopped.status_code, stopped.json()["end"], stopped.json()["ended_by"]) == (200, "stopped", person.username)
     assert client.get(f"/api/v1/{path}").json()["starts"]["end"] == "stopped"
     assert client.delete(f"/api/v1/{path}").status_code == 409
-    assert client_of(somebody(role=Role.VIEWER)).delete(f"/api/v1/{path}").status_code == 403
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    assert client_of(a_user(role=Role.VIEWER)).delete(f"/api/v1/{path}").status_code == 403
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     assert post(stranger, path).status_code == 404
     assert stranger.get("/api/v1/planned-starts").json()["results"] == []

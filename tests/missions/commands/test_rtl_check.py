@@ -7,7 +7,7 @@ from django.test import Client
 
 from missions.models import LinkKind, Mission, Uav
 from missions.services.commands.rtl_check import note_rtl_behaviour
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import power_line, rebuild, world, zone_around
@@ -131,5 +131,5 @@ def test_a_companions_return_is_its_own(mission, uav):
 
 
 def test_another_organisations_mission_is_not_there(mission):
-    stranger: Client = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    stranger: Client = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert stranger.get(f"/api/v1/missions/{mission.pk}/returns").status_code == 404

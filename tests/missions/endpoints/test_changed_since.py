@@ -8,7 +8,7 @@ from django.test import Client
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import Base, Mission, Uav, UavType
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.missions.worlds import world, zone_around
 from workspace.models import Organisation
@@ -23,7 +23,7 @@ def client() -> Client:
     world()
     zone_around((10.0, 56.1))
     a_uav("Tern")
-    user, organisation = somebody(), Organisation.objects.get()
+    user, organisation = a_user(), Organisation.objects.get()
     Mission.objects.create(organisation=organisation, author=user, name="Line 7")
     UavType.objects.create(organisation=organisation, name="Quad")
     Base.objects.create(organisation=organisation, name="North", location="SRID=4326;POINT(10 56)")

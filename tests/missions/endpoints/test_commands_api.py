@@ -8,7 +8,7 @@ from django.test import Client
 
 from missions.models import Mission, Uav, UavCommand
 from missions.services.commands.commands import is_wanted, note_failed, note_released, note_sent, note_sent_unacknowledged
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.commands.outbox import a_uav, claim, fence
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
@@ -25,7 +25,7 @@ def here() -> World:
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture
@@ -148,7 +148,7 @@ def test_the_same_request_again_does_nothing_twice(client: Client, here: World, 
 def test_others_look_and_do_nothing(here: World, person: User, role: Role) -> None:
     (tern,) = uavs = fleet()
     mission = dispatched(person, uavs, here.towers[:2])
-    looker = client_of(somebody(role))
+    looker = client_of(a_user(role))
     for path in ("approve", "revoke", "dispatch", "abort"):
         assert post(looker, f"missions/{mission.pk}/{path}", {"reason": "x"}).status_code == 403
     assert post(looker, f"uavs/{tern.pk}/commands", {"kind": "hold"}).status_code == 403
@@ -160,7 +160,7 @@ def test_others_look_and_do_nothing(here: World, person: User, role: Role) -> No
 def test_other_organisations_find_nothing(here: World, person: User) -> None:
     (tern,) = uavs = fleet()
     mission = dispatched(person, uavs, here.towers[:2])
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     for path in ("approve", "revoke", "dispatch", "abort"):
         assert post(stranger, f"missions/{mission.pk}/{path}", {"reason": "x"}).status_code == 404
     assert post(stranger, f"uavs/{tern.pk}/commands", {"kind": "hold"}).status_code == 404
@@ -254,7 +254,7 @@ def test_only_administrators_say_that_a_uav_is_simulated_or_needs_no_signature(c
     for name in ("is_simulated", "allows_unsigned"):
         assert error(patch(client, f"uavs/{tern.pk}", {name: True}, **{"If-Match": "*"}), 403)["code"] == "permission_denied"
         assert patch(client, f"uavs/{tern.pk}", {name: False, "link": "http"}, **{"If-Match": "*"}).status_code == 200
-        changed = patch(client_of(somebody(Role.ADMINISTRATOR)), f"uavs/{tern.pk}", {name: True}, **{"If-Match": "*"})
+        changed = patch(client_of(a_user(Role.ADMINISTRATOR)), f"uavs/{tern.pk}", {name: True}, **{"If-Match": "*"})
         assert changed.json()["properties"][name] is True
     tern.refresh_from_db()
     assert (tern.is_simulated, tern.allows_unsigned, tern.link) == (True, True, "http")

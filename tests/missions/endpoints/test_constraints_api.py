@@ -7,7 +7,7 @@ import pytest
 from django.test import Client
 
 from missions.models import Base, InspectionTarget, Mission
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from workspace.models import Job, JobState, Role
@@ -24,7 +24,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def wishful(here: World, **more: Any) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from django.test import Client
 from missions.models import UavCredential
 from missions.services import mavlink_signing_key
 from missions.services.fleet.credentials import note_link_token_use, note_mavlink_key_use
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from workspace.models import AuditEntry, Role
 
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def made(client: Client, path: str, body: dict[str, Any]) -> Any:

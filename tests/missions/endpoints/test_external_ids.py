@@ -7,7 +7,7 @@ from django.test import Client
 
 from missions.models import Mission, MissionState
 from missions.services.mission_copies import draft_follow_up, duplicate_mission
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import world
 from workspace.models import AuditEntry, Organisation, Role
@@ -20,7 +20,7 @@ KITE = {"name": "Kite", "position": [10.0, 56.0]}
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def given_of(row: dict[str, Any]) -> dict[str, Any]:
@@ -60,7 +60,7 @@ def test_an_external_id_is_of_one_uav_of_an_organisation(client: Client) -> None
     assert "external_id" in second.json()["error"]["details"]
     assert post(client, "uavs", KITE | {"name": "Tern"}).status_code == 201
     assert post(client, "uavs", KITE | {"name": "Gull"}).status_code == 201, "several may have none"
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert post(other, "uavs", KITE | GIVEN).status_code == 201
 
 
@@ -98,12 +98,12 @@ def test_missions_are_found_by_their_external_id_and_by_those_of_their_targets(c
     assert sorted(names(client, "missions?external_id=WO-1")) == ["A", "B"]
     assert names(client, "missions?target_external_id=item-1") == ["A"]
     assert names(client, "missions?external_id=WO-1&target_external_id=item-2") == []
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert names(other, "missions?external_id=WO-1") == []
 
 
 def test_copies_and_follow_ups_keep_them(client: Client) -> None:
-    here, author = world(), somebody(Role.OPERATOR)
+    here, author = world(), a_user(Role.OPERATOR)
     made = post(client, "missions", mission_body({"asset": here.towers[1].pk, "external_id": "item-1"}, plan=True, **GIVEN)).json()
     mission = Mission.objects.get(pk=made["id"])
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.COMPLETED)

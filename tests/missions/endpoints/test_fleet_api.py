@@ -7,7 +7,7 @@ from django.test import Client
 
 from missions.models import Base, CommandKind, Mission, Uav, UavState, UavType
 from missions.services.commands.commands import queue_command
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
 from workspace.models import AuditEntry, Organisation, Role
 
@@ -20,7 +20,7 @@ DEPOT: dict[str, Any] = {"name": "Depot", "position": [10.0, 56.0]}
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def made(client: Client, path: str, body: dict[str, Any]) -> Any:
@@ -239,8 +239,7 @@ def test_what_was_deleted_comes_back_as_it_was(client: Client) -> None:
         assert client.get(f"/api/v1/{address}").status_code == 404
         if address.startswith("uavs"):
             assert (
-                post(client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere"))), f"{address}/restore").status_code
-                == 409
+                post(client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere"))), f"{address}/restore").status_code == 409
             )
         after = post(client, f"{address}/restore").json()
         facts, known = (row.get("properties", row) for row in (after, before))
@@ -284,7 +283,7 @@ def test_of_several_organisations_none_takes_all_system_ids(client: Client, sett
     settings.MAX_SYSTEM_IDS = 2
     for number in (7, 8, 9):
         uav_of(client, f"Alone {number}", mavlink_system_id=number)
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     ids = [uav_of(other, f"Other {number}", mavlink_system_id=number)["id"] for number in (17, 18)]
     refused = post(other, "uavs", {"name": "Third", "position": [10, 56], "mavlink_system_id": 19})
     assert (refused.status_code, refused.json()["error"]["code"]) == (409, "system_id_quota")
@@ -333,7 +332,7 @@ def test_the_missions_of_a_uav_are_listed_without_the_deleted(client: Client) ->
 
 def test_the_fleet_of_another_organisation_does_not_exist(client: Client) -> None:
     kestrel, depot, uav = made(client, "uav-types", KESTREL)["id"], made(client, "bases", DEPOT)["id"], uav_of(client)["id"]
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     for address in (f"uav-types/{kestrel}", f"bases/{depot}"):
         assert other.get(f"/api/v1/{address}").status_code == 404
         assert patch(other, address, {"name": "Mine"}, **ANY).status_code == 404
@@ -353,7 +352,7 @@ def test_an_answer_that_was_lost_makes_no_second_row(client: Client) -> None:
 
 def test_viewers_see_the_fleet_and_change_nothing(client: Client) -> None:
     uav = uav_of(client)["id"]
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert viewer.get(f"/api/v1/uavs/{uav}/credentials").status_code == 200
     for path, body in (("uav-types", KESTREL), ("bases", DEPOT), (f"uavs/{uav}/credentials", {"kind": "link-token"})):
         assert post(viewer, path, body).status_code == 403
@@ -372,7 +371,7 @@ def test_who_has_seen_a_type_before_the_admin_changed_it_does_not_overwrite_that
         "reserve_percent": 20,
         "sensors": "",
     }
-    administrator = client_of(somebody(Role.ADMINISTRATOR))
+    administrator = client_of(a_user(Role.ADMINISTRATOR))
     assert administrator.post(f"/admin/missions/uavtype/{kestrel['id']}/change/", form).status_code == 302
     refused = patch(client, f"uav-types/{kestrel['id']}", {"max_range_m": 70_000.0}, **{"If-Match": '"1"'})
     assert (refused.status_code, refused.json()["error"]["details"]["current"]["max_range_m"]) == (412, 5_000.0)

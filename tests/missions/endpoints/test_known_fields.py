@@ -6,7 +6,7 @@ import pytest
 from django.test import Client
 
 from missions.models import Uav, UavCredential
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, plan_body, post
 from tests.missions.worlds import world
 from workspace.models import Role
@@ -22,7 +22,7 @@ def details(client: Client, path: str, body: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_a_mistyped_field_is_named_with_the_one_that_is_meant() -> None:
-    here, client = world(), client_of(somebody())
+    here, client = world(), client_of(a_user())
     body = mission_body(here.towers[1])
     plan = {name: value for name, value in body.items() if name != "name"}
     assert details(client, "plans", plan | {"return_to_strat": True}) == {
@@ -36,7 +36,7 @@ def test_a_mistyped_field_is_named_with_the_one_that_is_meant() -> None:
 
 
 def test_a_patch_of_an_unknown_field_changes_nothing() -> None:
-    here, client = world(), client_of(somebody())
+    here, client = world(), client_of(a_user())
     mission = post(client, "missions", mission_body(here.towers[1])).json()
     answer = patch(client, f"missions/{mission['id']}", {"nmae": "North"})
     assert answer.status_code == 400
@@ -44,7 +44,7 @@ def test_a_patch_of_an_unknown_field_changes_nothing() -> None:
 
 
 def test_of_many_unknown_fields_a_few_are_told() -> None:
-    here, client = world(), client_of(somebody())
+    here, client = world(), client_of(a_user())
     many = {f"{'x' * 200}{number}": 1 for number in range(50)}
     reported = details(client, "missions", mission_body(here.towers[1]) | many)
     assert max(map(len, reported)) == 80
@@ -52,7 +52,7 @@ def test_of_many_unknown_fields_a_few_are_told() -> None:
 
 
 def test_of_a_long_list_the_nearest_names_are_looked_for_a_few_times_only() -> None:
-    here, client = world(), client_of(somebody())
+    here, client = world(), client_of(a_user())
     wrong = [{f"positio{number}": 1 for number in range(10)} for _ in range(300)]
     reported = details(client, "plans", plan_body(here.towers[1]) | {"targets": wrong})
     meant = [words for words in reported.values() if "is position meant" in str(words)]
@@ -76,13 +76,13 @@ UAV = {"name": "Kite", "position": [10.0, 56.0]}
     ],
 )
 def test_a_mistyped_field_of_the_fleet_is_named(path: str, body: dict[str, Any], place: str, words: str) -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     assert words in str(details(client, path, body)[place])
     assert not Uav.objects.exists()
 
 
 def test_a_mistyped_field_of_a_credential_is_named_and_nothing_is_made() -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     uav = post(client, "uavs", UAV).json()["id"]
     assert details(client, f"uavs/{uav}/credentials", {"kind": "link-token", "expires": "2027-01-01"}) == {
         "expires": ["There is no such field."]
@@ -92,7 +92,7 @@ def test_a_mistyped_field_of_a_credential_is_named_and_nothing_is_made() -> None
 
 @pytest.mark.parametrize("path", ["uavs", "uav-types", "bases"])
 def test_what_was_answered_may_be_sent_again(path: str) -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     body = {"name": "Iris"} if path == "uav-types" else UAV
     made = post(client, path, body).json()
     again = patch(client, f"{path}/{made['id']}", made, **{"If-Match": "*"})

@@ -13,7 +13,7 @@ from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
 from missions.presence import MAX_PAGES
 from missions.selectors.missions import mission_of_organisation
 from missions.services import duplicate_mission
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world, zone_around
@@ -33,7 +33,7 @@ def here() -> World:
 
 
 def named(role: Role, name: str) -> User:
-    user = somebody(role)
+    user = a_user(role)
     user.username = name
     user.save()
     return user
@@ -220,7 +220,7 @@ def test_several_are_deleted_at_once_and_brought_back(here: World, client: Clien
 
 def test_a_strangers_mission_is_not_deleted_with_ones_own(here: World, client: Client) -> None:
     mission = created(client, here, "Mine", plan=False)["id"]
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     answer = post(stranger, "missions/delete", {"missions": [mission]}).json()
     assert (answer["done"], answer["refused"][0]["code"]) == ([], "not_found")
     assert names(client) == ["Mine"]
@@ -255,7 +255,7 @@ def test_pages_hear_of_each_other_until_they_leave(here: World, client: Client, 
     post(vera, path, {"editor": "two", "here": False})
     post(client, path, {"editor": "three", "here": False})
     assert post(client, path, {"editor": "one"}).json()["others"] == []
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     assert post(stranger, path, {"editor": "one"}).status_code == 404
 
 

@@ -16,7 +16,7 @@ from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
 from planning.energy.performance import Performance, performance_to_json
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, rebuild, world, zone_around
 from workspace.models import AuditEntry, Job, Organisation, Role
@@ -31,7 +31,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def created(client: Client, here: World, **more: Any) -> dict[str, Any]:
@@ -172,7 +172,7 @@ def test_the_history_says_who_did_what(here: World, client: Client) -> None:
 
 def test_missions_of_another_organisation_do_not_exist(here: World, client: Client) -> None:
     mission = created(client, here)
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     path = f"missions/{mission['id']}"
     answers = [
         stranger.get(f"/api/v1/{path}"), patch(stranger, path, {"name": "Taken"}),
@@ -186,7 +186,7 @@ def test_missions_of_another_organisation_do_not_exist(here: World, client: Clie
 
 def test_viewers_read_missions_and_change_nothing(here: World, client: Client) -> None:
     mission = created(client, here)
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     path = f"missions/{mission['id']}"
     assert viewer.get(f"/api/v1/{path}").status_code == 200
     answers = [
@@ -338,7 +338,7 @@ def test_a_plan_that_fails_halfway_leaves_the_old_one_whole(here: World, client:
 @pytest.mark.django_db(transaction=True)
 def test_of_plans_made_at_once_one_is_stored_whole_and_the_others_are_refused() -> None:
     here = world()
-    client = client_of(somebody(Role.OPERATOR))
+    client = client_of(a_user(Role.OPERATOR))
     mission = Mission.objects.get(pk=created(client, here, plan=False)["id"])
 
     def plan(_: int) -> bool:

@@ -13,7 +13,7 @@ from missions.models import Mission
 from missions.services import NO_SHORTFALL
 from planning.solver import solver
 from planning.solver.search import Progress
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts
@@ -33,7 +33,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 @pytest.fixture(autouse=True)
@@ -86,7 +86,7 @@ def test_who_is_not_signed_in_is_asked_to(here: World) -> None:
 
 
 def test_viewers_cannot_plan(here: World) -> None:
-    error_of(post(client_of(somebody(Role.VIEWER)), "plans", plan_body(here.towers[0])), 403)
+    error_of(post(client_of(a_user(Role.VIEWER)), "plans", plan_body(here.towers[0])), 403)
 
 
 @pytest.mark.parametrize(
@@ -149,7 +149,7 @@ def test_the_rate_of_plans_is_limited_per_user(here: World, client: Client, sett
     forget_counts()
     with mock.patch("workspace.api.throttling.ScopedRate.THROTTLE_RATES", {"plans": "3/hour"}):
         answers = [post(client, "plans", plan_body(here.towers[0])).status_code for _ in range(4)]
-        other = post(client_of(somebody()), "plans", plan_body(here.towers[0])).status_code
+        other = post(client_of(a_user()), "plans", plan_body(here.towers[0])).status_code
     assert answers == [200, 200, 200, 429]
     assert other == 200
 
@@ -229,8 +229,8 @@ def test_a_job_that_fails_says_why(here: World, client: Client) -> None:
 
 
 def test_uavs_of_another_organisation_cannot_be_used(here: World) -> None:
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
-    own = client_of(somebody())
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
+    own = client_of(a_user())
     uav = post(own, "uavs", {"name": "Tern 1", "position": list(UAV_AT), "max_range_m": 900.0}).json()["id"]
     assert post(own, "plans", plan_body(here.towers[0]) | {"uavs": [{"id": uav}]}).status_code == 200
     assert "uavs.0.id" in error_of(post(other, "plans", plan_body(here.towers[0]) | {"uavs": [{"id": uav}]}), 400)["details"]

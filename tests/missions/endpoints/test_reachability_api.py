@@ -9,7 +9,7 @@ from django.test import Client
 from inspection.models import Asset, NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Base, Uav, UavState
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, post
 from tests.missions.worlds import UAV_AT, World, island, world, zone_around
 from workspace.models import Organisation, Role
@@ -24,7 +24,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 def asked(client: Client, status: int = 200, **body: Any) -> dict[str, Any]:
@@ -66,7 +66,7 @@ def test_a_short_range_tells_what_is_missing(here: World, client: Client) -> Non
 
 def test_what_is_reached_is_what_a_plan_flies_to(here: World, client: Client) -> None:
     """Each tower planned alone, with ranges on both sides of what the preferred way and the shortest one take."""
-    operator = client_of(somebody(Role.OPERATOR))
+    operator = client_of(a_user(Role.OPERATOR))
 
     def planned(tower: Asset, max_range_m: float | None) -> dict[str, Any]:
         return post(operator, "plans", {"uavs": [TERN | {"max_range_m": max_range_m}], "targets": [{"asset": tower.pk}]}).json()

@@ -7,7 +7,7 @@ from django.test import Client
 from django.utils import timezone
 
 from inspection.models import Asset
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line, tower
 from tests.missions.api import patch, post
 from workspace.models import AuditEntry, Organisation, Role
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def keeps(client: Client, *targets: Asset | dict[str, Any], name: str = "South belt") -> dict[str, Any]:
@@ -67,7 +67,7 @@ def test_selections_are_listed_by_name_and_shared_in_the_organisation(client: Cl
     mast = tower()
     keeps(client, mast, name="West")
     keeps(client, mast, name="east")
-    other = client_of(somebody(Role.VIEWER))
+    other = client_of(a_user(Role.VIEWER))
     assert {row["name"] for row in other.get("/api/v1/selections").json()["results"]} == {"West", "east"}
     assert [row["name"] for row in other.get("/api/v1/selections?text=EAS").json()["results"]] == ["east"]
     first = other.get("/api/v1/selections?limit=1").json()
@@ -76,7 +76,7 @@ def test_selections_are_listed_by_name_and_shared_in_the_organisation(client: Cl
 
 def test_another_organisation_sees_nothing_of_them(client: Client) -> None:
     kept = keeps(client, tower())
-    elsewhere = client_of(somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere")))
+    elsewhere = client_of(a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere")))
     assert elsewhere.get("/api/v1/selections").json()["results"] == []
     address = f"selections/{kept['id']}"
     assert elsewhere.get(f"/api/v1/{address}").status_code == 404

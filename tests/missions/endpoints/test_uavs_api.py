@@ -6,7 +6,7 @@ import pytest
 from django.test import Client
 
 from missions.models import Uav
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, patch, post
 from workspace.models import AuditEntry, Organisation, Role
 
@@ -24,7 +24,7 @@ ANY = {"If-Match": "*"}
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def test_a_feature_comes_back_as_it_was_sent(client: Client) -> None:
@@ -89,7 +89,7 @@ def test_two_uavs_cannot_have_one_name(client: Client) -> None:
     post(client, "uavs", FEATURE)
     response = post(client, "uavs", FEATURE)
     assert (response.status_code, response.json()["error"]["code"]) == (409, "name_taken")
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     assert post(other, "uavs", FEATURE).status_code == 201
 
 
@@ -104,7 +104,7 @@ def test_a_uav_that_a_mission_uses_cannot_be_removed(client: Client) -> None:
 
 def test_uavs_of_another_organisation_do_not_exist(client: Client) -> None:
     uav = post(client, "uavs", FEATURE).json()["id"]
-    other = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    other = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     assert {
         other.get(f"/api/v1/uavs/{uav}").status_code,
         patch(other, f"uavs/{uav}", {"name": "Mine"}, **ANY).status_code,
@@ -115,7 +115,7 @@ def test_uavs_of_another_organisation_do_not_exist(client: Client) -> None:
 
 def test_viewers_read_and_strangers_are_asked_to_sign_in(client: Client) -> None:
     post(client, "uavs", FEATURE)
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert len(viewer.get("/api/v1/uavs").json()["features"]) == 1
     assert post(viewer, "uavs", FEATURE).status_code == 403
     assert Client().get("/api/v1/uavs").status_code == 401

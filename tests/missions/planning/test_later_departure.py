@@ -10,7 +10,7 @@ from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.services.planning.later_departure import better_departure
 from planning.problem import Objective
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import plan_body, post
 from tests.missions.planning.test_timed_zones import MONDAY_NOON, timed_zone
 from tests.missions.worlds import request, world, zone_around
@@ -73,7 +73,7 @@ def test_without_a_departure_now_is_looked_at_first() -> None:
 
 
 def test_over_http_it_is_told_of_few_targets_alone() -> None:
-    here, client = world(), client_of(somebody(Role.VIEWER))
+    here, client = world(), client_of(a_user(Role.VIEWER))
     soon = datetime.now(UTC).replace(second=0, microsecond=0) + HOUR
     over(5, soon - HOUR, soon + HOUR)
     body = plan_body(here.towers[5]) | {"departs_at": at(soon)}

@@ -9,7 +9,7 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.models import Mission, Route, Waypoint
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, plan_body, post
 from tests.missions.test_stale_zones import hours
 from tests.missions.worlds import World, world, zone_around
@@ -30,7 +30,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))
 
 
 def zone(name: str = "Fire brigade", **facts: Any) -> NoFlyZone:
@@ -42,7 +42,7 @@ def zone(name: str = "Fire brigade", **facts: Any) -> NoFlyZone:
 
 def planned(here: World) -> dict[str, Any]:
     """Waypoint k is reached k + 1 min after departure."""
-    made = post(client_of(somebody(Role.OPERATOR)), "missions", mission_body(here.towers[1], here.towers[5], plan=True)).json()
+    made = post(client_of(a_user(Role.OPERATOR)), "missions", mission_body(here.towers[1], here.towers[5], plan=True)).json()
     for waypoint in Waypoint.objects.all():
         Waypoint.objects.filter(pk=waypoint.pk).update(arrival_s=60.0 * (waypoint.sequence + 1))
     Route.objects.update(departs_s=0.0, duration_s=60.0 * (Waypoint.objects.count() + 1))
@@ -110,7 +110,7 @@ def test_a_permanent_zone_bars_all_and_one_above_the_flight_nothing(here: World,
 
 
 def test_of_a_plan_without_times_a_leg_may_be_at_any_time_of_its_route(here: World, client: Client) -> None:
-    plan = post(client_of(somebody(Role.OPERATOR)), "plans", plan_body(here.towers[1], here.towers[5])).json()
+    plan = post(client_of(a_user(Role.OPERATOR)), "plans", plan_body(here.towers[1], here.towers[5])).json()
     [route] = plan["routes"]
     zone(schedule=hours("MON", "09:00", "10:00"))
     response = post(client, "plans/legal-windows", {"from": SUNDAY.isoformat(), "routes": [route | {"arrival_s": [], "departs_s": 30.0}]})
@@ -149,7 +149,7 @@ def test_a_departure_that_is_no_time_is_refused(here: World, client: Client) -> 
 
 
 def test_a_mission_without_routes_has_no_windows(here: World, client: Client) -> None:
-    draft = post(client_of(somebody(Role.OPERATOR)), "missions", mission_body(here.towers[1])).json()
+    draft = post(client_of(a_user(Role.OPERATOR)), "missions", mission_body(here.towers[1])).json()
     response = client.get(f"/api/v1/missions/{draft['id']}/legal-windows")
     assert (response.status_code, response.json()["error"]["code"]) == (409, "not_planned")
 

@@ -11,7 +11,7 @@ from missions.services import create_mission, duplicate_mission, plan_mission
 from planning.request import EndAction
 from planning.rules import SeparationRules
 from planning.separation.separation import conflicts
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions import worlds
 from workspace.models import Organisation, Role
 
@@ -22,7 +22,7 @@ FROM_S = DEPARTURE.timestamp()
 
 
 def approved(ground: worlds.World, *, departs_at: datetime = DEPARTURE, end_action: EndAction = EndAction.RETURN, **changes) -> Mission:
-    author = somebody(Role.OPERATOR)
+    author = a_user(Role.OPERATOR)
     request = worlds.request(*ground.towers[:3], uavs=(worlds.uav(end_action=end_action),), departs_at=departs_at)
     draft = create_mission(organisation=author.organisation, author=author, name="Other", request=request)
     mission = plan_mission(mission=draft, actor=author)

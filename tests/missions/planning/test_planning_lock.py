@@ -13,7 +13,7 @@ from missions.services import make_plan
 from missions.services.planning import planner
 from tests.missions.worlds import World, request, uav, world
 from workspace.jobs import planning_lock
-from workspace.jobs.planning_lock import in_turn
+from workspace.jobs.planning_lock import hold_planning_lock
 from workspace.prepared_statements import prepared_rows
 
 PLANNERS = 4
@@ -28,8 +28,8 @@ def has_room() -> bool:
     had = []
 
     def look() -> None:
-        with mock.patch.object(planning_lock, "TIMEOUT_S", 0.0), in_turn() as has_turn:
-            had.append(has_turn)
+        with mock.patch.object(planning_lock, "TIMEOUT_S", 0.0), hold_planning_lock() as is_held:
+            had.append(is_held)
 
     another = threading.Thread(target=look)
     another.start()
@@ -70,7 +70,7 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
     here = world()
     reported: list[str] = []
 
-    def edition_now() -> Any:
+    def current_dataset_version() -> Any:
         reported.append("room" if has_room() else "held")
         return now()
 
@@ -78,10 +78,13 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
         reported.append("written")
         return write(*args, **kwargs)
 
-    now, write = planner.edition_now, planner.plan_to_json
-    with mock.patch.object(planner, "edition_now", edition_now), mock.patch.object(planner, "plan_to_json", written):
+    now, write = planner.current_dataset_version, planner.plan_to_json
+    with (
+        mock.patch.object(planner, "current_dataset_version", current_dataset_version),
+        mock.patch.object(planner, "plan_to_json", written),
+    ):
         make_plan(request=asked(here))
-        with in_turn():  # the caller's, as for a small plan
+        with hold_planning_lock():  # the caller's, as for a small plan
             make_plan(request=asked(here))
             assert has_room()
     assert reported == ["written", "room"] * 2
@@ -91,7 +94,7 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
 def test_another_has_the_turn_while_one_waits_for_the_database() -> None:
     reported: list[bool] = []
     asks = threading.Thread(target=ask_slowly, args=(reported,))
-    with in_turn():
+    with hold_planning_lock():
         asks.start()
         asks.join(0.05)
         assert (has_room(), asks.is_alive()) == (False, True)  # it waits for its turn, with its question unasked
@@ -104,9 +107,9 @@ def test_another_has_the_turn_while_one_waits_for_the_database() -> None:
 
 def ask_slowly(reported: list[bool]) -> None:
     try:
-        with in_turn() as has_turn:
+        with hold_planning_lock() as is_held:
             prepared_rows("SELECT pg_sleep(1.0)::text")
-            reported += [has_turn, has_room()]
+            reported += [is_held, has_room()]
     finally:
         connections.close_all()
 
@@ -124,15 +127,15 @@ def test_who_waits_too_long_goes_on_without_a_turn_and_gives_none_up(monkeypatch
     holds, over = threading.Event(), threading.Event()
 
     def hold() -> None:
-        with in_turn():
+        with hold_planning_lock():
             holds.set()
             over.wait(60.0)
 
     holder = threading.Thread(target=hold)
     holder.start()
     holds.wait(60.0)
-    with in_turn() as has_turn:
-        assert not has_turn
+    with hold_planning_lock() as is_held:
+        assert not is_held
     assert not has_room()
     over.set()
     holder.join()
@@ -140,6 +143,6 @@ def test_who_waits_too_long_goes_on_without_a_turn_and_gives_none_up(monkeypatch
 
 
 def test_a_turn_within_a_turn_is_the_same_one() -> None:
-    with in_turn() as outer, in_turn() as inner:
+    with hold_planning_lock() as outer, hold_planning_lock() as inner:
         assert (outer, inner) == (True, True)
     assert has_room()

@@ -7,7 +7,7 @@ from django.test import Client
 
 from inspection.models import Asset
 from missions.models import Uav
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, plan_body, post
 from tests.missions.worlds import UAV_AT, World, island, power_line, rebuild, world, zone_around
@@ -23,7 +23,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def why_target(client: Client, body: dict[str, Any], target: int = 0) -> dict[str, Any]:
@@ -191,7 +191,7 @@ def test_the_costliest_target_saves_what_it_says(here: World, client: Client) ->
 
 
 def test_a_viewer_may_ask_why(here: World) -> None:
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert why_target(viewer, plan_body(here.towers[0]))["target"] == 0
 
 

@@ -9,7 +9,7 @@ from inspection.models import NoFlyZone
 from missions.models import Mission
 from missions.services import make_plan, request_of_mission, request_to_json
 from missions.services.mission_plans import PLANNING_TASK
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import World, power_line, rebuild, world, zone_around
@@ -26,7 +26,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def checked(client: Client, here: World, **wished: Any) -> dict[str, Any]:

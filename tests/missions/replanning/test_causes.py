@@ -15,7 +15,7 @@ from inspection.services import mark_ground_changed
 from missions import tasks
 from missions.models import CommandKind, OfferState, ReplanOffer
 from missions.services.replanning import accept_offer, suggest, suggest_for_zones, zones_ahead
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions import worlds
 from tests.missions.commands.outbox import give
 from tests.missions.flights import carry, ground
@@ -28,7 +28,7 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture
 def flight(tmp_path) -> Flight:
     ground(tmp_path / "hill.tif", 100.0)
-    return two_in_the_air(somebody())
+    return two_in_the_air(a_user())
 
 
 def job_of(offer: ReplanOffer) -> Job:
@@ -133,7 +133,7 @@ def test_a_uav_before_whose_nose_the_zone_lies_is_to_be_held_first(flight):
 
 def test_a_battery_that_does_not_last_gives_its_targets_to_the_other(tmp_path):
     ground(tmp_path / "hill.tif", 100.0)
-    flight = two_in_the_air(somebody(), battery_wh=150.0)
+    flight = two_in_the_air(a_user(), battery_wh=150.0)
     tern = flight.uavs[0]
     flight.fly_to(0, 2, 0.5, battery_percent=25.0)
     flight.fly_to(1, 2, 0.5, battery_percent=95.0)

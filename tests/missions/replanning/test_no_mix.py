@@ -15,7 +15,7 @@ from missions.services.commands.flight_progress import ON_ITS_WAY, FlightEnd, ma
 from missions.services.commands.refused import Refused
 from missions.services.commands.steering import command_uav
 from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
@@ -30,7 +30,7 @@ Happening = Callable[[Flight, random.Random], Any]
 @pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 40))])
 def test_no_mission_is_mixed_from_two_plans(seed, tmp_path):
     ground(tmp_path / "hill.tif", 100.0)
-    flight = two_in_the_air(somebody())
+    flight = two_in_the_air(a_user())
     draw, done = random.Random(seed), Counter()
     for what in _course(draw):
         try:

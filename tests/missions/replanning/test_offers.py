@@ -13,7 +13,7 @@ from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.steering import mission_in_hand
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import claim, fence, give
 from tests.missions.flights import carry, ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture
 def flight(tmp_path) -> Flight:
     ground(tmp_path / "hill.tif", 100.0)
-    return two_in_the_air(somebody())
+    return two_in_the_air(a_user())
 
 
 def test_what_a_uav_that_failed_leaves_is_offered_to_the_other(flight):

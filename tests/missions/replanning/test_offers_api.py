@@ -11,7 +11,7 @@ from missions.models import MissionState, OfferState, ReplanOffer
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.replanning import suggest
 from missions.tasks import look_after_offers, replan_mission
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air
 from workspace.models import Organisation, Role
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.django_db
 @pytest.fixture
 def flight(tmp_path) -> Flight:
     ground(tmp_path / "hill.tif", 100.0)
-    return two_in_the_air(somebody())
+    return two_in_the_air(a_user())
 
 
 def post(client: Client, path: str, **headers: str) -> Any:
@@ -87,13 +87,13 @@ def test_who_has_seen_an_earlier_state_of_the_offer_is_told(flight):
 def test_only_operators_ask_and_decide(flight):
     offer = open_offer(client_of(flight.author), flight)
     for role, may in ((Role.VIEWER, False), (Role.CURATOR, False), (Role.ADMINISTRATOR, True)):
-        client = client_of(somebody(role))
+        client = client_of(a_user(role))
         assert offers_of(client, flight)
         for path in (f"/missions/{flight.mission.pk}/replan-offers", f"/replan-offers/{offer['id']}/decline"):
             assert post(client, path).status_code in ((200, 202, 409) if may else (403,))  # asked for again, the first is outdated
     anonymous = Client()
     assert anonymous.get(f"/api/v1/replan-offers/{offer['id']}").status_code in (401, 403)
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     assert stranger.get(f"/api/v1/replan-offers/{offer['id']}").status_code == 404
     assert post(stranger, f"/replan-offers/{offer['id']}/accept").status_code == 404
     assert post(stranger, f"/missions/{flight.mission.pk}/replan-offers").status_code == 404

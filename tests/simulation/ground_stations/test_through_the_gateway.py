@@ -11,7 +11,7 @@ from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import Flavour
 from telemetry.models import TelemetryRecord, UavLink
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.simulation.fleets import flying, free_port
@@ -26,7 +26,7 @@ SPEED = 20.0
 
 @pytest.fixture
 def uav_and_key() -> tuple[Uav, bytes]:
-    return signed_uav(SYSTEM, somebody())
+    return signed_uav(SYSTEM, a_user())
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def mission(settings, tmp_path, uav_and_key) -> Mission:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     settings.FLIGHT_LOG_DIR = tmp_path
     ground(tmp_path / "hill.tif", GROUND_M)
-    mission, _ = approved(somebody(), [uav_and_key[0]], world().towers[:1])
+    mission, _ = approved(a_user(), [uav_and_key[0]], world().towers[:1])
     return mission
 
 

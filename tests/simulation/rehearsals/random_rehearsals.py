@@ -22,7 +22,7 @@ from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
-from tests.simulation.rehearsals.rehearsed import loaded, skies
+from tests.simulation.rehearsals.rehearsed import loaded, scenarios
 from workspace.models import User
 
 INSPECTOR = Performance(battery_wh=263.2, mass_kg=3.77, max_airspeed_mps=19.0, rotor_disk_m2=0.5188, hover_power_w=430.0)
@@ -83,15 +83,15 @@ def rehearse(request: PlanRequest, person: User, seed: int) -> Rehearsed | None:
     return rehearse_mission(plan_mission(mission=mission, actor=person), seed)
 
 
-def rehearse_mission(mission: Mission, seed: int, sky: str = "calm") -> Rehearsed | None:
+def rehearse_mission(mission: Mission, seed: int, scenario: str = "calm") -> Rehearsed | None:
     """None where nothing of it can be flown."""
     try:
         plan = plan_to_fly(loaded(mission))
     except Refused:
         return None
     ground = planning_read().ground()
-    (conditions,) = skies(mission, sky)
-    maker = vehicle_maker(plan.stand_ins, conditions, heights_at(ground.edition))
+    (conditions,) = scenarios(mission, scenario)
+    maker = vehicle_maker(plan.stand_ins, conditions, heights_at(ground.dataset_version))
     flown = fly(plan.routes, maker, turnaround_s=TURNAROUND_S, seed=seed, on_progress=_unacknowledged)
     verdict = judge(flown, surroundings_of(plan, ground), limits_of_settings())
     return Rehearsed(

@@ -8,7 +8,7 @@ from simulation.assessment.following import following_of
 from simulation.assessment.judging import Verdict, judge
 from simulation.assessment.limits import Level
 from simulation.assessment.obstacles import nearest_standing
-from simulation.assessment.stored import track_to_json, verdict_to_json
+from simulation.assessment.stored import assessment_to_json, track_to_json
 from tests.simulation.flown import LIMITS, UP_M, a_route, a_track, around, flown, rows, standing, zones
 
 
@@ -159,7 +159,7 @@ def test_two_uavs_at_one_place_one_after_the_other_do_not_meet() -> None:
 
 
 def test_a_verdict_and_a_track_are_plain_values_to_the_digits_that_are_shown() -> None:
-    stored = verdict_to_json(judged(flown(a_track(rows(left_percent=6.0)))))
+    stored = assessment_to_json(judged(flown(a_track(rows(left_percent=6.0)))))
     assert stored["findings"][0]["facts"]["percent"] == 6.0
     assert stored["routes"][0]["energy"] == [{"flight": 1, "used_wh": 47.0, "left_percent": 6.0, "lowest_percent": 6.0}]
     (track,) = track_to_json([a_track(rows())])

@@ -7,7 +7,7 @@ import pytest
 
 from missions.models import Mission, UavType
 from simulation.models import Rehearsal, RehearsalRule
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.flights import an_operator, fleet, ground, planned
 from tests.missions.worlds import world
@@ -78,7 +78,7 @@ def test_conditions_that_cannot_be_are_named(mission: Mission, person: User, con
 
 def test_a_viewer_reads_and_starts_nothing(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person)
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert viewer.get(f"/api/v1/{path(mission)}").json()["results"][0]["id"] == str(rehearsal.pk)
     assert post(viewer, path(mission)).status_code == 403
     assert post(viewer, path(mission, f"/{rehearsal.pk}/cancel")).status_code == 403
@@ -86,7 +86,7 @@ def test_a_viewer_reads_and_starts_nothing(mission: Mission, person: User) -> No
 
 def test_another_organisation_finds_nothing(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person)
-    stranger = client_of(somebody(Role.OPERATOR, Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(Role.OPERATOR, Organisation.objects.create(name="Other")))
     addresses = [path(mission), path(mission, f"/{rehearsal.pk}"), path(mission, f"/{rehearsal.pk}/track")]
     assert [stranger.get(f"/api/v1/{address}").status_code for address in addresses] == [404, 404, 404]
     assert post(stranger, path(mission)).status_code == 404
@@ -138,7 +138,7 @@ def test_nobody_has_more_open_than_allowed(mission: Mission, person: User, setti
 
 def test_administrators_alone_ask_for_rehearsals_before_approval(mission: Mission, person: User) -> None:
     assert put(client_of(person), "rehearsal-rule", {"requires_green": True}).status_code == 403
-    boss = somebody(Role.ADMINISTRATOR)
+    boss = a_user(Role.ADMINISTRATOR)
     assert put(client_of(boss), "rehearsal-rule", {"requires_green": True}).json() == {"requires_green": True}
     assert RehearsalRule.objects.get().organisation_id == person.organisation_id
     refused = post(client_of(person), f"missions/{mission.pk}/approve")

@@ -12,7 +12,7 @@ from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alert_words import TEMPLATES, alert_words
 from telemetry.selectors.alerts import waiting_to_be_seen
 from telemetry.services.alerts.alerts import close_alert, open_alert, raise_second_sender
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import at
 from workspace.models import AuditEntry, Organisation, Role
@@ -28,7 +28,7 @@ def uav() -> Uav:
 
 @pytest.fixture
 def operator():
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def an_alert(uav: Uav, code: str = "link-lost", level: str = AlertLevel.WARNING, **facts) -> Alert:
@@ -72,7 +72,7 @@ def test_acknowledged_it_goes_on_and_stays_with_who_was_first(uav, operator):
     alert = an_alert(uav)
     answer = post(operator, f"{alert.pk}/acknowledge", note="Called the pilot.").json()
     assert (answer["closed_at"], answer["notes"]) == (None, 1)
-    again = post(client_of(somebody(Role.ADMINISTRATOR)), f"{alert.pk}/acknowledge").json()
+    again = post(client_of(a_user(Role.ADMINISTRATOR)), f"{alert.pk}/acknowledge").json()
     for name in ("acknowledged_at", "acknowledged_by", "notes"):
         assert again[name] == answer[name]
     assert [step["what"] for step in again["course"]] == ["opened", "acknowledged"]
@@ -100,10 +100,10 @@ def test_a_note_that_is_sent_twice_with_one_key_is_written_once(uav, operator):
 
 def test_viewers_read_and_others_organisations_see_nothing(uav):
     alert = an_alert(uav)
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     assert viewer.get(f"/api/v1/alerts/{alert.pk}").status_code == 200
     assert post(viewer, f"{alert.pk}/acknowledge").status_code == 403
-    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    stranger = client_of(a_user(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
     assert found(stranger, "") == []
     assert [stranger.get(f"/api/v1/alerts/{alert.pk}").status_code, post(stranger, f"{alert.pk}/notes", text="x").status_code] == [404, 404]
 
@@ -147,7 +147,7 @@ def test_only_the_alert_of_a_uav_that_is_down_is_closed_by_people_and_with_a_rea
     answer = post(operator, f"{other.pk}/close", reason="Seen")
     assert (answer.status_code, answer.json()["error"]["code"]) == (409, "closed_by_itself")
     assert post(operator, f"{alert.pk}/close").status_code == 400
-    assert post(client_of(somebody(Role.VIEWER)), f"{alert.pk}/close", reason="Seen").status_code == 403
+    assert post(client_of(a_user(Role.VIEWER)), f"{alert.pk}/close", reason="Seen").status_code == 403
     shown = post(operator, f"{alert.pk}/close", reason="Found in a field").json()
     assert (shown["close_reason"], shown["written"][0]["text"], shown["course"][-1]["reason"]) == (
         "by-person",
@@ -241,8 +241,8 @@ def test_ended_alerts_are_acknowledged_together_and_open_ones_are_left(uav, oper
 
 def test_ended_alerts_of_others_are_unknown_and_viewers_acknowledge_none(uav):
     ended = an_alert(uav, "zone", AlertLevel.CRITICAL, closed_at=timezone.now())
-    assert post(client_of(somebody(Role.VIEWER)), "acknowledge-ended", alerts=[ended.pk]).status_code == 403
-    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    assert post(client_of(a_user(Role.VIEWER)), "acknowledge-ended", alerts=[ended.pk]).status_code == 403
+    stranger = client_of(a_user(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
     assert post(stranger, "acknowledge-ended", alerts=[ended.pk]).json()["results"] == [{"id": ended.pk, "outcome": "unknown"}]
     for wrong in ([], ["1"], [0], "all"):
         assert post(stranger, "acknowledge-ended", alerts=wrong).status_code == 400

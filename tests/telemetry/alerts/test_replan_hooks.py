@@ -9,7 +9,7 @@ from telemetry.alerting.state_machine import CLEARED, LANDED, Closed
 from telemetry.models import AlertLevel
 from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.alerts.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
 from workspace.jobs.services import create_job
@@ -37,7 +37,7 @@ def test_a_finding_is_a_reason_when_its_uav_will_not_finish(code, level, details
 def flight(settings, tmp_path) -> Flight:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     ground(tmp_path / "hill.tif", 100.0)
-    return two_in_the_air(somebody())
+    return two_in_the_air(a_user())
 
 
 def lose_the_link(flight: Flight, seconds: int = 31) -> None:

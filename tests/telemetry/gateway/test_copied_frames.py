@@ -13,7 +13,7 @@ from missions.services.commands.commands import queue_command
 from telemetry.gateway import addresses, sender_authentication
 from telemetry.gateway.addresses import MAX_ADDRESSES, Addresses
 from telemetry.models import Alert, TelemetryRecord, UavLink
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
 from tests.telemetry.vehicles.px4 import HOLD, MISSION, Px4
@@ -44,7 +44,7 @@ class CopiedFlyer(Flyer):
 @db
 @pytest.mark.parametrize("first", ["uav", "thief"])
 def test_uav_whose_frames_arrive_as_copies_first_gets_every_answer(first, tmp_path):
-    uav, key = signed_uav(3, somebody())
+    uav, key = signed_uav(3, a_user())
     with gateway_at_work(tmp_path) as gateway, Link(port_of(gateway), 3, key) as vehicle, Link(port_of(gateway), 3) as thief:
         if first == "uav":
             vehicle.send(heartbeat())
@@ -69,7 +69,7 @@ def test_uav_whose_frames_arrive_as_copies_first_gets_every_answer(first, tmp_pa
 
 @db
 def test_command_to_a_uav_whose_frames_are_copied_is_carried_out_by_it(tmp_path):
-    uav, key = signed_uav(7, somebody())
+    uav, key = signed_uav(7, a_user())
     vehicle = Px4(7, is_armed=True, is_in_air=True, custom_mode=_number(MISSION))
     with ExitStack() as running:
         gateway = running.enter_context(gateway_at_work(tmp_path))
@@ -89,7 +89,7 @@ def test_command_to_a_uav_whose_frames_are_copied_is_carried_out_by_it(tmp_path)
 
 @db
 def test_frames_of_before_a_restart_are_refused_though_they_were_never_stored(tmp_path):
-    _, key = signed_uav(3, somebody())
+    _, key = signed_uav(3, a_user())
     with gateway_at_work(tmp_path, name="one") as gateway, Link(port_of(gateway), 3, key) as vehicle:
         vehicle.send(heartbeat(), position(1_000))
         wait_for(lambda: TelemetryRecord.objects.count() == 1)
@@ -113,7 +113,7 @@ def test_frames_of_before_a_restart_are_refused_though_they_were_never_stored(tm
 @db
 def test_vehicle_whose_clock_is_late_is_heard_at_once_after_a_restart(tmp_path):
     """By as much as it was late before."""
-    _, key = signed_uav(3, somebody())
+    _, key = signed_uav(3, a_user())
     writer = FrameWriter(3, 1, key=key)
     for number, name in ((1_000, "one"), (2_000, "two")):
         with gateway_at_work(tmp_path, name=name) as gateway, Link(port_of(gateway), 3, key) as vehicle:

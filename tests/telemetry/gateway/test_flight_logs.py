@@ -13,7 +13,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from telemetry.gateway.flights import DISARMED_FOR_S, FlightRecorder, Flights
 from telemetry.gateway.options import Options
 from telemetry.models import FlightLog
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, unsigned_uav, wait_for
 
 
@@ -58,7 +58,7 @@ def test_a_flight_is_logged_from_arming_to_disarming(tmp_path):
 
 @pytest.mark.django_db(transaction=True)
 def test_both_directions_are_logged_and_no_key_is(tmp_path):
-    uav, key = signed_uav(5, somebody())
+    uav, key = signed_uav(5, a_user())
     with gateway_at_work(tmp_path) as gateway, Link(port_of(gateway), 5, key) as vehicle:
         vehicle.send(heartbeat(is_armed=True))
         wait_for(lambda: gateway.sessions and gateway.sessions[5].log)

@@ -8,7 +8,7 @@ import pytest
 from missions.models import CommandKind, CommandState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream, UavLink
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.one_address import Backend, OneAddress
 from tests.telemetry.gateway.program import free_port, gateway_program
@@ -40,7 +40,7 @@ def test_a_uav_whose_gateway_is_killed_is_served_by_another_one_behind_the_same_
     """Two of them, one on each gateway; both are with the one that is left in the end, with the commands that were on their way."""
     uavs, vehicles = [], []
     for system in (7, 8):
-        uav, key = signed_uav(system, somebody())
+        uav, key = signed_uav(system, a_user())
         uavs.append(uav)
         vehicles.append((Px4(system, is_armed=True, is_in_air=True), key))
     with ExitStack() as running:

@@ -11,7 +11,7 @@ from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.fleet.credentials import make_credential
 from telemetry.gateway import sender_authentication
 from telemetry.models import TelemetryRecord, UavLink
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.django_db(transaction=True)
 
 @pytest.fixture
 def uav_and_key():
-    return signed_uav(3, somebody())
+    return signed_uav(3, a_user())
 
 
 def losses(uav) -> dict[str, int]:
@@ -130,7 +130,7 @@ def test_who_speaks_without_the_key_that_was_shown_is_not_believed_though_unsign
 
 
 def _rotated(uav) -> bytes:
-    return bytes.fromhex(make_credential(uav=uav, actor=somebody(), kind=CredentialKind.MAVLINK_KEY).secret)
+    return bytes.fromhex(make_credential(uav=uav, actor=a_user(), kind=CredentialKind.MAVLINK_KEY).secret)
 
 
 def test_a_uav_with_neither_key_nor_leave_to_be_unsigned_is_not_heard(tmp_path):

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.signing import FrameWriter
 from telemetry.models import TelemetryRecord, UavLink, UnknownVehicle, VehicleText
 from telemetry.services.links.unknown_vehicles import NewUav, adopt_vehicle
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for
 from workspace.models import Role
 
@@ -111,7 +111,7 @@ def test_a_stranger_is_asked_where_it_is_and_can_then_be_adopted_by_name(tmp_pat
 
         wait_for(is_placed)
         assert not stranger.received(), "it is asked no more"
-    adopted = adopt_vehicle(vehicle=UnknownVehicle.objects.get(), actor=somebody(Role.ADMINISTRATOR), uav=NewUav("Kite"))
+    adopted = adopt_vehicle(vehicle=UnknownVehicle.objects.get(), actor=a_user(Role.ADMINISTRATOR), uav=NewUav("Kite"))
     assert adopted.location.coords == pytest.approx((position(1_000).lon / 1e7, position(1_000).lat / 1e7))
 
 

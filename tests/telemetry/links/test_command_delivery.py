@@ -18,7 +18,7 @@ from django.contrib.gis.geos import Point
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
 from missions.services.commands.commands import queue_command
 from missions.services.commands.refused import Refused
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.telemetry.links.command_carriers import Link, nursery
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -100,7 +100,7 @@ def kinds_of(count: int, chance: random.Random) -> tuple[list[CommandKind], list
 def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(
     count: int, capsys: pytest.CaptureFixture[str], record_property: Any
 ) -> None:
-    chance, person = random.Random(count), somebody()
+    chance, person = random.Random(count), a_user()
     uavs = fleet_of(count // 2)
     backlog, later = kinds_of(count, chance)
     slots = [[uav.pk for uav in uavs[slot::SLOTS]] for slot in range(SLOTS)]

@@ -10,7 +10,7 @@ from missions.models import CredentialKind, UavCredential, UavState
 from missions.services import make_credential, revoke_credential
 from telemetry.models import TelemetryRecord, UavLink
 from telemetry.views import uav_authentication
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.telemetry.links.uav_clients import LINK, linked_uav, report
 from workspace.api_tokens import create_api_token
 from workspace.models import Role
@@ -47,8 +47,8 @@ def test_who_has_no_token_of_a_uav_is_not_let_in(header: str) -> None:
 
 def test_a_replaced_a_revoked_and_a_retired_uavs_token_count_no_more_at_once() -> None:
     replaced, revoked, retired = linked_uav("One"), linked_uav("Two"), linked_uav("Three")
-    make_credential(uav=replaced.uav, actor=somebody(), kind=CredentialKind.LINK_TOKEN)
-    revoke_credential(credential=UavCredential.objects.get(uav=revoked.uav), actor=somebody())
+    make_credential(uav=replaced.uav, actor=a_user(), kind=CredentialKind.LINK_TOKEN)
+    revoke_credential(credential=UavCredential.objects.get(uav=revoked.uav), actor=a_user())
     retired.uav.state = UavState.RETIRED
     retired.uav.save()
     answers = [uav.report(report()) for uav in (replaced, revoked, retired)]
@@ -59,7 +59,7 @@ def test_a_replaced_a_revoked_and_a_retired_uavs_token_count_no_more_at_once() -
 
 @pytest.mark.parametrize("role", Role)
 def test_a_user_is_no_uav(role: Role) -> None:
-    user = somebody(role)
+    user = a_user(role)
     token = create_api_token(user=user, name="script", expires_at=timezone.now() + timedelta(days=1))
     with_token = Client().get(f"{LINK}/route", headers={"Authorization": f"Bearer {token}"})
     with_session = client_of(user).get(f"{LINK}/route")
@@ -74,7 +74,7 @@ def test_a_uav_is_no_user() -> None:
 
 def test_a_session_beside_a_uavs_token_changes_nothing() -> None:
     kite = linked_uav()
-    kite.client.force_login(somebody(Role.ADMINISTRATOR))
+    kite.client.force_login(a_user(Role.ADMINISTRATOR))
     answer = kite.report(report())
     assert answer.status_code == 200
     assert TelemetryRecord.objects.get().uav == kite.uav

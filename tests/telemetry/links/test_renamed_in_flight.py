@@ -10,7 +10,7 @@ from django.db import connection, connections, transaction
 
 from missions.models import Uav
 from missions.services.fleet.uavs import change_uav
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -32,7 +32,7 @@ def until(fact: Callable[[], bool]) -> None:
 
 
 def test_a_name_is_changed_between_a_report_that_points_at_the_uav_and_its_new_place() -> None:
-    uav, actor = a_uav("Kite"), somebody()
+    uav, actor = a_uav("Kite"), a_user()
     has_pointed = threading.Event()
     faults: list[Exception] = []
 

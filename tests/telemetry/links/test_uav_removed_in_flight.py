@@ -8,7 +8,7 @@ from django.utils import timezone
 from missions.models import CommandKind, Uav
 from missions.services.commands.commands import queue_command
 from telemetry.models import UavLink
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch
 from tests.missions.commands.outbox import a_uav
 from workspace.models import Role
@@ -23,7 +23,7 @@ def uav() -> Uav:
 
 @pytest.fixture
 def administrator() -> Client:
-    return client_of(somebody(Role.ADMINISTRATOR))
+    return client_of(a_user(Role.ADMINISTRATOR))
 
 
 def delete(client: Client, uav: Uav) -> HttpResponse:

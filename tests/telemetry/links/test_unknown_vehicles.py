@@ -10,7 +10,7 @@ from django.utils import timezone
 
 from missions.models import TargetState, Uav, UavType
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import an_operator, dispatched
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.ADMINISTRATOR))
+    return client_of(a_user(Role.ADMINISTRATOR))
 
 
 def vehicle(system_id: int = 41, place: Point | None = None, **facts: Any) -> UnknownVehicle:
@@ -121,7 +121,7 @@ def test_another_organisations_uav_is_none_to_adopt_for(client: Client) -> None:
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR, Role.CURATOR])
 def test_others_neither_see_nor_settle_them(role: Role) -> None:
-    found, client = vehicle(41), client_of(somebody(role))
+    found, client = vehicle(41), client_of(a_user(role))
     asked = [client.get("/api/v1/unknown-vehicles"), post(client, f"unknown-vehicles/{found.pk}/adopt", {"uav": 1})]
     assert {answer.status_code for answer in [*asked, post(client, f"unknown-vehicles/{found.pk}/ignore")]} == {403}
 

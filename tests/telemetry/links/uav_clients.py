@@ -9,7 +9,7 @@ from django.test import Client
 
 from missions.models import CredentialKind, LinkKind, Uav
 from missions.services import make_credential
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from workspace.models import Organisation
 
@@ -41,7 +41,7 @@ class UavClient:
 
 def linked_uav(name: str = "Kite", organisation: Organisation | None = None, **facts: Any) -> UavClient:
     uav = a_uav(name, organisation, **{"link": LinkKind.HTTP, **facts})
-    made = make_credential(uav=uav, actor=somebody(), kind=CredentialKind.LINK_TOKEN)
+    made = make_credential(uav=uav, actor=a_user(), kind=CredentialKind.LINK_TOKEN)
     return UavClient(uav, made.secret)
 
 

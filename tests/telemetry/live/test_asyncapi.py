@@ -13,7 +13,7 @@ from websocket import WebSocket
 
 from config.websocket_urls import websocket_urlpatterns
 from telemetry.services import store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import record
 from tests.workspace.api.described_answers import openapi_document, validate
@@ -73,7 +73,7 @@ def test_every_websocket_is_in_the_document(document: Any) -> None:
 
 
 def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(here: Door, document: Any) -> None:
-    uav, live = a_flying_uav(), follow(here, "/ws/live", somebody())
+    uav, live = a_flying_uav(), follow(here, "/ws/live", a_user())
     assert receive(live, document, "snapshot")["live"]["uavs"]
     live.send('{"type": "have", "sequence": 1}')
     store_records([record(uav, 2, longitude_deg=10.5)])
@@ -85,13 +85,13 @@ def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(her
 
 
 def test_what_the_document_does_not_name_hangs_up(here: Door) -> None:
-    live = follow(here, "/ws/live", somebody())
+    live = follow(here, "/ws/live", a_user())
     live.send('{"type": "hello"}')
     assert close_code(live) == 4400
 
 
 def test_a_job_is_told_as_the_document_says(here: Door, document: Any) -> None:
-    user = somebody()
+    user = a_user()
     job = create_job(organisation=user.organisation, created_by=user, task="missions.tasks.solve_plan", parameters={}, message="Planning")
     started = start_job(job_id=job.pk)
     assert started is not None
@@ -103,7 +103,7 @@ def test_a_job_is_told_as_the_document_says(here: Door, document: Any) -> None:
 
 @pytest.mark.long
 def test_a_follower_by_the_document_stays_and_one_that_confirms_nothing_is_hung_up_on(here: Door, document: Any) -> None:
-    uav, user = a_flying_uav(), somebody()
+    uav, user = a_flying_uav(), a_user()
     live, mute = follow(here, "/ws/live", user), follow(here, "/ws/live", user)
     live.send(json.dumps({"type": "have", "sequence": receive(live, document, "snapshot")["sequence"]}))
     store_records([record(uav, 2, longitude_deg=10.5)])

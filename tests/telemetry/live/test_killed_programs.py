@@ -26,7 +26,7 @@ from missions.models import OPEN_COMMANDS, CommandState, CredentialKind, LinkKin
 from missions.services.fleet.credentials import make_credential
 from scripts.places import WEB_PROGRAMS
 from telemetry.models import TelemetryRecord
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
@@ -172,7 +172,7 @@ def flying(tmp_path: Path) -> tuple[Uav, Uav]:
     """One on a mission that speaks MAVLink, one that reports over HTTP."""
     ground(tmp_path / "ground.tif")
     here, [tern] = world(), fleet(mavlink_system_id=SYSTEM, allows_unsigned=True)
-    mission = dispatched(somebody(), [tern], [here.towers[3]])
+    mission = dispatched(a_user(), [tern], [here.towers[3]])
     carry(tern)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
     return tern, a_uav("Gull", link=LinkKind.HTTP)
@@ -180,7 +180,7 @@ def flying(tmp_path: Path) -> tuple[Uav, Uav]:
 
 def test_every_program_is_killed_ten_times_in_a_flight(tmp_path: Path, folder: Path) -> None:
     tern, gull = flying(tmp_path)
-    operator = somebody()
+    operator = a_user()
     token = create_api_token(user=operator, name="test", expires_at=timezone.now() + timedelta(hours=2))
     uav_token = make_credential(uav=gull, actor=operator, kind=CredentialKind.LINK_TOKEN).secret
     vehicle = Px4(SYSTEM, is_armed=True, is_in_air=True)

@@ -16,7 +16,7 @@ from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
 from telemetry.selectors.live import MAX_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.commands.outbox import a_uav, give
 from tests.missions.flights import approved, carry, dispatched, fleet, ground
 from tests.missions.worlds import world
@@ -39,7 +39,7 @@ def shown(user: Any, query: str = "") -> dict[str, list[dict[str, Any]]]:
 
 def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
     ground(tmp_path / "ground.tif")
-    user, here, [uav] = somebody(), world(), fleet()
+    user, here, [uav] = a_user(), world(), fleet()
     mission = dispatched(user, [uav], [here.towers[3]])
     carry(uav)
     mark_started(mission_id=mission.pk, uav_id=uav.pk)
@@ -64,7 +64,7 @@ def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
 
 def test_a_report_is_late_when_alerts_call_it_late(tmp_path: Path) -> None:
     ground(tmp_path / "ground.tif")
-    user, here, uavs = somebody(), world(), fleet("Kite", "Tern")
+    user, here, uavs = a_user(), world(), fleet("Kite", "Tern")
     mission = dispatched(user, uavs, [here.towers[3], here.bridge])
     carry(*uavs)
     kite, tern = uavs
@@ -79,7 +79,7 @@ def test_a_report_is_late_when_alerts_call_it_late(tmp_path: Path) -> None:
 
 
 def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
-    user, now = somebody(), timezone.now()
+    user, now = a_user(), timezone.now()
     for name, ended_ago in {"just ended": timedelta(minutes=59), "long over": timedelta(minutes=61)}.items():
         Mission.objects.create(name=name, ended_at=now - ended_ago)
     Mission.objects.create(name="deleted", ended_at=now, deleted_at=now)
@@ -104,7 +104,7 @@ def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
 
 
 def test_of_alerts_that_were_closed_the_newest_are_shown_of_all_and_of_each_mission() -> None:
-    user, uav, now = somebody(), a_uav("busy"), timezone.now()
+    user, uav, now = a_user(), a_uav("busy"), timezone.now()
     quiet, busy = Mission.objects.create(name="quiet"), Mission.objects.create(name="busy")
     facts = {"uav": uav, "level": AlertLevel.ADVISORY, "opened_at": now - timedelta(minutes=50)}
     Alert.objects.create(**facts, code="open", message="open", mission=busy)
@@ -119,7 +119,7 @@ def test_of_alerts_that_were_closed_the_newest_are_shown_of_all_and_of_each_miss
 
 
 def test_of_a_mission_only_what_belongs_to_it_is_shown_whatever_its_state() -> None:
-    user, own, other = somebody(), a_uav("own"), a_uav("other")
+    user, own, other = a_user(), a_uav("own"), a_uav("other")
     mission = Mission.objects.create(name="a draft")
     MissionUav.objects.create(mission=mission, uav=own, sequence=0, name="own", start=own.location, cruise_speed_mps=10.0)
     for uav in (own, other):
@@ -136,14 +136,14 @@ def test_nothing_of_another_organisation_is_shown() -> None:
     elsewhere = Organisation.objects.create(name="Elsewhere")
     theirs = Mission.objects.create(name="theirs", organisation=elsewhere, ended_at=timezone.now())
     UavLink.objects.create(uav=a_uav("their UAV", elsewhere), heard_at=timezone.now())
-    user = somebody()
+    user = a_user()
     assert shown(user) == {kind: [] for kind in KINDS}
     assert asked(user, f"?mission={theirs.pk}").status_code == 404
     assert asked(user, "?mission=7").status_code == 400
 
 
 def test_while_nothing_changes_nothing_is_sent_again() -> None:
-    user, uav = somebody(), a_uav("Tern")
+    user, uav = a_user(), a_uav("Tern")
     store_records([record(uav, 1)])
     etag = asked(user)["ETag"]
     again = asked(user, **{"If-None-Match": f"W/{etag}"})  # as it comes back through a proxy that packs
@@ -154,7 +154,7 @@ def test_while_nothing_changes_nothing_is_sent_again() -> None:
 
 def test_a_page_of_a_mission_shows_no_uav_that_has_no_route_of_it_or_flies_another() -> None:
     """South is planned for Tern and Kite, lists Crow without a route, and is sent to Tern alone; Kite and Crow fly North."""
-    user, here = somebody(), world()
+    user, here = a_user(), world()
     tern, kite, crow = fleet("Tern", "Kite", "Crow")
     north = dispatched(user, [kite, crow], here.towers[1:3], name="North")
     carry(kite, crow)

@@ -3,7 +3,7 @@
 import pytest
 
 from telemetry.services import store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.django_db(transaction=True)
 def test_a_page_is_told_everything_and_then_what_changes(here: Door) -> None:
     uav = a_uav("Tern")
     store_records([record(uav, 1, battery_percent=80.0)])
-    page = Page(here.open("/ws/live", user=somebody()))
+    page = Page(here.open("/ws/live", user=a_user()))
     first = page.take()
     assert (first["type"], first["sequence"]) == ("snapshot", 1)
     assert page.shows["uavs"][uav.pk]["measured"]["battery_percent"] == 80.0

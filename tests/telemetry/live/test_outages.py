@@ -14,7 +14,7 @@ from websocket import WebSocketBadStatusException, WebSocketException
 from missions.models import Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.outages.test_outages import database_away
 from tests.telemetry.live.page import Page
@@ -54,7 +54,7 @@ def wipe(redis: Path) -> None:
 def kill_redis_often(door: Door, times: int) -> None:
     flight = Flight()
     flight.report()
-    page = Page(door.open("/ws/live", user=somebody()))
+    page = Page(door.open("/ws/live", user=a_user()))
     for _ in range(times):
         with running(redis_at(door.redis)) as redis:
             wait_until(door.redis.exists)
@@ -81,7 +81,7 @@ def test_redis_may_be_killed_and_emptied_ten_times(without_redis: Door) -> None:
 def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Door) -> None:
     flight = Flight()
     flight.report()
-    page = Page(without_redis.open("/ws/live", user=somebody()))
+    page = Page(without_redis.open("/ws/live", user=a_user()))
     page.take()
     with running(redis_at(without_redis.redis)):
         wait_until(without_redis.redis.exists)
@@ -96,7 +96,7 @@ def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Door) -> 
 
 
 def test_who_comes_while_the_database_is_away_is_told_to_try_again(here: Door) -> None:
-    token = create_api_token(user=somebody(), name="test", expires_at=timezone.now() + timedelta(hours=1))
+    token = create_api_token(user=a_user(), name="test", expires_at=timezone.now() + timedelta(hours=1))
     with database_away(), pytest.raises(WebSocketBadStatusException) as refused:
         here.open("/ws/live", token=token, origin=None)
     assert refused.value.status_code == 503
@@ -124,7 +124,7 @@ def reopened(door: Door, user: User, until_s: float) -> Page:
 
 
 def test_the_live_program_is_killed_and_pages_that_come_back_are_whole(here: Door, live_program: int) -> None:
-    user, flight = somebody(), Flight()
+    user, flight = a_user(), Flight()
     flight.report()
     page = Page(here.open("/ws/live", user=user))
     page.take()

@@ -13,7 +13,7 @@ from websocket import WebSocket, WebSocketBadStatusException
 from config.websocket_urls import websocket_urlpatterns
 from missions.models import CredentialKind, Mission
 from missions.services.fleet.credentials import make_credential
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.workspace.live.proxied_site import Door, close_code
@@ -70,27 +70,27 @@ def test_every_role_listens_in_its_own_organisation_and_nowhere_else(here: Door,
     address = ROUTES[route]
     path = "/" + route if address is None else address(home)
     for role in Role:
-        own, stranger = somebody(role), somebody(role, elsewhere)
+        own, stranger = a_user(role), a_user(role, elsewhere)
         for who in (own, stranger):
             may = address is None or who is own
             assert is_let_in(here, path, user=who) is may, role
             assert is_let_in(here, path, token=token_of(who), origin=None) is may, role
     refused = {
         "nobody": {},
-        "a cookie that names no origin": {"user": somebody(), "origin": None},
-        "another site with a session": {"user": somebody(), "origin": "http://evil.example"},
-        "another site with a token": {"token": token_of(somebody()), "origin": "http://evil.example"},
+        "a cookie that names no origin": {"user": a_user(), "origin": None},
+        "another site with a session": {"user": a_user(), "origin": "http://evil.example"},
+        "another site with a token": {"token": token_of(a_user()), "origin": "http://evil.example"},
         "a token that nobody has": {"token": "spw_none", "origin": None},
         "a token that has ended": {"token": ended_token(), "origin": None},
         "somebody who was locked out": {"token": locked_out_token(), "origin": None},
         "a UAV": {"token": uav_token(), "origin": None},
-        "a session that has ended, under another's name": {"user": somebody(), "token": "spw_none"},
+        "a session that has ended, under another's name": {"user": a_user(), "token": "spw_none"},
     }
     assert [what for what, who in refused.items() if is_let_in(here, path, **who)] == []
 
 
 def test_what_is_not_there_or_deleted_lets_nobody_in(here: Door) -> None:
-    user = somebody()
+    user = a_user()
     deleted = a_mission(user.organisation)
     Mission.objects.filter(pk=deleted.pk).update(deleted_at=timezone.now())
     for path in (f"/ws/missions/{deleted.pk}/live", f"/ws/missions/{Mission().pk}/live", f"/ws/jobs/{Mission().pk}", "/ws/nothing"):
@@ -102,7 +102,7 @@ def test_a_page_of_the_organisation_shows_nothing_of_another(here: Door) -> None
     elsewhere = Organisation.objects.create(name="Elsewhere")
     Mission.objects.create(name="theirs", organisation=elsewhere, state="draft", ended_at=timezone.now())
     Mission.objects.create(name="ours", ended_at=timezone.now())
-    page = Page(here.open("/ws/live", user=somebody()))
+    page = Page(here.open("/ws/live", user=a_user()))
     page.take()
     assert [mission["name"] for mission in page.shows["missions"].values()] == ["ours"]
 
@@ -126,7 +126,7 @@ def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here:
     mission = a_mission(Organisation.objects.get(pk=1))
     opened: dict[str, tuple[User, WebSocket]] = {}
     for number, why in enumerate([*ends, *by_token]):
-        user = somebody()
+        user = a_user()
         who = {"token": token_of(user)} if why in by_token else {"user": user}
         opened[why] = user, here.open(f"/ws/missions/{mission.pk}/live" if number % 2 else "/ws/live", **who)
         Page(opened[why][1]).take()
@@ -139,7 +139,7 @@ def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here:
 
 def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Door) -> None:
     mission = a_mission(Organisation.objects.get(pk=1))
-    page = Page(here.open(f"/ws/missions/{mission.pk}/live", user=somebody()))
+    page = Page(here.open(f"/ws/missions/{mission.pk}/live", user=a_user()))
     page.take()
     ended_s = time.monotonic()
     Mission.objects.filter(pk=mission.pk).update(deleted_at=timezone.now())
@@ -162,26 +162,26 @@ def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Door)
     ],
 )
 def test_whoever_says_what_no_page_says_is_hung_up_on(here: Door, message: str | bytes) -> None:
-    page = Page(here.open("/ws/live", user=somebody()))
+    page = Page(here.open("/ws/live", user=a_user()))
     page.take()
     (page.socket.send if isinstance(message, str) else page.socket.send_binary)(message)
     assert close_code(page.socket) == 4400
 
 
 def ended_token() -> str:
-    token = token_of(user := somebody())
+    token = token_of(user := a_user())
     ApiToken.objects.filter(user=user).update(expires_at=timezone.now())
     return token
 
 
 def locked_out_token() -> str:
-    token = token_of(user := somebody())
+    token = token_of(user := a_user())
     User.objects.filter(pk=user.pk).update(is_active=False)
     return token
 
 
 def uav_token() -> str:
-    return make_credential(uav=a_uav("Tern"), actor=somebody(), kind=CredentialKind.LINK_TOKEN).secret
+    return make_credential(uav=a_uav("Tern"), actor=a_user(), kind=CredentialKind.LINK_TOKEN).secret
 
 
 def sessions_of(user: User) -> list[Session]:

@@ -7,7 +7,7 @@ import pytest
 
 from telemetry.live.reader import Reader, SaysNonsense
 from telemetry.services import store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
@@ -57,7 +57,7 @@ def test_a_reader_that_has_lost_count_is_given_everything_but_not_all_the_time(m
 def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_alone(here: Door) -> None:
     uavs = [a_uav("Tern"), a_uav("Gull")]
     store_records([record(uav, 1) for uav in uavs])
-    quick, slow = Page(here.open("/ws/live", user=somebody())), Page(here.open("/ws/live", user=somebody()))
+    quick, slow = Page(here.open("/ws/live", user=a_user())), Page(here.open("/ws/live", user=a_user()))
     quick.take(), slow.receive()
     for second in range(2, LAST + 1):
         store_records([record(uav, second, longitude_deg=10.0 + second / 100) for uav in uavs])
@@ -79,7 +79,7 @@ def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_al
 def test_a_page_that_asks_again_is_whole_again(here: Door) -> None:
     uav = a_uav("Tern")
     store_records([record(uav, 1)])
-    page = Page(here.open("/ws/live", user=somebody()))
+    page = Page(here.open("/ws/live", user=a_user()))
     page.take()
     store_records([record(uav, 2, longitude_deg=10.5)])
     lost = json.loads(page.socket.recv())  # between here and there

@@ -5,7 +5,7 @@ from django.test import Client
 
 from missions.models import Approval, Mission, Uav
 from missions.services.commands.flight_progress import mark_started
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
 from workspace.models import Role, User
@@ -40,4 +40,4 @@ def approval(mission: Mission) -> Approval:
 
 @pytest.fixture
 def client(db: None) -> Client:
-    return client_of(somebody(Role.VIEWER))
+    return client_of(a_user(Role.VIEWER))

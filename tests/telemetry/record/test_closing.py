@@ -10,7 +10,7 @@ from missions.models import Mission, MissionState, TargetState, Uav
 from missions.services.commands.dispatch import abort_mission
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_started
 from telemetry.models import UavLink
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.flights import dispatched, fleet
 from tests.missions.worlds import World
@@ -111,6 +111,6 @@ def test_a_mission_that_was_not_started_is_taken_off_its_uavs(client: Client, he
 
 
 def test_a_draft_and_a_viewer_cannot(client: Client, mission: Mission) -> None:
-    assert close(client_of(somebody(Role.VIEWER)), mission).status_code == 403
+    assert close(client_of(a_user(Role.VIEWER)), mission).status_code == 403
     answer = close(client, Mission.objects.create(name="Draft"), [])
     assert (answer.status_code, answer.json()["error"]["code"]) == (409, "not_sent")

@@ -17,7 +17,7 @@ from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.targets_checked import LOOKBACK_S, TargetChecks, store_missing_visits
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.telemetry.flown import fly, record_of, route_of
 from workspace.models import Organisation, Role, User
 
@@ -101,7 +101,7 @@ def test_the_record_leads_to_the_mission_that_flies_the_rest(client: Client, mis
 
 
 def test_another_organisations_record_is_not_there(mission: Mission) -> None:
-    stranger = client_of(somebody(Role.OPERATOR, Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(Role.OPERATOR, Organisation.objects.create(name="Other")))
     assert stranger.get(f"/api/v1/missions/{mission.pk}/record").status_code == 404
     assert stranger.get(f"/api/v1/missions/{mission.pk}/record.zip").status_code == 404
 

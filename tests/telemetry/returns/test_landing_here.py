@@ -7,7 +7,7 @@ import pytest
 
 from inspection.services import import_terrain
 from missions.models import Uav
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.flights import an_operator, fleet, ground
 from tests.missions.worlds import world, zone_around
@@ -99,5 +99,5 @@ def test_a_place_that_nobody_knows_has_no_ground_below(user, uav):
 
 def test_only_uavs_of_ones_own_organisation_are_told(uav):
     flies(uav, HOME)
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert stranger.get(f"/api/v1/uavs/{uav.pk}/landing").status_code == 404

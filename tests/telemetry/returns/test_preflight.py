@@ -17,7 +17,7 @@ from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts.alerts import open_alert
 from telemetry.services.alerts.down_alerts import close_down_alert
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import post
 from tests.missions.commands.outbox import claim, fence
 from tests.missions.flights import an_operator, approved, carry, fleet
@@ -242,11 +242,11 @@ def test_of_a_mission_that_is_not_approved_nothing_is_checked(two: tuple[Mission
 
 def test_viewers_read_it_and_nobody_of_another_organisation_does(two: tuple[Mission, Uav, Uav]) -> None:
     mission, _tern, _kite = two
-    answer = client_of(somebody(role=Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/preflight")
+    answer = client_of(a_user(role=Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/preflight")
     assert answer.status_code == 200
     assert answer.json()["next_act"] == "connect"
     assert answer.json()["uavs"][0]["checks"][0]["code"] == "link"
-    stranger = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere"))
+    stranger = a_user(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere"))
     assert client_of(stranger).get(f"/api/v1/missions/{mission.pk}/preflight").status_code == 404
 
 

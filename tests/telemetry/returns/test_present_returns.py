@@ -11,7 +11,7 @@ from inspection.models import NoFlyZone
 from missions.models import Mission, Uav
 from missions.services.commands.rtl_check import note_rtl_behaviour
 from telemetry.models import UavLink, UavWatch
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground as things
 from tests.missions.flights import an_operator, approved, fleet
 from tests.missions.worlds import power_line, rebuild, world, zone_around
@@ -243,7 +243,7 @@ def test_one_on_the_ground_has_no_way_home(user, uav):
 
 
 def test_only_uavs_of_ones_own_organisation_are_told(user, uav):
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Other")))
     assert stranger.get(f"/api/v1/returns?uav={uav.pk}").status_code == 404
     for query in ("", "?uav=x", "?" + "&".join(f"uav={number}" for number in range(51))):
         assert client_of(user).get(f"/api/v1/returns{query}").status_code == 400

@@ -10,7 +10,7 @@ from missions.services.commands.dispatch import load_of
 from planning.clearance.lost_link import LostLink
 from planning.request import LostLinkRequest
 from telemetry.models import TelemetryRecord, TelemetryStream
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import planned
 from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended
 from tests.telemetry.gateway.program import free_port, gateway_program
@@ -25,7 +25,7 @@ SPEED = 5.0
 @pytest.mark.parametrize(("transport", "loss"), [("udp", 0.0), ("tcp", 0.0), ("udp", 0.3), ("tcp", 0.3)])
 def test_more_than_200_items_are_brought(transport, loss, uav, region, new_vehicle, lossy, tmp_path):
     """Points on the legs make a mission of three towers so long. With a fence and a rally point."""
-    mission = planned(somebody(), [uav], region.towers[:3], lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))
+    mission = planned(a_user(), [uav], region.towers[:3], lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))
     approve_mission(mission=mission, actor=mission.author, longest_leg_m=9.0)
     mission.refresh_from_db()
     with gateway_at_work(tmp_path) as gateway:

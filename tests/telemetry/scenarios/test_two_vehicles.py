@@ -20,7 +20,7 @@ from missions.services.commands.dispatch import dispatch_mission
 from planning.request import EndAction
 from telemetry.alerting.detectors.converging import CODE
 from telemetry.models import Alert
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions import worlds
 from tests.missions.flights import approved
 from tests.missions.worlds import UAV_AT
@@ -52,14 +52,14 @@ def uavs(uav) -> list[Uav]:
 @pytest.fixture
 def crossing(uavs, region) -> Mission:
     """The routes cross, and are kept apart by their heights: both start at once."""
-    mission, _approval = approved(somebody(), uavs, region.towers[4:6])
+    mission, _approval = approved(a_user(), uavs, region.towers[4:6])
     assert set(mission.routes.values_list("departs_s", flat=True)) == {0.0}
     return mission
 
 
 def alone(uav: Uav, tower: Asset, east_deg: float) -> Mission:
     """A mission of one UAV, approved."""
-    author = somebody()
+    author = a_user()
     at = worlds.uav((UAV_AT.lon + east_deg, UAV_AT.lat), name=uav.name, end_action=EndAction.RETURN)
     request = worlds.request(tower, uavs=(replace(at, uav=uav.pk),))
     draft = create_mission(organisation=author.organisation, author=author, name=f"To {tower.pk}", request=request)
@@ -106,7 +106,7 @@ def fly_apart(mission: Mission, vehicles: list[ScenarioVehicle]) -> None:
 
 
 def test_two_uavs_of_one_mission_are_flown_to_its_end_apart(uavs, region, new_vehicle, tmp_path):
-    mission, _approval = approved(somebody(), uavs, region.towers[:2])
+    mission, _approval = approved(a_user(), uavs, region.towers[:2])
     with two_ready([mission], new_vehicle, tmp_path, speed=5.0) as vehicles:
         for uav in uavs:
             start(uav, mission)

@@ -13,7 +13,7 @@ from telemetry.selectors.watched import watched_flights
 from telemetry.services import NewRecord, store_records
 from telemetry.watch.options import Options
 from telemetry.watch.process import Watch
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
 
@@ -39,7 +39,7 @@ def learnt_rate() -> float:
 def flying(*, is_simulated: bool) -> list[Uav]:
     uavs = fleet("Tern", "Gull", is_simulated=is_simulated)
     here = world()
-    mission = dispatched(somebody(), uavs, [here.towers[0], here.towers[3]])
+    mission = dispatched(a_user(), uavs, [here.towers[0], here.towers[3]])
     carry(*uavs)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
     for uav, rate in zip(uavs, (1.0, learnt_rate()), strict=True):

@@ -11,7 +11,7 @@ from mavlink.decoding.measurement import Measurement
 from missions.models import Mission, MissionState, Uav
 from telemetry.models import PositionEstimate, UavWatch
 from telemetry.services import NewRecord, store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.station import wait_for
@@ -25,7 +25,7 @@ pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 def uav(tmp_path) -> Uav:
     ground(tmp_path / "ground.tif")
     here, [uav] = world(), fleet()
-    mission = dispatched(somebody(), [uav], [here.towers[3]])
+    mission = dispatched(a_user(), [uav], [here.towers[3]])
     carry(uav)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
     begun = timezone.now() - timedelta(seconds=20)

@@ -14,7 +14,7 @@ from telemetry.services import NewRecord, store_records
 from telemetry.watch import process
 from telemetry.watch.options import Options
 from telemetry.watch.process import Watch
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import carry, dispatched, fleet, ground
 from tests.missions.worlds import UAV_AT, world
 
@@ -27,7 +27,7 @@ NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)
 def uav(tmp_path) -> Uav:
     ground(tmp_path / "ground.tif")
     here, [uav] = world(), fleet()
-    mission = dispatched(somebody(), [uav], [here.towers[3]])
+    mission = dispatched(a_user(), [uav], [here.towers[3]])
     carry(uav)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
     return uav

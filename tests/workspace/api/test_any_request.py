@@ -10,7 +10,7 @@ from django.test import Client
 from drf_spectacular.generators import SchemaGenerator
 
 from inspection.models import Asset, NoFlyZone
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.missions.worlds import world
 from tests.workspace.api.described_requests import Maker, Request
@@ -62,7 +62,7 @@ def answered(client: Client, request: Request) -> Any:
 @pytest.mark.parametrize("number", [200, pytest.param(20_000, marks=pytest.mark.long)])
 def test_every_request_is_answered_as_it_is_described(number: int, record_property: Any) -> None:
     maker = Maker(SchemaGenerator().get_schema(request=None, public=True), SEED + number, Known())
-    client, uav_link = client_of(somebody(Role.ADMINISTRATOR)), Client(raise_request_exception=False)
+    client, uav_link = client_of(a_user(Role.ADMINISTRATOR)), Client(raise_request_exception=False)
     statuses: Counter[int] = Counter()
     faults: list[str] = []
     undescribed: set[str] = set()
@@ -70,7 +70,7 @@ def test_every_request_is_answered_as_it_is_described(number: int, record_proper
         for request in maker.requests(number):
             answer = answered(uav_link if "/uav-link/" in request.path else client, request)
             if answer.status_code == 401 and "/uav-link/" not in request.path:  # it has signed itself out, or taken its own role
-                client = client_of(somebody(Role.ADMINISTRATOR))
+                client = client_of(a_user(Role.ADMINISTRATOR))
                 answer = answered(client, request)
             statuses[answer.status_code] += 1
             described_headers = request.described.get(answer.status_code, frozenset())

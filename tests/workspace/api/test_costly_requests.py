@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.workspace.counters import forget_counts
 from workspace.api.throttling import ScopedRate
 
@@ -25,8 +25,8 @@ COSTLY = {
 def test_a_user_who_asks_for_too_much_is_refused_and_another_is_not(scope: str, path: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ScopedRate, "THROTTLE_RATES", {name: "2/hour" if name == scope else None for name in COSTLY})
     forget_counts()
-    client = client_of(somebody())
+    client = client_of(a_user())
     statuses = [client.get(path).status_code for _ in range(4)]
     assert 429 not in statuses[:2]
     assert statuses[2:] == [429, 429]
-    assert client_of(somebody()).get(path).status_code != 429
+    assert client_of(a_user()).get(path).status_code != 429

@@ -7,7 +7,7 @@ from django.db import DataError, OperationalError
 from django.test import Client
 from rest_framework import serializers
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace import selectors
 from workspace.api.errors import ApiProblem, error_response
 from workspace.api.throttling import ScopedRate
@@ -18,7 +18,7 @@ pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.api.echo_
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody())
+    return client_of(a_user())
 
 
 def send(client: Client, body: bytes | str, content_type: str = "application/json") -> Any:
@@ -165,7 +165,7 @@ def test_a_database_that_is_away_is_said_so_outside_the_api_too(monkeypatch: pyt
     def away(*args: object) -> None:
         raise OperationalError("connection refused")
 
-    client = client_of(somebody())
+    client = client_of(a_user())
     monkeypatch.setattr("django.contrib.sessions.backends.db.SessionStore.load", away)
     for address in ("/", "/api/v1/jobs"):
         answer = client.get(address)

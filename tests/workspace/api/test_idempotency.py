@@ -10,7 +10,7 @@ from django.db import connection
 from django.test import Client
 from django.utils import timezone
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.jobs.services import forget_old_idempotency_keys
 from workspace.models import IdempotencyKey, Organisation
 
@@ -27,7 +27,7 @@ def made(name: str) -> int:
 
 
 def test_the_second_request_gets_the_first_answer() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     first, second = create(client, name="North"), create(client, name="North")
     assert (first.status_code, first.json(), first["Location"]) == (second.status_code, second.json(), second["Location"])
     assert second["Idempotency-Replayed"] == "true"
@@ -35,7 +35,7 @@ def test_the_second_request_gets_the_first_answer() -> None:
 
 
 def test_the_key_belongs_to_one_request() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     create(client, name="North")
     answer = create(client, name="South")
     assert answer.status_code == 422
@@ -44,13 +44,13 @@ def test_the_key_belongs_to_one_request() -> None:
 
 
 def test_the_key_belongs_to_one_user() -> None:
-    assert create(client_of(somebody()), name="North").status_code == 201
-    assert create(client_of(somebody()), name="South").status_code == 201
+    assert create(client_of(a_user()), name="North").status_code == 201
+    assert create(client_of(a_user()), name="South").status_code == 201
 
 
 @pytest.mark.parametrize("fail", ["raise", "return"])
 def test_a_request_that_failed_leaves_nothing_and_can_be_sent_again(fail: str) -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     assert create(client, name="North", fail=fail).status_code in {409, 500}
     assert made("North") == IdempotencyKey.objects.count() == 0
     assert create(client, name="North").status_code == 201
@@ -58,17 +58,17 @@ def test_a_request_that_failed_leaves_nothing_and_can_be_sent_again(fail: str) -
 
 @pytest.mark.parametrize("key", ["", "x" * 201, "ä"])
 def test_a_key_that_cannot_be_kept_is_refused(key: str) -> None:
-    assert create(client_of(somebody()), key=key, name="North").status_code == 400
+    assert create(client_of(a_user()), key=key, name="North").status_code == 400
 
 
 def test_without_a_key_nothing_is_kept() -> None:
-    assert create(client_of(somebody()), key=None, name="North").status_code == 201
+    assert create(client_of(a_user()), key=None, name="North").status_code == 201
     assert not IdempotencyKey.objects.exists()
 
 
 @pytest.mark.django_db(transaction=True)
 def test_two_requests_at_the_same_moment_create_once() -> None:
-    user = somebody()
+    user = a_user()
 
     def send(number: int) -> tuple[int, bytes]:
         try:
@@ -85,7 +85,7 @@ def test_two_requests_at_the_same_moment_create_once() -> None:
 
 
 def test_keys_are_forgotten_after_two_days() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     create(client, name="North")
     assert forget_old_idempotency_keys() == 0
     IdempotencyKey.objects.update(created_at=timezone.now() - timedelta(hours=49))

@@ -9,7 +9,7 @@ from django.conf import settings
 from django.test import Client
 
 from planning.energy.performance import BATTERIES_WH, MASSES_KG, ROTOR_DISKS_M2
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.workspace.api.described_answers import openapi_document
 from workspace.models import Role
 
@@ -46,7 +46,7 @@ def asked(client: Client, method: str, address: str, names: set[str]) -> Any:
 
 
 def test_every_operation_takes_each_described_parameter_and_no_other(document: Any) -> None:
-    client = client_of(somebody(Role.ADMINISTRATOR))
+    client = client_of(a_user(Role.ADMINISTRATOR))
     walked = operations(document)
     assert len(walked) > 150
     for method, address, names in walked:
@@ -61,7 +61,7 @@ def test_every_operation_takes_each_described_parameter_and_no_other(document: A
 
 
 def test_a_misspelt_filter_is_a_problem_that_names_the_nearest_one() -> None:
-    client = client_of(somebody(Role.VIEWER))
+    client = client_of(a_user(Role.VIEWER))
     answer = client.get("/api/v1/missions?sate=planned&limit=1", headers={"Accept": "application/problem+json"})
     assert answer.status_code == 400
     assert answer["Content-Type"] == "application/problem+json"
@@ -76,7 +76,7 @@ def test_a_misspelt_filter_is_a_problem_that_names_the_nearest_one() -> None:
 
 
 def test_nothing_is_done_by_a_request_with_an_unknown_parameter() -> None:
-    client = client_of(somebody(Role.OPERATOR))
+    client = client_of(a_user(Role.OPERATOR))
     made = client.post("/api/v1/bases?dry_run=true", {"name": "North", "position": [10.0, 56.0]}, content_type="application/json")
     assert made.status_code == 400
     assert client.get("/api/v1/bases").json()["results"] == []
@@ -84,17 +84,17 @@ def test_nothing_is_done_by_a_request_with_an_unknown_parameter() -> None:
 
 def test_of_many_unknown_parameters_the_first_are_named() -> None:
     many = urlencode({f"{number}{'x' * 500}": "" for number in range(500)})
-    error = client_of(somebody(Role.VIEWER)).get(f"/api/v1/missions?{many}").json()["error"]
+    error = client_of(a_user(Role.VIEWER)).get(f"/api/v1/missions?{many}").json()["error"]
     assert len(error["details"]) == 10
     assert max(map(len, error["details"])) == 100
 
 
 def test_a_method_that_is_not_there_is_answered_as_before() -> None:
-    assert client_of(somebody(Role.OPERATOR)).delete("/api/v1/missions?x=1").status_code == 405
+    assert client_of(a_user(Role.OPERATOR)).delete("/api/v1/missions?x=1").status_code == 405
 
 
 def test_the_document_and_the_pages_take_their_own_parameters() -> None:
-    client = client_of(somebody(Role.VIEWER))
+    client = client_of(a_user(Role.VIEWER))
     assert client.get("/api/docs?script=").status_code == 200
     assert client.get("/sign-in?next=/missions").status_code in {200, 302}
 
@@ -137,25 +137,25 @@ def test_pages_examples_and_documents_ask_with_known_parameters_alone(document: 
 
 @pytest.mark.parametrize("since", ["0001-01-01", "0001-01-01T00:00:00Z", "9999-12-31T23:59:59Z"])
 def test_any_time_may_be_asked_for_since_when_rows_have_changed(since: str) -> None:
-    assert client_of(somebody()).get("/api/v1/zones", {"changed_since": since}).status_code == 200
+    assert client_of(a_user()).get("/api/v1/zones", {"changed_since": since}).status_code == 200
 
 
 @pytest.mark.parametrize("zone_set", ["-1", "0", "1000000000", "1.5", "١"])
 def test_a_number_outside_the_bounds_of_the_document_is_refused(zone_set: str) -> None:
-    answer = client_of(somebody()).get("/api/v1/zones", {"zone_set": zone_set})
+    answer = client_of(a_user()).get("/api/v1/zones", {"zone_set": zone_set})
     assert answer.status_code == 400
     assert answer.json()["error"]["details"] == {"zone_set": ["A whole number from 1 to 999999999 is needed."]}
 
 
 @pytest.mark.parametrize("name", ["stale", "deleted"])
 def test_what_is_neither_true_nor_false_is_refused(name: str) -> None:
-    assert client_of(somebody()).get("/api/v1/missions", {name: "perhaps"}).status_code == 400
+    assert client_of(a_user()).get("/api/v1/missions", {name: "perhaps"}).status_code == 400
 
 
 @pytest.mark.parametrize("name", [7, True])
 def test_a_name_is_a_json_string(name: Any) -> None:
     body = {"name": name, "position": [9.0, 47.0]}
-    answer = client_of(somebody(Role.ADMINISTRATOR)).post("/api/v1/bases", body, content_type="application/json")
+    answer = client_of(a_user(Role.ADMINISTRATOR)).post("/api/v1/bases", body, content_type="application/json")
     assert answer.status_code == 400
     assert answer.json()["error"]["details"] == {"name": ["Not a valid string."]}
 

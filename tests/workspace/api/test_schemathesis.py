@@ -24,7 +24,7 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )
 
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.inspection import ground
 from tests.missions.commands.outbox import a_uav
 from tests.missions.worlds import world
@@ -95,7 +95,7 @@ def test_what_is_asked_by_the_document_is_answered_by_it(mode: GenerationMode, r
     world()
     ground.zone((10.01, 56.01), 0.001, name="Over there")
     a_uav("Tern")
-    token = create_api_token(user=somebody(Role.ADMINISTRATOR), name="schemathesis", expires_at=timezone.now() + timedelta(hours=1))
+    token = create_api_token(user=a_user(Role.ADMINISTRATOR), name="schemathesis", expires_at=timezone.now() + timedelta(hours=1))
     document = schemathesis.openapi.from_wsgi("/api/schema", WSGIHandler(), headers={"Accept": "application/vnd.oai.openapi+json"})
     operations = [found.ok() for found in document.get_all_operations()]
     asked = [operation for operation in operations if not LEFT_OUT.search(operation.path)]

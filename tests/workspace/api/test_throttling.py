@@ -3,7 +3,7 @@
 import pytest
 from redis.exceptions import ConnectionError as RedisAway
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.workspace.counters import forget_counts
 from workspace.api.throttling import ScopedRate
 
@@ -17,12 +17,12 @@ def three_an_hour(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def statuses(number: int = 5) -> list[int]:
-    client = client_of(somebody())
+    client = client_of(a_user())
     return [client.post("/api/v1/echo", {}, content_type="application/json").status_code for _ in range(number)]
 
 
 def test_who_asks_too_often_is_told_when_to_come_back() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     for _ in range(3):
         client.post("/api/v1/echo", {}, content_type="application/json")
     answer = client.post("/api/v1/echo", {}, content_type="application/json")
@@ -44,7 +44,7 @@ def test_without_redis_nobody_is_refused(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_views_without_a_scope_are_not_counted() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     assert {client.get("/api/v1/jobs").status_code for _ in range(5)} == {200}
 
 

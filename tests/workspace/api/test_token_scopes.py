@@ -13,7 +13,7 @@ from django.utils import timezone
 from django.utils.encoding import force_bytes
 from django.utils.http import urlsafe_base64_encode
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import TERN, plan_body
 from tests.missions.worlds import world
 from workspace.api.authentication import reader_of_token
@@ -63,7 +63,7 @@ def send(client: Client, method: str, path: str, body: Any = None) -> tuple[int,
     ],
 )
 def test_a_token_needs_the_scope_of_what_it_is_used_for(method: str, path: str, scope: str) -> None:
-    administrator = somebody(Role.ADMINISTRATOR)
+    administrator = a_user(Role.ADMINISTRATOR)
     for given in TokenScope.values:
         status, words = send(with_token(administrator, given), method, path)
         if given == scope:
@@ -73,14 +73,14 @@ def test_a_token_needs_the_scope_of_what_it_is_used_for(method: str, path: str, 
 
 
 def test_the_short_way_of_small_plans_asks_for_the_scope_too() -> None:
-    here, user = world(), somebody()
+    here, user = world(), a_user()
     body = plan_body(here.towers[1]) | {"uavs": [TERN]}
     assert send(with_token(user, "plan"), "post", "plans", body)[0] == 200
     assert send(with_token(user, "read", "fly"), "post", "plans", body)[0] == 403
 
 
 def test_a_scope_gives_nothing_that_the_role_does_not_have() -> None:
-    viewer = somebody(Role.VIEWER)
+    viewer = a_user(Role.VIEWER)
     assert send(with_token(viewer, "plan", "fly", "administer"), "post", "missions")[0] == 403
     assert send(with_token(viewer, "administer"), "get", "people")[0] == 403
 
@@ -103,8 +103,8 @@ def test_a_scope_gives_nothing_that_the_role_does_not_have() -> None:
     ],
 )
 def test_no_token_touches_peoples_sessions_tokens_and_rules(method: str, path: str, body: Any) -> None:
-    other = somebody(Role.VIEWER)
-    status, _ = send(with_token(somebody(Role.ADMINISTRATOR)), method, path.format(other.pk), body)
+    other = a_user(Role.VIEWER)
+    status, _ = send(with_token(a_user(Role.ADMINISTRATOR)), method, path.format(other.pk), body)
     assert status == 403
 
 
@@ -117,7 +117,7 @@ def made(user: User, **body: Any) -> Any:
 
 
 def test_a_token_has_the_scopes_that_were_asked_for_or_those_of_the_role() -> None:
-    user = somebody(Role.OPERATOR)
+    user = a_user(Role.OPERATOR)
     assert made(user, scopes=["fly", "read"]).json()["scopes"] == ["read", "fly"]
     assert made(user).json()["scopes"] == ["read", "plan", "fly"]
     assert made(user, scopes=["curate"]).status_code == 400
@@ -126,7 +126,7 @@ def test_a_token_has_the_scopes_that_were_asked_for_or_those_of_the_role() -> No
 
 
 def test_a_token_lasts_a_year_at_most() -> None:
-    user = somebody()
+    user = a_user()
     assert made(user, days=365).status_code == 201
     assert made(user, days=366).status_code == 400
     with pytest.raises(CommandError):
@@ -134,7 +134,7 @@ def test_a_token_lasts_a_year_at_most() -> None:
 
 
 def test_the_command_makes_a_token_with_one_scope() -> None:
-    call_command("api_token", somebody().username, "--scope", "read", stdout=StringIO())
+    call_command("api_token", a_user().username, "--scope", "read", stdout=StringIO())
     assert ApiToken.objects.get().scopes == ["read"]
 
 
@@ -143,7 +143,7 @@ def works(client: Client) -> bool:
 
 
 def test_tokens_end_with_a_new_password_on_request() -> None:
-    user = somebody()
+    user = a_user()
     user.set_password(PASSWORD)
     user.save()
     token = with_token(user)
@@ -157,7 +157,7 @@ def test_tokens_end_with_a_new_password_on_request() -> None:
 
 
 def test_tokens_end_with_a_password_that_was_set_by_a_mailed_link() -> None:
-    user = somebody()
+    user = a_user()
     user.set_password(PASSWORD)
     user.save()
     token = with_token(user)
@@ -172,7 +172,7 @@ def test_tokens_end_with_a_password_that_was_set_by_a_mailed_link() -> None:
 
 
 def test_a_token_that_the_version_before_has_made_does_all_of_the_role() -> None:
-    token = with_token(somebody())
+    token = with_token(a_user())
     ApiToken.objects.update(scopes=None)
     assert works(token)
     assert send(token, "post", "missions")[0] == 400
@@ -183,6 +183,6 @@ def test_a_token_that_the_version_before_has_made_does_all_of_the_role() -> None
     ("scopes", "may_follow"), [(("read",), True), (("read", "plan"), True), ((), True), (("plan", "administer"), False)]
 )
 def test_a_websocket_needs_a_token_that_may_read(scopes: tuple[str, ...], may_follow: bool) -> None:
-    user = somebody(Role.ADMINISTRATOR)
+    user = a_user(Role.ADMINISTRATOR)
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(days=1), scopes=scopes or None)
     assert reader_of_token(token.encode()) == (user if may_follow else None)

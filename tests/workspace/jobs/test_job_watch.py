@@ -10,7 +10,7 @@ import pytest
 from django.db import connection, transaction
 from django.utils import timezone
 
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from workspace.jobs.job_watch import JobWatch
 from workspace.jobs.services import LEASE_S, JobCancelled, cancel_job, create_job, finish_job, start_job
 from workspace.models import Job, JobState
@@ -24,7 +24,7 @@ Found = TypeVar("Found")
 
 @pytest.fixture
 def job() -> Job:
-    user = somebody()
+    user = a_user()
     queued = create_job(organisation=user.organisation, created_by=user, task="inspection.tasks.read_proposal", parameters={})
     running = start_job(job_id=queued.pk)
     assert running is not None
@@ -90,7 +90,7 @@ def test_the_lease_is_renewed_whatever_becomes_of_the_drawing(job: Job, draw: Ca
 
 def test_a_wish_to_stop_reaches_the_work_at_its_next_look_and_nothing_is_written(job: Job) -> None:
     with pytest.raises(JobCancelled), JobWatch(job, interval_s=OFTEN_S) as watch, transaction.atomic():
-        somebody()  # a row of the work
+        a_user()  # a row of the work
         elsewhere(lambda: cancel_job(job=job))
         end = time.monotonic() + TIMEOUT_S
         while time.monotonic() < end:

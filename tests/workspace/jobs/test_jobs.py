@@ -11,7 +11,7 @@ from django.conf import settings
 from django.utils import timezone
 from kombu.exceptions import OperationalError
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace import tasks
 from workspace.jobs.services import (
     LEASE_S,
@@ -35,7 +35,7 @@ pytestmark = pytest.mark.django_db
 
 
 def new_job(user: User | None = None) -> Job:
-    user = user or somebody()
+    user = user or a_user()
     return create_job(organisation=user.organisation, created_by=user, task="missions.tasks.plan", parameters={"mission": "1"})
 
 
@@ -251,9 +251,9 @@ def test_the_task_sends_lost_jobs_by_their_name(monkeypatch: pytest.MonkeyPatch)
 
 
 def test_the_api_shows_a_job_to_its_organisation_alone() -> None:
-    user = somebody()
+    user = a_user()
     job = new_job(user)
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Elsewhere")))
     shown = client_of(user).get(f"/api/v1/jobs/{job.pk}").json()
     assert shown["id"] == str(job.pk)
     assert shown["state"] == "queued"
@@ -264,14 +264,14 @@ def test_the_api_shows_a_job_to_its_organisation_alone() -> None:
 
 
 def test_the_api_cancels_a_job() -> None:
-    user = somebody()
+    user = a_user()
     job = new_job(user)
     answer = client_of(user).post(f"/api/v1/jobs/{job.pk}/cancel")
     assert (answer.status_code, answer.json()["state"]) == (200, "cancelled")
 
 
 def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any) -> None:
-    user = somebody()
+    user = a_user()
     jobs = [new_job(user) for _ in range(3)]
     Job.objects.update(result={"routes": []}, state=JobState.DONE)
     client = client_of(user)
@@ -284,7 +284,7 @@ def test_a_list_of_jobs_leaves_their_results_out(django_assert_num_queries: Any)
 
 
 def test_a_page_that_is_loaded_again_finds_the_open_jobs_of_its_user() -> None:
-    user, other = somebody(), somebody()
+    user, other = a_user(), a_user()
     waiting, running, done, of_another = new_job(user), new_job(user), new_job(user), new_job(other)
     Job.objects.filter(pk=running.pk).update(state=JobState.RUNNING)
     Job.objects.filter(pk=done.pk).update(state=JobState.DONE)
@@ -298,7 +298,7 @@ def test_a_page_that_is_loaded_again_finds_the_open_jobs_of_its_user() -> None:
 
 
 def test_pages_of_jobs_follow_one_another_newest_first() -> None:
-    user = somebody()
+    user = a_user()
     client = client_of(user)
     jobs = [new_job(user) for _ in range(5)]
     for age, job in enumerate(reversed(jobs)):
@@ -331,12 +331,12 @@ def test_pages_of_jobs_follow_one_another_newest_first() -> None:
     ],
 )
 def test_a_page_that_cannot_be_is_refused(query: str) -> None:
-    assert client_of(somebody()).get(f"/api/v1/jobs?{query}").status_code == 400
+    assert client_of(a_user()).get(f"/api/v1/jobs?{query}").status_code == 400
 
 
 @pytest.mark.parametrize("role", list(Role))
 def test_the_page_of_the_account_offers_to_cancel_jobs_to_whoever_may(role: Role) -> None:
-    user = somebody(role)
+    user = a_user(role)
     client, job = client_of(user), new_job(user)
     offers = "data-may-cancel" in client.get("/account").content.decode()
     assert offers == (client.post(f"/api/v1/jobs/{job.pk}/cancel").status_code == 200)

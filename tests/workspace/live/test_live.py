@@ -18,7 +18,7 @@ from asgiref.sync import async_to_sync
 from django.utils import timezone
 from websocket import WebSocket, WebSocketBadStatusException
 
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.workspace.live.proxied_site import TIMEOUT_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
 from workspace.api_tokens import create_api_token
 from workspace.jobs.consumers import ENDED, JobConsumer
@@ -69,7 +69,7 @@ def reported(live: WebSocket) -> dict[str, Any]:
 
 
 def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Door) -> None:
-    user = somebody()
+    user = a_user()
     job = running_job(user)
     live = here.open(at(job), user=user)
     first = reported(live)
@@ -85,15 +85,15 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
 
 @pytest.mark.parametrize("origin", ["", None], ids=["from this host", "that names no origin"])
 def test_a_program_listens_with_its_token(here: Door, origin: str | None) -> None:
-    user = somebody()
+    user = a_user()
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     assert reported(here.open(at(running_job(user)), token=token, origin=origin))["state"] == "running"
 
 
 def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
-    user = somebody()
+    user = a_user()
     job = running_job(user)
-    stranger = somebody(organisation=Organisation.objects.create(name="Elsewhere"))
+    stranger = a_user(organisation=Organisation.objects.create(name="Elsewhere"))
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     refused: list[dict[str, Any]] = [
         {},
@@ -114,13 +114,13 @@ def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
 
 
 def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_moved(here: Door) -> None:
-    user = somebody()
+    user = a_user()
     job = running_job(user)
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     by_session, by_token = here.open(at(job), user=user), here.open(at(job), token=token)
-    moved = somebody()
+    moved = a_user()
     of_old_organisation = here.open(at(running_job(moved)), user=moved)
-    ended, idle = somebody(), somebody()
+    ended, idle = a_user(), a_user()
     of_ended, of_idle = (here.open(at(running_job(person)), user=person) for person in (ended, idle))
     reported(by_session), reported(by_token), reported(of_old_organisation), reported(of_ended), reported(of_idle)
     ended_s = time.monotonic()
@@ -135,7 +135,7 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
 
 
 def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
-    user = somebody()
+    user = a_user()
     live = here.open(at(running_job(user)), user=user)
     reported(live)
     live.send("x" * 100_000)
@@ -143,7 +143,7 @@ def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
 
 
 def test_a_dead_redis_delays_word_and_comes_back(door: Door, here: Door) -> None:
-    user = somebody()
+    user = a_user()
     job = running_job(user)
     live = here.open(at(job), user=user)
     reported(live)
@@ -173,7 +173,7 @@ def test_a_job_that_is_deleted_between_two_looks_closes_the_socket(monkeypatch: 
         return consumer._hung_up.result()
 
     monkeypatch.setattr(JobConsumer, "_version", still_there)
-    assert async_to_sync(followed)(somebody()) == ENDED
+    assert async_to_sync(followed)(a_user()) == ENDED
 
 
 def test_nobody_waits_for_a_redis_that_does_not_answer(

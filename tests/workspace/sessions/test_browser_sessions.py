@@ -10,7 +10,7 @@ from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.api_tokens import create_api_token
 from workspace.models import AuditEntry, BrowserSession, User
 from workspace.sessions.browser_sessions import SessionRules, ends_at, forget_ended_sessions, note_session, session_ends_at
@@ -70,7 +70,7 @@ def is_in(client: Client) -> bool:
 
 
 def test_somebody_who_was_away_too_long_signs_in_again() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     row = row_of(client)
     ago(row, acted_at=hours(1.9), present_at=hours(1.9))
     assert is_in(client)
@@ -80,7 +80,7 @@ def test_somebody_who_was_away_too_long_signs_in_again() -> None:
 
 
 def test_a_page_that_reads_keeps_the_session_and_counts_as_no_act() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     row = row_of(client)
     ago(row, acted_at=hours(1.5), present_at=hours(1.5))
     before = row.present_at - hours(1.5)
@@ -92,7 +92,7 @@ def test_a_page_that_reads_keeps_the_session_and_counts_as_no_act() -> None:
 
 
 def test_opening_a_page_and_sending_something_are_acts() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     row = row_of(client)
     for act in (lambda: client.get("/account"), lambda: client.post("/api/v1/account/session")):
         ago(row, acted_at=hours(1.5), present_at=hours(1))
@@ -101,7 +101,7 @@ def test_opening_a_page_and_sending_something_are_acts() -> None:
 
 
 def test_asking_how_long_the_session_lasts_makes_it_no_longer() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     row = row_of(client)
     ago(row, acted_at=hours(1.5), present_at=hours(1.5))
     assert 1_700 <= client.get("/api/v1/account/session").json()["ends_in_s"] <= 1_800
@@ -110,14 +110,14 @@ def test_asking_how_long_the_session_lasts_makes_it_no_longer() -> None:
 
 
 def test_a_session_that_an_earlier_version_began_goes_on() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     BrowserSession.objects.all().delete()
     assert is_in(client)
     assert BrowserSession.objects.count() == 1
 
 
 def test_the_version_before_deletes_a_session_without_knowing_of_its_times() -> None:
-    row = row_of(client_of(somebody()))
+    row = row_of(client_of(a_user()))
     Session.objects.filter(pk=row.session_id)._raw_delete("default")  # type: ignore[attr-defined]
     assert BrowserSession.objects.exists()
     forget_ended_sessions()
@@ -125,7 +125,7 @@ def test_the_version_before_deletes_a_session_without_knowing_of_its_times() -> 
 
 
 def test_sessions_that_are_over_are_forgotten() -> None:
-    idle, unattended, old, lasting = (row_of(client_of(somebody())) for _ in range(4))
+    idle, unattended, old, lasting = (row_of(client_of(a_user())) for _ in range(4))
     ago(idle, present_at=hours(3), acted_at=hours(3))
     ago(unattended, acted_at=hours(13))
     Session.objects.filter(pk=old.session_id).update(expire_date=timezone.now() - hours(1))
@@ -135,7 +135,7 @@ def test_sessions_that_are_over_are_forgotten() -> None:
 
 
 def test_an_open_websocket_is_presence_and_no_act() -> None:
-    user = somebody()
+    user = a_user()
     row = row_of(client_of(user))
     ago(row, acted_at=hours(1.5), present_at=hours(1.5))
     store: Any = SessionStore(session_key=row.session_id)
@@ -151,7 +151,7 @@ def listed(client: Client) -> list[dict[str, Any]]:
 
 
 def twice_in() -> tuple[User, Client, Client]:
-    user = somebody()
+    user = a_user()
     here, there = client_of(user), client_of(user)
     there.get("/account", headers={"User-Agent": FIREFOX})
     here.get("/account")
@@ -160,7 +160,7 @@ def twice_in() -> tuple[User, Client, Client]:
 
 def test_somebody_sees_their_own_sessions_alone_and_which_one_this_is() -> None:
     user, here, _ = twice_in()
-    client_of(somebody()).get("/account")
+    client_of(a_user()).get("/account")
     found = listed(here)
     assert {session["user_agent"] for session in found} == {FIREFOX, ""}
     assert [session["user_agent"] for session in found if session["is_this_one"]] == [""]
@@ -179,7 +179,7 @@ def test_one_session_is_ended_and_the_others_stay() -> None:
 
 def test_nobody_ends_a_session_of_somebody_else_or_with_a_token() -> None:
     user, here, _ = twice_in()
-    row = row_of(client_of(somebody()))
+    row = row_of(client_of(a_user()))
     assert here.delete(f"/api/v1/account/sessions/{row.pk}").status_code == 404
     token = create_api_token(user=user, name="script", expires_at=timezone.now() + timedelta(days=1))
     program = Client(headers={"Authorization": f"Bearer {token}"})
@@ -219,5 +219,5 @@ def test_what_outlives_a_session_wants_the_password_again_after_a_while(settings
 
 
 def test_browsers_keep_no_page_and_no_answer_that_does_not_say_so() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     assert {client.get(path)["Cache-Control"] for path in ("/account", "/", "/api/v1/account", "/api/v1/jobs")} == {"no-store"}

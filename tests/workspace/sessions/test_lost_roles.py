@@ -4,7 +4,7 @@ import pytest
 from django.test import Client
 
 from accounts.users import NoAdministratorLeft, change_people, delete_person
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, Invitation, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -12,12 +12,12 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def keeper() -> User:
-    return somebody(Role.ADMINISTRATOR)
+    return a_user(Role.ADMINISTRATOR)
 
 
 @pytest.fixture
 def leaver() -> User:
-    return somebody(Role.ADMINISTRATOR)
+    return a_user(Role.ADMINISTRATOR)
 
 
 def link_of(user: User) -> str:
@@ -48,7 +48,7 @@ def test_a_link_outlives_a_change_that_leaves_the_role(keeper: User, leaver: Use
 
 def test_an_organisation_with_people_keeps_an_administrator_of_its_own(keeper: User) -> None:
     elsewhere = Organisation.objects.create(name="Elsewhere")
-    only, colleague = somebody(Role.ADMINISTRATOR, elsewhere), somebody(Role.VIEWER, elsewhere)
+    only, colleague = a_user(Role.ADMINISTRATOR, elsewhere), a_user(Role.VIEWER, elsewhere)
     with pytest.raises(NoAdministratorLeft):
         change_people(users=[only], actor=only, role=Role.VIEWER)
     with pytest.raises(NoAdministratorLeft):

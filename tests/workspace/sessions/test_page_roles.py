@@ -7,7 +7,7 @@ import pytest
 from django.test import Client
 from django.urls import URLPattern, URLResolver, get_resolver
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
@@ -57,7 +57,7 @@ def test_what_is_open_to_all_is_open_to_strangers(page: str) -> None:
 
 @pytest.mark.parametrize("role", Role)
 def test_a_role_opens_its_pages_and_no_others(role: Role) -> None:
-    client = client_of(somebody(role))
+    client = client_of(a_user(role))
     answered = {page: status(client, page) for page in PAGES if page not in OPEN_TO_ALL | SENDS_BACK_TO_THE_DOOR}
     refused = {page for page, code in answered.items() if code == 403}
     assert refused == (set() if role == Role.ADMINISTRATOR else FOR_ADMINISTRATORS)

@@ -8,7 +8,7 @@ from django.contrib.auth import get_user_model
 from django.test import Client
 from drf_spectacular.generators import SchemaGenerator
 
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
@@ -64,12 +64,12 @@ def test_what_is_for_uavs_is_for_no_user() -> None:
     asked = [(method, address) for method, address, _ in operations() if FOR_UAVS_ALONE.match(address)]
     assert len(asked) == 4
     for role in Role:
-        assert {status(client_of(somebody(role)), method, address) for method, address in asked} == {401}
+        assert {status(client_of(a_user(role)), method, address) for method, address in asked} == {401}
 
 
 def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided() -> None:
     for role in Role:
-        client = client_of(somebody(role))
+        client = client_of(a_user(role))
         read = [(method, address) for method, address, _ in operations_of_users() if method in SAFE]
         refused = {address for method, address in read if status(client, method, address) in {401, 403}}
         hidden_from = [(SEEN_BY_CURATORS_ALONE, {Role.CURATOR, Role.ADMINISTRATOR}), (SEEN_BY_ADMINISTRATORS_ALONE, {Role.ADMINISTRATOR})]
@@ -84,7 +84,7 @@ def test_whoever_is_signed_in_may_read_everything_but_what_has_not_been_decided(
 
 @pytest.mark.parametrize("role", Role)
 def test_operators_change_what_is_flown_curators_the_ground_administrators_people_and_everybody_their_own(role: Role) -> None:
-    client = client_of(somebody(role))
+    client = client_of(a_user(role))
     for method, address, name in operations_of_users():
         if method in SAFE or name in ASKED_BY_ALL:
             continue
@@ -102,7 +102,7 @@ def test_operators_change_what_is_flown_curators_the_ground_administrators_peopl
 
 
 def test_a_refusal_names_the_role_that_is_needed() -> None:
-    answer = client_of(somebody(Role.VIEWER)).post("/api/v1/jobs/00000000-0000-4000-8000-000000000000/cancel")
+    answer = client_of(a_user(Role.VIEWER)).post("/api/v1/jobs/00000000-0000-4000-8000-000000000000/cancel")
     assert answer.json()["error"] == {
         "code": "permission_denied",
         "message": "Viewers cannot do this. Ask an administrator for the operator or curator role.",
@@ -115,7 +115,7 @@ def test_a_refusal_names_the_role_that_is_needed() -> None:
     [(Role.VIEWER, False, False), (Role.OPERATOR, False, False), (Role.CURATOR, True, False), (Role.ADMINISTRATOR, True, True)],
 )
 def test_what_django_calls_staff_follows_the_role(role: Role, is_staff: bool, is_superuser: bool) -> None:
-    user = somebody(role)
+    user = a_user(role)
     assert (user.is_staff, user.is_superuser) == (is_staff, is_superuser)
 
 
@@ -128,12 +128,12 @@ def test_a_superuser_is_an_administrator() -> None:
     [(Role.VIEWER, False, False), (Role.OPERATOR, False, False), (Role.CURATOR, True, False), (Role.ADMINISTRATOR, True, True)],
 )
 def test_permissions_in_the_admin_follow_the_role(role: Role, ground: bool, people: bool) -> None:
-    user = somebody(role)
+    user = a_user(role)
     assert user.has_perm("inspection.change_asset") == user.has_module_perms("inspection") == ground
     assert user.has_perm("workspace.change_user") == user.has_perm("missions.view_mission") == people
 
 
 def test_somebody_who_was_locked_out_has_no_permission() -> None:
-    user = somebody(Role.ADMINISTRATOR)
+    user = a_user(Role.ADMINISTRATOR)
     user.is_active = False
     assert not user.has_perm("inspection.change_asset")

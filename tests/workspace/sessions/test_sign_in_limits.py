@@ -127,15 +127,15 @@ def test_names_that_nobody_has_are_slowed_down_alike() -> None:
 
 def test_one_network_tries_so_many_names_and_no_more() -> None:
     for number in range(TRIES_OF_A_NETWORK):
-        try_to_sign_in(name=f"name-{number}", address="203.0.113.1", known_browser=None)
+        try_to_sign_in(name=f"name-{number}", address="203.0.113.1", trusted_device=None)
     with pytest.raises(HeldBack):
-        try_to_sign_in(name="one-more", address="203.0.113.1", known_browser=None)
-    assert try_to_sign_in(name="one-more", address="203.0.113.2", known_browser=None).left == TRIES - 1
+        try_to_sign_in(name="one-more", address="203.0.113.1", trusted_device=None)
+    assert try_to_sign_in(name="one-more", address="203.0.113.2", trusted_device=None).left == TRIES - 1
 
 
 def test_signing_in_right_many_times_from_one_network_is_no_guessing() -> None:
     for number in range(TRIES_OF_A_NETWORK * 2):
-        try_to_sign_in(name=f"name-{number % 10}", address="203.0.113.1", known_browser=None).succeeded()
+        try_to_sign_in(name=f"name-{number % 10}", address="203.0.113.1", trusted_device=None).succeeded()
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from missions.services.commands.dispatch import dispatch_mission, load_of
 from telemetry.gateway import delivery
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_words import alert_words
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
@@ -29,7 +29,7 @@ AUTOPILOT_TYPES = {AutopilotType.PX4: Px4, AutopilotType.ARDUPILOT: ArduPilot}
 
 @pytest.fixture
 def mission(uav, own_folders, tmp_path) -> Mission:
-    author = somebody()
+    author = a_user()
     ground(tmp_path / "hill.tif", 100.0)
     mission, _ = approved(author, [uav], world().towers[:2])
     return mission

@@ -14,7 +14,7 @@ from missions.services.approval.approval import locked_mission
 from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission
 from telemetry.gateway.process import Gateway
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
@@ -53,7 +53,7 @@ def applied(command: UavCommand) -> bool:
 
 def test_no_uav_waits_while_a_mission_is_held(settings, tmp_path):
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    author, uav, other = somebody(), unsigned_uav(7, is_simulated=True), unsigned_uav(8, is_simulated=True)
+    author, uav, other = a_user(), unsigned_uav(7, is_simulated=True), unsigned_uav(8, is_simulated=True)
     ground(tmp_path / "hill.tif", 100.0)
     mission, approval = approved(author, [uav], world().towers[:2])
     flying, beside = Px4(7), Px4(8, is_armed=True, is_in_air=True)

@@ -14,7 +14,7 @@ from missions.serializers.commands import command_json
 from missions.services.commands.dispatch import dispatch_mission
 from telemetry.models import UavLink
 from telemetry.services.links.onboard_lists import Doubt
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer
@@ -33,7 +33,7 @@ def mission(uav, settings, tmp_path) -> Mission:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     settings.FLIGHT_LOG_DIR = tmp_path
     ground(tmp_path / "hill.tif", 100.0)
-    return approved(somebody(), [uav], world().towers[:2])[0]
+    return approved(a_user(), [uav], world().towers[:2])[0]
 
 
 def link_of(uav: Uav) -> UavLink:

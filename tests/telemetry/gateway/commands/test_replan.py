@@ -17,7 +17,7 @@ from missions.services.commands.steering import command_uav
 from missions.services.replanning import accept_offer
 from telemetry.models import Alert, UavLink
 from telemetry.services.alerts.command_alerts import settle_command_alerts
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.cases import long
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, planned_over_a_line
@@ -48,7 +48,7 @@ class InAir(Flyer):
 def mission(own_folders, tmp_path) -> Mission:
     ground(tmp_path / "hill.tif", HOME_M)
     uavs = [unsigned_uav(7, is_simulated=True), unsigned_uav(8, is_simulated=True)]
-    mission = planned_over_a_line(somebody(), uavs)
+    mission = planned_over_a_line(a_user(), uavs)
     approve_mission(mission=mission, actor=mission.author)
     return mission
 

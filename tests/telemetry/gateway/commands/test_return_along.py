@@ -13,7 +13,7 @@ from missions.services.commands.steering import command_uav
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
 from telemetry.services.alerts.command_alerts import settle_command_alerts
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
 from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, begin, dispatch, ended, flyer
@@ -26,7 +26,7 @@ HEIGHT = {AutopilotType.PX4: "RTL_RETURN_ALT", AutopilotType.ARDUPILOT: "RTL_ALT
 @pytest.fixture
 def mission(uav, own_folders, tmp_path) -> Mission:
     ground(tmp_path / "hill.tif", 100.0)
-    return approved(somebody(), [uav], world().towers[:2])[0]
+    return approved(a_user(), [uav], world().towers[:2])[0]
 
 
 def half_way(mission: Mission, items) -> tuple[int, LonLat, float]:

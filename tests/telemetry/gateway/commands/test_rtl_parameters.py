@@ -6,7 +6,7 @@ from mavlink.autopilot_type import AutopilotType
 from missions.models import CommandKind, CommandState, Mission, Uav
 from missions.services.commands.rtl_check import return_checks
 from missions.services.commands.steering import command_uav
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
 from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, dispatch, ended, flyer
@@ -24,7 +24,7 @@ def mission(uav, settings, tmp_path) -> Mission:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     settings.FLIGHT_LOG_DIR = tmp_path
     ground(tmp_path / "hill.tif", 100.0)
-    return approved(somebody(), [uav], world().towers[:2])[0]
+    return approved(a_user(), [uav], world().towers[:2])[0]
 
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)

@@ -12,7 +12,7 @@ from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import load_of
 from telemetry.gateway.delivery import UNTOLD
 from telemetry.models import UavLink
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.commands.test_commands import dispatch, ended, flyer, holds
@@ -26,7 +26,7 @@ WIDE = {"MIS_DIST_1WP": 5_000.0, "MIS_DIST_WPS": 5_000.0}
 
 @pytest.fixture
 def plan(uav, own_folders, tmp_path) -> Mission:
-    author = somebody()
+    author = a_user()
     ground(tmp_path / "hill.tif", 100.0)
     return planned(author, [uav], world().towers[:2])
 

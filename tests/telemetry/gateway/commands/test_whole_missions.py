@@ -11,7 +11,7 @@ from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import load_of
 from planning.problem import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.commands.test_commands import begin, dispatch, ended, flyer, holds
@@ -30,7 +30,7 @@ def mission(uav, settings, tmp_path) -> Mission:
     ground(tmp_path / "hill.tif", 100.0)
     towers = world().towers
     zone_around((10.010, 56.02), 0.001)
-    return approved(somebody(), [uav], [TargetRequest(towers[0].pk, task=Task(TaskKind.LOOK, 5.0)), towers[1]])[0]
+    return approved(a_user(), [uav], [TargetRequest(towers[0].pk, task=Task(TaskKind.LOOK, 5.0)), towers[1]])[0]
 
 
 @pytest.mark.parametrize("item_after_landing", [0, 1])

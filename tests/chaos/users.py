@@ -1,6 +1,6 @@
 """A program: makes operators with tokens where the environment leads to, and tells what an experiment asks with, as JSON.
 
-python -m tests.chaos.people [ORGANISATION]
+python -m tests.chaos.users [ORGANISATION]
 """
 
 import json

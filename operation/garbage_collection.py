@@ -15,7 +15,7 @@ def collect_rarely() -> None:
     gc.set_threshold(50_000, 20, 50)
 
 
-def keep_what_is_there() -> None:
+def freeze_startup_objects() -> None:
     """Once a start has ended: what it has made (code, models, graphs) stays, and nobody walks through it again.
 
     Then a look costs little and comes often, as programs that do little leave little behind: ten circles at each question to the
@@ -29,7 +29,7 @@ def keep_what_is_there() -> None:
     gc.set_threshold(2_000, 10, 10)
 
 
-def give_back() -> None:
+def trim_memory() -> None:
     """Once a piece of work has ended: what it left in circles goes, and what it needed for a time goes back to the system.
 
     Otherwise each task begins among what the ones before it left, and reaches higher than any of them now and then; the memory that it
@@ -41,7 +41,7 @@ def give_back() -> None:
         _RETURN_TO_SYSTEM(0)
 
 
-def give_back_now_and_then() -> None:
+def trim_memory_periodically() -> None:
     """In programs whose work never ends: the same each minute."""
     threading.Thread(target=_keep_giving_back, name="memory", daemon=True).start()
 
@@ -49,4 +49,4 @@ def give_back_now_and_then() -> None:
 def _keep_giving_back() -> None:
     while True:
         time.sleep(INTERVAL_S)
-        give_back()
+        trim_memory()

@@ -6,7 +6,7 @@ import { open } from "../page/keyboard.js";
 import { t } from "../text.js";
 
 /** @import { Person } from "../api_types.d.ts" */
-/** @import { PersonChange } from "./people.js" */
+/** @import { PersonChange } from "./users.js" */
 
 /** @param {{ title: string, words: string, keep: string, go: string, act: () => unknown }} question */
 export function confirmRemoval({ title, words, keep, go, act }) {

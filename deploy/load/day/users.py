@@ -26,7 +26,7 @@ class Person(Browser):
     _takers: ClassVar[dict[str, Any]] = {}
 
     def on_start(self) -> None:
-        names = self.site.people_who_are(self.role)
+        names = self.site.users_with_role(self.role)
         taken = Person._takers.setdefault(self.role, count(len(self.site.desks) if self.role == "operator" else 0))
         self.name = names[next(taken) % len(names)]
         self.draw = random.Random(next(_turns))

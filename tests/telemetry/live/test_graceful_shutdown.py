@@ -18,13 +18,13 @@ from scripts.proxy import site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
 from telemetry.services import store_records
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.program import free_port
 from tests.telemetry.live.page import HungUp, Page
 from tests.telemetry.records import record
 from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
-from workspace.live.graceful_shutdown import RESTARTS, Farewell
+from workspace.live.graceful_shutdown import RESTARTS, GracefulShutdown
 from workspace.live.timed_waits import wait_for_event
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -73,7 +73,7 @@ def shows(page: Page, uav: Uav, lon_deg: float) -> bool:
 
 @pytest.mark.long
 def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(replicas: Replicas) -> None:
-    uav, person = a_uav("Tern"), somebody()
+    uav, person = a_uav("Tern"), a_user()
     assert store_records([record(uav, 1, longitude_deg=10.0)]).stored == 1
     pages = [Page(replicas.door.open("/ws/live", user=person)) for _ in range(PAGES)]
     for page in pages:
@@ -97,26 +97,26 @@ def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(repl
 
 def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None:
     class Told:
-        def __init__(self, farewell: Farewell) -> None:
-            self.farewell = farewell
+        def __init__(self, shutdown: GracefulShutdown) -> None:
+            self.shutdown = shutdown
             self.reported: list[tuple[int, float]] = []
-            farewell.expect(self)
+            shutdown.expect(self)
 
         def hang_up(self, code: int) -> None:
             self.reported.append((code, asyncio.get_running_loop().time()))
-            self.farewell.forget(self)
+            self.shutdown.forget(self)
 
     async def all_reported() -> tuple[list[Told], int]:
         loop, left = asyncio.get_running_loop(), asyncio.Event()
         loop.add_signal_handler(signal.SIGINT, left.set)
-        farewell = Farewell(loop, spread_s=0.2)
-        sockets = [Told(farewell) for _ in range(19)]
-        farewell.begin()
-        farewell.begin()
-        sockets.append(Told(farewell))
+        shutdown = GracefulShutdown(loop, spread_s=0.2)
+        sockets = [Told(shutdown) for _ in range(19)]
+        shutdown.begin()
+        shutdown.begin()
+        sockets.append(Told(shutdown))
         assert await wait_for_event(left, TIMEOUT_S)
         loop.remove_signal_handler(signal.SIGINT)
-        return sockets, len(farewell._sockets)
+        return sockets, len(shutdown._sockets)
 
     sockets, still_there = asyncio.run(all_reported())
     assert still_there == 0

@@ -7,8 +7,8 @@ import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { exactText, whenText } from "../units.js";
 import { filteredList } from "./filtered_list.js";
-import { confirmRemoval, editPerson } from "./people_dialogs.js";
 import { ROLES, roleOptions } from "./roles.js";
+import { confirmRemoval, editPerson } from "./user_dialogs.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Person, Role } from "../api_types.d.ts" */
@@ -32,8 +32,8 @@ function accessChip({ is_active, last_seen_at }) {
 }
 
 /** @param {Reporter} reporter */
-export function mountPeople(reporter) {
-  const people = new People(reporter);
+export function mountUsers(reporter) {
+  const people = new Users(reporter);
   return filteredList({
     list: "people",
     path: "/people",
@@ -47,7 +47,7 @@ export function mountPeople(reporter) {
 }
 
 /** Rows of people, and what can be done with each. */
-class People {
+class Users {
   #notify;
   #settle;
 

@@ -12,7 +12,7 @@ only_gnu = pytest.mark.skipif(
 
 ANSWERS = """
 import gc, weakref
-from operation.garbage import collect_rarely, keep_what_is_there
+from operation.garbage_collection import collect_rarely, freeze_startup_objects
 
 class Answer:
     def __init__(self):
@@ -20,7 +20,7 @@ class Answer:
 
 collect_rarely()
 start = [[] for _ in range(800_000)]
-keep_what_is_there()
+freeze_startup_objects()
 under_way, made = [], []
 for _ in range(20_000):  # of which 20 are under way at any time, so that some are old before they are left
     under_way.append(Answer())
@@ -60,7 +60,7 @@ def own_mib():
 
 AFTER_A_TASK = """
 import gc, weakref
-from operation.garbage import give_back
+from operation.garbage_collection import trim_memory
 
 class Answer:
     def __init__(self):
@@ -73,7 +73,7 @@ last = bytes(1_000)
 most_mib = own_mib()
 del held
 before_mib = own_mib()
-give_back()
+trim_memory()
 print(left() is None, most_mib - before_mib < 10, most_mib - own_mib() > 40)
 """
 
@@ -114,7 +114,7 @@ def test_a_worker_process_gives_back_after_each_task_and_nothing_else_does():
 
 NOW_AND_THEN = """
 import gc, time, weakref
-from operation import garbage
+from operation import garbage_collection
 
 class Answer:
     def __init__(self):
@@ -122,12 +122,12 @@ class Answer:
 
 gc.disable()
 left = weakref.ref(Answer())
-garbage.INTERVAL_S = 0.2
+garbage_collection.INTERVAL_S = 0.2
 held = [bytes(1_000) for _ in range(60_000)]
 last = bytes(1_000)
 most_mib = own_mib()
 del held
-garbage.give_back_now_and_then()
+garbage_collection.trim_memory_periodically()
 until_s = time.monotonic() + 20.0
 while (left() is not None or most_mib - own_mib() < 40) and time.monotonic() < until_s:
     time.sleep(0.05)

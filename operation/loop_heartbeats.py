@@ -8,12 +8,12 @@ Excuse = Callable[[], bool]
 _due_s: dict[str, tuple[float, Excuse | None]] = {}
 
 
-def beat(loop: str, *, within_s: float, excuse: Excuse | None = None) -> None:
+def send_heartbeat(loop: str, *, within_s: float, excuse: Excuse | None = None) -> None:
     """The loop goes round, and will again within this time, whatever is away; or there is an excuse, which is asked for only then."""
     _due_s[loop] = time.monotonic() + within_s, excuse
 
 
-def rest(loop: str) -> None:
+def stop(loop: str) -> None:
     """The loop has ended as it should."""
     _due_s.pop(loop, None)
 
