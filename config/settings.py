@@ -15,7 +15,7 @@ from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.zones.schedule import ZoneRules
 from mavlink.timeouts import CommandRules as VehicleCommandRules
 from mavlink.timeouts import TransferRules
-from missions.command_rules import CommandRules
+from missions.command_rules import CommandLifetimes
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
 from planning.rules import FlightRules, RoutingRules, SeparationRules
 
@@ -343,12 +343,12 @@ SEPARATION_RULES = SeparationRules(
     vertical_m=number("SPANWISE_SEPARATION_VERTICAL_M", SeparationRules.vertical_m),
     time_s=number("SPANWISE_SEPARATION_TIME_S", SeparationRules.time_s),
 )
-COMMAND_RULES = CommandRules(
-    motion_s=number("SPANWISE_MOTION_COMMAND_S", CommandRules.motion_s),
-    stop_s=number("SPANWISE_STOP_COMMAND_S", CommandRules.stop_s),
-    upload_s=number("SPANWISE_UPLOAD_COMMAND_S", CommandRules.upload_s),
-    speed_s=number("SPANWISE_SPEED_COMMAND_S", CommandRules.speed_s),
-    read_back_s=number("SPANWISE_READ_BACK_S", CommandRules.read_back_s),
+COMMAND_RULES = CommandLifetimes(
+    motion_s=number("SPANWISE_MOTION_COMMAND_S", CommandLifetimes.motion_s),
+    stop_s=number("SPANWISE_STOP_COMMAND_S", CommandLifetimes.stop_s),
+    upload_s=number("SPANWISE_UPLOAD_COMMAND_S", CommandLifetimes.upload_s),
+    speed_s=number("SPANWISE_SPEED_COMMAND_S", CommandLifetimes.speed_s),
+    read_back_s=number("SPANWISE_READ_BACK_S", CommandLifetimes.read_back_s),
 )
 # The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")

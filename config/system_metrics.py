@@ -20,7 +20,7 @@ from redis.exceptions import RedisError
 
 from inspection.models import GraphSnapshot, Ground
 from missions.models import OPEN_COMMANDS, CommandState, UavCommand
-from operation.snapshots import Described, Snapshot, Values
+from operation.snapshots import Described, SnapshotCollector, Values
 from telemetry.models import Alert, AlertLevel
 from workspace.models import OPEN_STATES, Job
 
@@ -55,8 +55,8 @@ class InstallationState:
         self._checked_s = -GOOD_FOR_S
         self._values: dict[str, Values] = {}
 
-    def snapshot(self) -> Snapshot:
-        return Snapshot(DESCRIBED, self.read)
+    def snapshot(self) -> SnapshotCollector:
+        return SnapshotCollector(DESCRIBED, self.read)
 
     def read(self) -> Mapping[str, Values]:
         with self._lock:

@@ -32,7 +32,7 @@ SELECT EXISTS (
 
 
 @dataclass(frozen=True)
-class HeldBack:
+class AutoApplyRefusal:
     """Why an import is not applied by itself. message is English; what it may say is listed in workspace/message_rendering.py."""
 
     code: str
@@ -82,7 +82,7 @@ def ground_mark() -> GroundMark:
     )
 
 
-def further_reasons(mark: GroundMark, data_import: DataImport) -> list[HeldBack]:
+def further_reasons(mark: GroundMark, data_import: DataImport) -> list[AutoApplyRefusal]:
     """What later apps have against what was written since the mark. In the transaction that wrote it."""
     with _shapes(mark, data_import):
         return [reason for name in _checks for reason in import_string(name)(WrittenGround(mark))]

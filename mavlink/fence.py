@@ -48,7 +48,7 @@ class FenceZone:
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class OmittedZone:
     """`code` names why a zone is not in the fence: crosses-route, too-detailed, no-space or not-simple."""
 
     zone: str
@@ -59,7 +59,7 @@ class LeftOut:
 @dataclass(frozen=True)
 class Fence:
     items: tuple[MissionItem, ...]
-    left_out: tuple[LeftOut, ...]
+    left_out: tuple[OmittedZone, ...]
 
 
 def fence_of(zones: Sequence[FenceZone], route: FrozenRoute, rules: FenceRules | None = None) -> Fence:
@@ -69,14 +69,14 @@ def fence_of(zones: Sequence[FenceZone], route: FrozenRoute, rules: FenceRules |
         return Fence((), ())
     frame = LocalFrame.around(*route.take_off.position)
     line = _line(route, frame)
-    left_out: list[LeftOut] = []
+    left_out: list[OmittedZone] = []
     near: list[tuple[float, FenceZone, Polygon]] = []
     for zone in zones:
         area = Polygon(frame.to_metres(np.array(zone.outline))) if len(zone.outline) >= 3 else Polygon()
         if not area.is_valid or area.is_empty or area.area == 0:
-            left_out.append(LeftOut(zone.name, "not-simple", f"{zone.name}: its outline crosses itself or has no area."))
+            left_out.append(OmittedZone(zone.name, "not-simple", f"{zone.name}: its outline crosses itself or has no area."))
         elif area.distance(line) < rules.keeps_clear_m:
-            left_out.append(LeftOut(zone.name, "crosses-route", f"{zone.name}: the route passes over, under or close to it."))
+            left_out.append(OmittedZone(zone.name, "crosses-route", f"{zone.name}: the route passes over, under or close to it."))
         elif area.distance(line) <= rules.reach_m:
             near.append((float(area.distance(line)), zone, area))
     items: list[MissionItem] = []
@@ -84,12 +84,12 @@ def fence_of(zones: Sequence[FenceZone], route: FrozenRoute, rules: FenceRules |
         share = (rules.most_items - len(items)) // (len(near) - number)
         most = min(rules.most_vertices, max(share, min(len(zone.outline), 4)))
         if len(items) + min(most, len(zone.outline)) > rules.most_items:
-            left_out.append(LeftOut(zone.name, "no-space", f"{zone.name}: the fence is full with {len(items)} vertices."))
+            left_out.append(OmittedZone(zone.name, "no-space", f"{zone.name}: the fence is full with {len(items)} vertices."))
             continue
         outline = zone.outline if len(zone.outline) <= most else _larger(area, line, most, frame, rules)
         if outline is None:
             words = f"{zone.name}: its {len(zone.outline)} vertices cannot be drawn by {most} clear of the route."
-            left_out.append(LeftOut(zone.name, "too-detailed", words))
+            left_out.append(OmittedZone(zone.name, "too-detailed", words))
         else:
             items += _exclusion(outline)
     return Fence(tuple(items), tuple(left_out))

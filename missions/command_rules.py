@@ -71,7 +71,7 @@ def may_overtake(kind: str, unfinished: str) -> bool:
 
 
 @dataclass(frozen=True)
-class CommandRules:
+class CommandLifetimes:
     """For how long [s] a command that was not delivered is still wanted; None: until it is overtaken.
 
     What sets a UAV in motion is soon too old: nobody stands beside it any more. What stops it or brings it back is wanted longer, but not

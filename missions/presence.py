@@ -17,7 +17,7 @@ FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
 MAX_PAGES = 20  # of one user, the last that reported
 
 
-class Present(NamedTuple):
+class PresentUser(NamedTuple):
     """A user who has the mission open in another page."""
 
     user: int
@@ -29,7 +29,7 @@ def _key(mission_id: UUID) -> str:
     return f"mission-open:{mission_id}"
 
 
-def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool, is_planning: bool = False) -> list[Present]:
+def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool, is_planning: bool = False) -> list[PresentUser]:
     """Note that this page is there, and whether it plans the mission, or that it leaves.
 
     Returns the others, each user once, oneself in another window last. A user plans where one of their pages does.
@@ -43,7 +43,7 @@ def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool,
     mine = f"{user.pk}/{editor}"
     present.pop(mine, None)
     planners = {row["user"] for row in present.values() if row.get("is_planning")}
-    others = {row["user"]: Present(row["user"], row["name"], row["user"] in planners) for row in present.values()}
+    others = {row["user"]: PresentUser(row["user"], row["name"], row["user"] in planners) for row in present.values()}
     if is_here:
         own = sorted((row["at_s"], page) for page, row in present.items() if row["user"] == user.pk)
         for _, page in own[: -(MAX_PAGES - 1)]:

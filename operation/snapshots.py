@@ -27,7 +27,7 @@ class Described:
         return family
 
 
-class Snapshot(Collector):
+class SnapshotCollector(Collector):
     """`read` returns the values of each of `described` by its name; those that it leaves out are not known now."""
 
     def __init__(self, described: Iterable[Described], read: Callable[[], Mapping[str, Values]]) -> None:
@@ -44,7 +44,7 @@ class Snapshot(Collector):
             if one.name in values:
                 yield one.family(values[one.name])
 
-    def __enter__(self) -> "Snapshot":
+    def __enter__(self) -> "SnapshotCollector":
         REGISTRY.register(self)
         return self
 

@@ -19,7 +19,7 @@ from telemetry.views.log_filters import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import RESULT_KINDS, MissionRecord, MissionRecordFile, MissionResultsFile
 from telemetry.views.preflight import MissionPreflight
 from telemetry.views.results import Results
-from telemetry.views.returns import Returns, UavLanding
+from telemetry.views.returns import PresentReturnsView, UavLanding
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
@@ -58,7 +58,7 @@ urlpatterns = [
     path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
     path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),
     path("results", Results.as_view(), name="api-results"),
-    path("returns", Returns.as_view(), name="api-returns"),
+    path("returns", PresentReturnsView.as_view(), name="api-returns"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/preflight", MissionPreflight.as_view(), name="api-mission-preflight"),

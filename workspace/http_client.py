@@ -95,7 +95,7 @@ def fetch(
     target = _target(address)
     with _Deadline(total_s) as deadline:
         for _turn in range(MAX_REDIRECTS + 1):
-            connection = _Connection(target, timeout_s, deadline)
+            connection = _PinnedConnection(target, timeout_s, deadline)
             try:
                 answer = _ask(connection, target, method, data, sent, deadline)
                 if answer.status not in _REDIRECTS:
@@ -176,7 +176,7 @@ class _Deadline:
                 socket.socket.shutdown(self._socket, socket.SHUT_RDWR)  # not SSLSocket's: that would let its reader see raw bytes
 
 
-class _Connection(http.client.HTTPConnection):
+class _PinnedConnection(http.client.HTTPConnection):
     """Connects to an address that was resolved and checked; the name stays for the Host header, SNI and the certificate."""
 
     def __init__(self, target: _Target, timeout_s: float, deadline: _Deadline) -> None:
@@ -249,7 +249,7 @@ def _shown(target: _Target) -> str:
 
 
 def _ask(
-    connection: _Connection, target: _Target, method: str, data: bytes | None, headers: Mapping[str, str], deadline: _Deadline
+    connection: _PinnedConnection, target: _Target, method: str, data: bytes | None, headers: Mapping[str, str], deadline: _Deadline
 ) -> http.client.HTTPResponse:
     try:
         connection.request(method, target.path, body=data, headers=dict(headers))

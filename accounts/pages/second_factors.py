@@ -19,7 +19,7 @@ from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, n
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, count_attempt
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, count_attempt
 
 SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
 MAX_CODE_LENGTH = 60
@@ -41,7 +41,7 @@ class CodeAndPasswordForm(CodeForm):
     def clean_password(self) -> str:
         try:
             count_attempt(PASSWORD_CHANGES, str(self.user.pk))
-        except HeldBack as error:
+        except TooManyAttempts as error:
             raise forms.ValidationError(_("Too many tries. Wait 15 min, then try again.")) from error
         password: str = self.cleaned_data["password"]
         if not self.user.check_password(password):

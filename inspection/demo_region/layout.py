@@ -128,7 +128,7 @@ CORRIDORS = (
 
 
 @dataclass(frozen=True)
-class Course:
+class DemoCourse:
     """A road, railway or water: control points of a smooth curve, and how wide it is."""
 
     name: str
@@ -137,7 +137,7 @@ class Course:
     width_m: float
 
 
-RIVER = Course(
+RIVER = DemoCourse(
     "Elme",
     "river",
     km(
@@ -148,31 +148,33 @@ RIVER = Course(
 )  # fmt: skip
 
 ROADS = (
-    Course(
+    DemoCourse(
         "North Bank Road", "primary",
         km((-20, 1.6), (-15, 0.6), (-10, 1.4), (-6, 0.8), (-1, 1.3),
             (3, 0.9), (8, 0.6), (13, 0.9), (20, 1.2)), 11.0,
     ),
-    Course(
+    DemoCourse(
         "South Bank Road", "secondary",
         km((-20, -4.3), (-15, -2.8), (-9, -4.1), (-5, -4.5), (-2, -5.8),
             (4, -4.9), (9.3, -5.8), (13, -4.0), (17, -2.9), (20, -3.4)), 9.0,
     ),
-    Course("Tarnfold Road", "secondary", km((-11, 7.2), (-10, 5.2), (-7.4, 3.3), (-6.1, 0.9), (-5.6, -1.6), (-5.9, -4.4)), 9.0),
-    Course("Ostermoor Road", "secondary", km((1.4, 6.5), (0.4, 4.2), (-0.4, 1.4), (-0.1, -1.9), (-1.6, -5.6)), 9.0),
-    Course("Wickenfell Road", "secondary", km((13, 7.5), (11.2, 5.2), (8.8, 2.4), (8.1, 0.5), (8.6, -2.4), (9.3, -5.7)), 9.0),
-    Course("Lowmarch Lane", "tertiary", km((-15.1, -2.7), (-15.9, 0.2), (-14.2, 3.4), (-11.3, 6.8)), 7.0),
-    Course("Power Station Road", "tertiary", km((17, -2.7), (16.2, -0.4), (15.9, 1.1), (16.6, 2.6)), 7.0),
-    Course("Airfield Road", "tertiary", km((4.7, 0.9), (5.6, -0.9), (5.1, -2.9), (5.6, -5.0)), 7.0),
-    Course("North Moor Road", "tertiary", km((-11, 7.1), (-6.2, 6.2), (-2.4, 6.6), (1.4, 6.4), (6.8, 5.9), (10.3, 7.1), (13, 7.4)), 7.0),
-    Course(
+    DemoCourse("Tarnfold Road", "secondary", km((-11, 7.2), (-10, 5.2), (-7.4, 3.3), (-6.1, 0.9), (-5.6, -1.6), (-5.9, -4.4)), 9.0),
+    DemoCourse("Ostermoor Road", "secondary", km((1.4, 6.5), (0.4, 4.2), (-0.4, 1.4), (-0.1, -1.9), (-1.6, -5.6)), 9.0),
+    DemoCourse("Wickenfell Road", "secondary", km((13, 7.5), (11.2, 5.2), (8.8, 2.4), (8.1, 0.5), (8.6, -2.4), (9.3, -5.7)), 9.0),
+    DemoCourse("Lowmarch Lane", "tertiary", km((-15.1, -2.7), (-15.9, 0.2), (-14.2, 3.4), (-11.3, 6.8)), 7.0),
+    DemoCourse("Power Station Road", "tertiary", km((17, -2.7), (16.2, -0.4), (15.9, 1.1), (16.6, 2.6)), 7.0),
+    DemoCourse("Airfield Road", "tertiary", km((4.7, 0.9), (5.6, -0.9), (5.1, -2.9), (5.6, -5.0)), 7.0),
+    DemoCourse(
+        "North Moor Road", "tertiary", km((-11, 7.1), (-6.2, 6.2), (-2.4, 6.6), (1.4, 6.4), (6.8, 5.9), (10.3, 7.1), (13, 7.4)), 7.0
+    ),
+    DemoCourse(
         "South Moor Road", "tertiary",
         km((-15.2, -3.0), (-13.4, -7.2), (-10, -8.2), (-6.1, -7.4), (-2, -6.1),
             (2.9, -7.3), (9.3, -6.0), (14.7, -6.6), (17, -2.9)), 7.0,
     ),
 )  # fmt: skip
 
-MAIN_RAILWAY = Course(
+MAIN_RAILWAY = DemoCourse(
     "Elme Valley Line",
     "rail",
     km(
@@ -181,7 +183,7 @@ MAIN_RAILWAY = Course(
     ),
     9.0,
 )  # fmt: skip
-BRANCH_RAILWAY = Course(
+BRANCH_RAILWAY = DemoCourse(
     "Brindlow Branch", "rail", km((-3.9, -0.9), (-3.3, -3.2), (-3.2, -6.0), (-1.2, -9.0), (0.6, -13)), 6.0
 )  # from the main line
 BRANCH_JUNCTION_SHARE = 0.365  # of the main line's length, where the branch leaves it

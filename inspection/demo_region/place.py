@@ -54,14 +54,14 @@ class BasedUav:
 
 
 @dataclass(frozen=True)
-class Base:
+class DemoBase:
     name: str
     position: LonLat
     uavs: tuple[BasedUav, ...]
 
 
 BASES = (
-    Base(
+    DemoBase(
         "Elmsgard depot",
         lon_lat(-9_050.0, 2_450.0),
         (
@@ -69,7 +69,7 @@ BASES = (
             BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2),
         ),
     ),
-    Base(
+    DemoBase(
         "Varneck depot",
         lon_lat(10_900.0, 3_150.0),
         (

@@ -14,7 +14,7 @@ from inspection.demo_region.layout import (
     ROADS,
     STREAMS_PER_BANK,
     TOWNS,
-    Course,
+    DemoCourse,
 )
 from inspection.demo_region.osm_file import OsmDrawing
 from inspection.demo_region.place import FloatArray, distance_along, offset_path, piece_of, point_along, smooth_path
@@ -29,7 +29,7 @@ PATH_WIDTH_M = 3.0
 class Strand:
     """A road, railway or water as a curve, with the bridges that carry it."""
 
-    course: Course
+    course: DemoCourse
     path: FloatArray
     bridges: list["Crossing"] = field(default_factory=list)
 
@@ -84,7 +84,7 @@ def _streams(river: Strand, generator: np.random.Generator) -> list[Strand]:
             for point in course[1:-1]:
                 point += generator.uniform(-450.0, 450.0, 2)
             points = tuple((float(east), float(north)) for east, north in course)
-            stream = Course("", "stream", points, float(generator.uniform(5.0, 11.0)))
+            stream = DemoCourse("", "stream", points, float(generator.uniform(5.0, 11.0)))
             streams.append(Strand(stream, smooth_path(points, rounds=3)))
     return streams
 

@@ -9,7 +9,7 @@ NO_OSM_NODE = -1  # drawn by a curator, or not known to be where the OSM node is
 
 
 @dataclass(frozen=True)
-class Places:
+class InfrastructurePlaces:
     """Assets that are points in the graph: supports, or bridges by their centres."""
 
     asset: NDArray[np.int64]  # (n,) primary keys
@@ -22,7 +22,7 @@ class Places:
 
 
 @dataclass(frozen=True)
-class Ways:
+class InfrastructureWays:
     """Lines or railways; the vertices of way w are numbers first[w] to first[w + 1] - 1."""
 
     asset: NDArray[np.int64]  # (w,) primary keys
@@ -58,8 +58,8 @@ class GroundData:
     """Everything that a graph is built from, as of one revision of the ground."""
 
     revision: int
-    supports: Places
-    bridges: Places
-    lines: Ways
-    railways: Ways
+    supports: InfrastructurePlaces
+    bridges: InfrastructurePlaces
+    lines: InfrastructureWays
+    railways: InfrastructureWays
     zones: Zones

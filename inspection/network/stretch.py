@@ -9,7 +9,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.joining import join_vertices
-from inspection.network.infrastructure import Places, Ways
+from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 
 DETOUR_COST = 3.0  # per metre of a line that is not of the circuit; so much longer may the way along the circuit be
 
@@ -37,20 +37,22 @@ class Stretch:
 
 
 @dataclass(frozen=True)
-class _Leg:
+class _StretchLeg:
     node: int
     length_m: float
     line: int
 
 
-def supports_in_order(supports: Places, line: Ways) -> tuple[int, ...]:
+def supports_in_order(supports: InfrastructurePlaces, line: InfrastructureWays) -> tuple[int, ...]:
     """Primary keys of the supports of one line, in its direction; one that it comes by twice counts where it comes first."""
     nodes = join_vertices(supports, line).node_of_vertex
     passed = dict.fromkeys(int(node) for node in nodes if node < len(supports))
     return tuple(int(supports.asset[node]) for node in passed)
 
 
-def stretch_between(supports: Places, lines: Ways, start: int, end: int, circuit: Collection[int]) -> Stretch | None:
+def stretch_between(
+    supports: InfrastructurePlaces, lines: InfrastructureWays, start: int, end: int, circuit: Collection[int]
+) -> Stretch | None:
     """The shortest way along lines from one support to another; None where none leads there.
 
     `circuit` names the lines to stay on where that is no more than three times as far. Zones count for nothing: this is what is
@@ -68,20 +70,20 @@ def stretch_between(supports: Places, lines: Ways, start: int, end: int, circuit
     return Stretch(passed, _parts(legs, way, nodes.position))
 
 
-def _legs(lines: Ways, node_of_vertex: np.ndarray, position: np.ndarray) -> dict[int, list[_Leg]]:
+def _legs(lines: InfrastructureWays, node_of_vertex: np.ndarray, position: np.ndarray) -> dict[int, list[_StretchLeg]]:
     first = lines.leg_start
     tail, head = node_of_vertex[first], node_of_vertex[first + 1]
     length_m = distance_m(position[tail], position[head])
     asset = lines.asset[lines.way_of_vertex[first]]
-    legs: dict[int, list[_Leg]] = {}
+    legs: dict[int, list[_StretchLeg]] = {}
     for a, b, metres, line in zip(tail.tolist(), head.tolist(), length_m.tolist(), asset.tolist(), strict=True):
         if a != b:
-            legs.setdefault(a, []).append(_Leg(b, metres, line))
-            legs.setdefault(b, []).append(_Leg(a, metres, line))
+            legs.setdefault(a, []).append(_StretchLeg(b, metres, line))
+            legs.setdefault(b, []).append(_StretchLeg(a, metres, line))
     return legs
 
 
-def _cheapest_way(legs: dict[int, list[_Leg]], start: int, end: int, circuit: frozenset[int]) -> list[int] | None:
+def _cheapest_way(legs: dict[int, list[_StretchLeg]], start: int, end: int, circuit: frozenset[int]) -> list[int] | None:
     cost_of = {start: 0.0}
     before: dict[int, int] = {}
     queue = [(0.0, start)]
@@ -105,7 +107,7 @@ def _cheapest_way(legs: dict[int, list[_Leg]], start: int, end: int, circuit: fr
     return way[::-1]
 
 
-def _parts(legs: dict[int, list[_Leg]], way: list[int], position: np.ndarray) -> tuple[StretchPart, ...]:
+def _parts(legs: dict[int, list[_StretchLeg]], way: list[int], position: np.ndarray) -> tuple[StretchPart, ...]:
     """The way cut into as few lines as it can be: of lines on the same supports the one that goes on for longest."""
     steps = [{leg.line: leg.length_m for leg in legs[a] if leg.node == b} for a, b in pairwise(way)]
     parts = []

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from inspection.network.infrastructure import Places, Ways
+from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 
 
 @dataclass(frozen=True)
@@ -60,11 +60,11 @@ class GapGround:
     """Everything that gaps are looked for in, as of one revision of the ground."""
 
     revision: int
-    lines: Ways
+    lines: InfrastructureWays
     line_facts: WayFacts
-    railways: Ways
+    railways: InfrastructureWays
     railway_facts: WayFacts
-    supports: Places
+    supports: InfrastructurePlaces
     support_facts: SupportFacts
     bridges_without_way: tuple[PlainBridge, ...]
     off_network: NDArray[np.float64]  # (k, 2) vertices of what is not flown: cables, busbars, bays, lines out of use

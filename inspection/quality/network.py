@@ -40,7 +40,7 @@ def metres_by(owner: IntArray, metres: FloatArray, count: int) -> FloatArray:
     return np.bincount(owner, weights=metres, minlength=count).astype(np.float64)
 
 
-class Network:
+class SupportNetwork:
     """Nodes are the graph's own (join_vertices): supports first, then vertices without one. A leg joins two vertices of one line."""
 
     def __init__(self, ground: GapGround) -> None:

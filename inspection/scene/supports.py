@@ -120,7 +120,7 @@ class LineFacts:
 
 
 @dataclass(frozen=True)
-class SupportFacts:
+class SceneSupportFacts:
     """What a support says of itself; kind: tower, pole or portal."""
 
     kind: str
@@ -153,7 +153,7 @@ class DrawnSpan:
     sag_m: float
 
 
-VERTEX = SupportFacts("vertex", None, {})
+VERTEX = SceneSupportFacts("vertex", None, {})
 NO_LINE = LineFacts(None, None, {})
 
 
@@ -167,7 +167,7 @@ def phases_of(line: LineFacts) -> int:
 
 
 def drawn(
-    found: Overhead, supports: Mapping[int, SupportFacts], lines: Mapping[int, LineFacts]
+    found: Overhead, supports: Mapping[int, SceneSupportFacts], lines: Mapping[int, LineFacts]
 ) -> tuple[list[DrawnSupport], list[DrawnSpan]]:
     """In the order of `found`. supports and lines by primary key."""
     carried = [[lines.get(line, NO_LINE) for line in own] for own in found.span_lines]
@@ -210,7 +210,7 @@ def _at_ends(found: Overhead, of_span: Sequence[int]) -> list[int]:
 
 
 def _support(
-    facts: SupportFacts, *, height_m: float, height_source: str, line_voltage_v: int | None, phases: int, ways: int, bend_deg: float,
+    facts: SceneSupportFacts, *, height_m: float, height_source: str, line_voltage_v: int | None, phases: int, ways: int, bend_deg: float,
     bearing_deg: float, is_of_minor_lines: bool,
 ) -> DrawnSupport:  # fmt: skip
     voltage_v = line_voltage_v or facts.voltage_v

@@ -7,7 +7,7 @@ from django.db import connection
 from numpy.typing import NDArray
 
 from inspection.models import AssetKind
-from inspection.network.infrastructure import Places, Ways
+from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts, asset_key
 from inspection.selectors.ground_data import ground_data
 
@@ -69,7 +69,7 @@ def gap_ground() -> GapGround:
     )
 
 
-def _way_facts(kind: AssetKind, ways: Ways) -> WayFacts:
+def _way_facts(kind: AssetKind, ways: InfrastructureWays) -> WayFacts:
     with connection.cursor() as cursor:
         cursor.execute(_WAYS, [kind.value])
         rows = {row[0]: row[1:] for row in cursor.fetchall()}
@@ -84,7 +84,9 @@ def _way_facts(kind: AssetKind, ways: Ways) -> WayFacts:
     )
 
 
-def _support_facts(supports: Places, asset: NDArray[np.int64], osm_id: NDArray[np.int64], terminal: NDArray[np.int64]) -> SupportFacts:
+def _support_facts(
+    supports: InfrastructurePlaces, asset: NDArray[np.int64], osm_id: NDArray[np.int64], terminal: NDArray[np.int64]
+) -> SupportFacts:
     slot = np.searchsorted(asset, supports.asset)
     found = slot < len(asset)
     found[found] = asset[slot[found]] == supports.asset[found]

@@ -43,7 +43,7 @@ class NoGraph(Exception):
     """No snapshot has been built yet, or none of this version is kept."""
 
 
-class _Kept(Generic[Made]):
+class _MadeOnce(Generic[Made]):
     """Those used last of what is costly to make. One thread makes it; others that want the same wait for it, others are not held up."""
 
     def __init__(self) -> None:
@@ -82,9 +82,9 @@ class _Kept(Generic[Made]):
                 self._made.popitem(last=False)
 
 
-_graphs: _Kept[InspectionGraph] = _Kept()
-_indices: _Kept[ZoneIndex] = _Kept()
-_networks: _Kept[Network] = _Kept()
+_graphs: _MadeOnce[InspectionGraph] = _MadeOnce()
+_indices: _MadeOnce[ZoneIndex] = _MadeOnce()
+_networks: _MadeOnce[Network] = _MadeOnce()
 
 
 def rules_of_snapshots() -> dict[str, Any]:

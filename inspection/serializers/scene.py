@@ -13,7 +13,7 @@ from inspection.network.rules import UNTAGGED_HEIGHT_M
 from inspection.scene.overhead import CATENARY_M, EARTH_SHARE, MAX_SAG_SHARE
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
-from inspection.selectors.scene import Scene, SceneBridge, SceneZone
+from inspection.selectors.scene import SceneBridge, SceneContent, SceneZone
 from inspection.serializers.terrain import PositionField
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json, schedule_words
 from workspace.jobs.serializers import Declared
@@ -149,7 +149,7 @@ class SceneSerializer(serializers.Serializer):
     left_out = serializers.DictField(child=serializers.IntegerField(), help_text="beyond the limits, the farthest from the middle first")
 
 
-def scene_json(scene: Scene) -> dict[str, Any]:
+def scene_json(scene: SceneContent) -> dict[str, Any]:
     ground = scene.ground
     rows, columns = ground.altitude_amsl_m.shape
     return {

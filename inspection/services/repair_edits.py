@@ -44,12 +44,12 @@ class CannotRepair(ValueError):
 
 
 @dataclass(frozen=True)
-class Change:
+class RepairEdit:
     asset: Asset
     is_new: bool = False
 
 
-def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """New vertices in the span and a tower at each: at the places given, else evenly, as many as are thought to be missing."""
     line = _line(gap.asset_id)
     course, details = list(line.geometry.coords), gap.details
@@ -63,10 +63,10 @@ def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     else:
         places = evenly_between(start, end, min(details["missing_towers"], MAX_TOWERS))
     line.geometry = LineString(with_vertices(course, leg, places), srid=4326)
-    return [Change(line), *(_new_tower(line, place, NO_OSM_NODE) for place in places)]
+    return [RepairEdit(line), *(_new_tower(line, place, NO_OSM_NODE) for place in places)]
 
 
-def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """A tower at each vertex of the line that has none; where OSM has a node there, the tower is known by it."""
     line = _line(gap.asset_id)
     course = line.geometry.coords
@@ -77,7 +77,7 @@ def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[Change]
     return [_new_tower(line, course[number], nodes[number]) for number in numbers]
 
 
-def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The nearest line led through the tower; of a row of towers through the one that is nearest to it."""
     line = _line(gap.other_asset_id)
     course = list(line.geometry.coords)
@@ -89,10 +89,10 @@ def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
     if nearest_leg(course, place)[2] > ATTACH_M:
         raise CannotRepair(_("No line is near to the tower any more."))
     line.geometry = LineString(through(course, place, _taken_places(line, course)), srid=4326)
-    return [Change(line)]
+    return [RepairEdit(line)]
 
 
-def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """A new line from tower to tower of a row, of the voltage that all that state one agree on."""
     towers = list(
         Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER, is_flyable=True).order_by("pk")
@@ -109,10 +109,10 @@ def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
         voltages_v=list(stated.pop()) if len(stated) == 1 else [],
         tags={PLACED: "by hand"},
     )
-    return [Change(line, is_new=True)]
+    return [RepairEdit(line, is_new=True)]
 
 
-def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """What the gap is about, marked as no part of the inspection graph."""
     keys = gap.details.get("assets", [gap.asset_id])
     rows = list(Asset.objects.filter(pk__in=keys, vanished_at=None, is_flyable=True).order_by("pk"))
@@ -120,10 +120,10 @@ def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
         raise CannotRepair(_("It is not part of the graph any more."))
     for row in rows:
         row.is_flyable = False
-    return [Change(row) for row in rows]
+    return [RepairEdit(row) for row in rows]
 
 
-def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The end moved onto the other line, which gets a vertex there if it has none; an end with a tower stays and is led on."""
     line, other = _line(gap.asset_id), _line(gap.other_asset_id)
     course, there = list(line.geometry.coords), tuple(gap.details["there"])
@@ -137,30 +137,30 @@ def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
             raise CannotRepair(_("The other line runs elsewhere by now. The ground is being searched again.")) from None
         target = there
         other.geometry = LineString(with_vertices(list(other.geometry.coords), leg, [there]), srid=4326)
-        changes.append(Change(other))
+        changes.append(RepairEdit(other))
     line.geometry = LineString(end_moved_to(course, end, target, keeps_end=_has_support(course[end])), srid=4326)
-    return [*changes, Change(line)]
+    return [*changes, RepairEdit(line)]
 
 
-def join_to_network(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def join_to_network(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The dead end led on, straight, to the nearest place of the network that it does not hang together with."""
     line = _line(gap.asset_id)
     course = list(line.geometry.coords)
     end = _end(course, gap.details["end"])
     line.geometry = LineString(end_moved_to(course, end, tuple(gap.details["nearest"]), keeps_end=True), srid=4326)
-    return [Change(line)]
+    return [RepairEdit(line)]
 
 
-def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     carried = _CARRIED.get(str(parameters.get("way", "")))
     if carried is None:
         raise CannotRepair(_("Say what it carries: %(value)s.") % {"value": ", ".join(_CARRIED)})
     bridge = _asset(gap.asset_id)
     bridge.tags = bridge.tags | carried
-    return [Change(bridge)]
+    return [RepairEdit(bridge)]
 
 
-def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
+def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     given = parameters.get("voltages_v", gap.details["offered_v"])
     if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
         raise CannotRepair(_("Give 1 to %(most_values)s voltages in volts.") % {"most_values": MAX_VALUES})
@@ -168,7 +168,7 @@ def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
         raise CannotRepair(_("A voltage is a whole number of volts, at most %(highest_v)s.") % {"highest_v": f"{MAX_V:,}"})
     asset = _asset(gap.asset_id)
     asset.voltages_v = sorted(set(given), reverse=True)
-    return [Change(asset)]
+    return [RepairEdit(asset)]
 
 
 def _asset(key: int | None) -> Asset:
@@ -242,15 +242,15 @@ def _positions(given: Any) -> list[tuple[float, float]]:
     return places
 
 
-def _new_tower(line: Asset, place: tuple[float, float], osm_node: int) -> Change:
+def _new_tower(line: Asset, place: tuple[float, float], osm_node: int) -> RepairEdit:
     """A support of the line's kind. One at an OSM node that had stood here before is the same row again."""
     subtype = "pole" if line.subtype == "minor_line" else "tower"
     tags = {PLACED: "by hand"}
     at = Point(place, srid=4326)
     if osm_node == NO_OSM_NODE:
-        return Change(Asset(kind=AssetKind.TOWER, subtype=subtype, geometry=at, tags=tags), is_new=True)
+        return RepairEdit(Asset(kind=AssetKind.TOWER, subtype=subtype, geometry=at, tags=tags), is_new=True)
     tower = Asset.objects.filter(kind=AssetKind.TOWER, osm_type=OsmType.NODE, osm_id=osm_node).first()
     if tower is None:
         tower = Asset(kind=AssetKind.TOWER, osm_type=OsmType.NODE, osm_id=osm_node, subtype=subtype, tags=tags)
     tower.geometry, tower.vanished_at, tower.is_flyable = at, None, True
-    return Change(tower, is_new=tower.pk is None)
+    return RepairEdit(tower, is_new=tower.pk is None)

@@ -14,7 +14,7 @@ from inspection.services.gaps import mark_repaired, reopen_gap
 from inspection.services.history import undo
 from inspection.services.repair_edits import (
     CannotRepair,
-    Change,
+    RepairEdit,
     attach_towers,
     bridge_carries,
     join_to_network,
@@ -52,7 +52,7 @@ def offers_of(gap: DataGap) -> list[Offer]:
     return _OFFERS[GapKind(gap.kind)](gap.details)
 
 
-def changes_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> list[Change]:
+def changes_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
     if all(offer.action != action for offer in offers_of(gap)):
         raise CannotRepair(_("This repair does not fit the gap as it is now."))
@@ -100,7 +100,7 @@ def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap
         return reopen_gap(gap=gap, actor=actor)
 
 
-def _said(changes: Sequence[Change]) -> str:
+def _said(changes: Sequence[RepairEdit]) -> str:
     """What was done, for the toast: "9 towers placed, 1 line changed"."""
     parts = []
     for is_new in (True, False):
@@ -184,7 +184,7 @@ _OFFERS: dict[GapKind, Callable[[dict[str, Any]], list[Offer]]] = {
     GapKind.BRIDGE_WITHOUT_WAY: _offers_of_bridge,
     GapKind.IMPOSSIBLE_VOLTAGE: _offers_of_voltage,
 }
-_BUILDERS: dict[str, Callable[[DataGap, dict[str, Any]], list[Change]]] = {
+_BUILDERS: dict[str, Callable[[DataGap, dict[str, Any]], list[RepairEdit]]] = {
     "place_towers": towers_along_span,
     "make_towers": towers_at_vertices,
     "attach": attach_towers,

@@ -128,7 +128,7 @@ def ground_json(summary: GroundSummary) -> dict[str, Any]:
     }
 
 
-class Ground(APIView):
+class GroundView(APIView):
     @extend_schema(operation_id="get_ground", summary="What is known of the ground, and the graph over it", responses=GroundSerializer)
     def get(self, request: Request) -> Response:
         return Response(ground_json(selectors.ground_summary()))

@@ -154,7 +154,7 @@ class StretchAlongLines(APIView):
         return Response({"supports": picked_assets(stretch.supports), "parts": parts, "length_m": stretch.length_m})
 
 
-class RailwayBridges(APIView):
+class RailwayBridgesView(APIView):
     @extend_schema(
         operation_id="list_railway_bridges",
         summary="Bridges of a railway",

@@ -80,7 +80,7 @@ class GroundHeight(APIView):
         )
 
 
-class Profile(APIView):
+class ProfileView(APIView):
     write_roles = EVERYBODY
 
     @extend_schema(

@@ -15,7 +15,7 @@ BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 
 
-class Limits(NamedTuple):
+class HeightLimits(NamedTuple):
     """A zone's limits as it states them; None is not stated. References as in HeightReference, "" for none."""
 
     lower_m: float | None
@@ -31,7 +31,7 @@ class Limits(NamedTuple):
         )
 
 
-def agl_band(limits: Limits, lowest_ground_m: float = math.nan, highest_ground_m: float = math.nan) -> tuple[float, float]:
+def agl_band(limits: HeightLimits, lowest_ground_m: float = math.nan, highest_ground_m: float = math.nan) -> tuple[float, float]:
     """The lowest and the highest height above ground that a zone can reach [m], given the ground under it above sea level.
 
     A limit that is not stated, counts from the ellipsoid or from standard pressure, or needs ground that is not known (NaN), reaches to
@@ -67,7 +67,7 @@ class ZoneTable:
     box: FloatArray
     floor_agl_m: FloatArray
     ceiling_agl_m: FloatArray
-    limits: tuple[Limits, ...]
+    limits: tuple[HeightLimits, ...]
     schedules: tuple[Schedule | None, ...]
     rules: ZoneRules
 

@@ -40,7 +40,7 @@ BARE_HEIGHTS = ("altitude", "altitude_m", "height", "height_m")
 
 
 @dataclass(frozen=True)
-class Report:
+class CompanionReport:
     """One report. `position` is longitude, latitude [deg]; `values` are the other fields that were sent, by the log's own names."""
 
     sequence: int
@@ -58,7 +58,7 @@ class FaultyReport(Exception):
         self.faults = faults
 
 
-def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) -> Report:
+def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) -> CompanionReport:
     """A report as it was sent, as decoded JSON. `known_place` is where the UAV was last (longitude, latitude). Raises FaultyReport."""
     if not isinstance(sent, dict):
         raise FaultyReport({"": "A record is an object."})
@@ -76,7 +76,7 @@ def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) ->
             faults[name] = "This field is required."
     if faults:
         raise FaultyReport(faults)
-    return Report(
+    return CompanionReport(
         sequence=read.pop("sequence"),
         measured_at=read.pop("measured_at"),
         mission=read.pop("mission", None),

@@ -81,7 +81,7 @@ def _clean(text: str | bytes) -> str:
 
 
 @dataclass(frozen=True)
-class Flown:
+class FlownState:
     """What the vehicle's own state says; see mavlink/vehicle_state.py."""
 
     mode: str = ""
@@ -92,7 +92,7 @@ class Flown:
 
 
 @dataclass
-class Reporter:
+class MeasurementDecoder:
     """Of one vehicle. Fed with every message of its autopilot."""
 
     _values: dict[str, tuple[float, Values]] = field(default_factory=dict)
@@ -102,7 +102,7 @@ class Reporter:
         if read is not None and (values := read(message)) is not None:
             self._values[message.get_type()] = (now_s, values)
 
-    def measurement(self, message: Message, flown: Flown, now_s: float) -> Measurement:
+    def measurement(self, message: Message, flown: FlownState, now_s: float) -> Measurement:
         """message: GLOBAL_POSITION_INT, joined by the latest of everything else."""
         known: Values = {}
         for name in _READ:  # the later ones go before the earlier

@@ -36,7 +36,7 @@ SAME_FRAME: dict[int, int] = {
 }
 
 
-class Found(StrEnum):
+class ReadbackMatch(StrEnum):
     NOTHING = "nothing"
     APPROVED = "approved"  # the list that is wanted
     KNOWN = "known"  # another whole list that was approved
@@ -44,19 +44,21 @@ class Found(StrEnum):
     FOREIGN = "foreign"  # with an item of none of these
 
 
-def found(held: OnboardList, wanted: Sequence[MissionItem], known: Sequence[Sequence[MissionItem]], autopilot_type: AutopilotType) -> Found:
+def found(
+    held: OnboardList, wanted: Sequence[MissionItem], known: Sequence[Sequence[MissionItem]], autopilot_type: AutopilotType
+) -> ReadbackMatch:
     """known: other lists that were approved for this vehicle. Lists of one mission often begin alike, so a mix is told only by them."""
     if not differences(wanted, held, autopilot_type):
-        return Found.APPROVED
+        return ReadbackMatch.APPROVED
     if not held:
-        return Found.NOTHING
+        return ReadbackMatch.NOTHING
     if any(not differences(items, held, autopilot_type) for items in known):
-        return Found.KNOWN
+        return ReadbackMatch.KNOWN
     lists = [wanted, *(items for items in known if items)]
     if len(lists) == 1:
-        return Found.FOREIGN
+        return ReadbackMatch.FOREIGN
     is_of_some = (any(place in _of_list(held, items, autopilot_type) for items in lists) for place in range(len(held)))
-    return Found.MIXED if all(is_of_some) else Found.FOREIGN
+    return ReadbackMatch.MIXED if all(is_of_some) else ReadbackMatch.FOREIGN
 
 
 def mix_in_words(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> str:
@@ -129,7 +131,7 @@ KEEPS = {AutopilotType.ARDUPILOT: ARDUPILOT_KEEPS, AutopilotType.PX4: PX4_KEEPS}
 
 
 @dataclass(frozen=True)
-class Difference:
+class ItemDifference:
     """`item` is the place in the approved list, from 0; `field` what is otherwise there."""
 
     item: int
@@ -142,21 +144,21 @@ class Difference:
         return f"item {self.item}: {self.field} is {self.held} instead of {self.wanted}"
 
 
-def differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> tuple[Difference, ...]:
+def differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> tuple[ItemDifference, ...]:
     """All of them, in the order of the list; empty where the vehicle holds what is wanted. `held` without home (see `onboard_list`)."""
     return tuple(_differences(wanted, held, autopilot_type))
 
 
-def _differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> Iterator[Difference]:
+def _differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> Iterator[ItemDifference]:
     for place, (item, there) in enumerate(zip(wanted, held, strict=False)):
         for name, asked_for, found in _of_item(item, there.item, autopilot_type):
-            yield Difference(place, name, asked_for, found, item.waypoint)
+            yield ItemDifference(place, name, asked_for, found, item.waypoint)
         if not there.goes_on and item.command not in NOT_FLOWN:
-            yield Difference(place, "going on afterwards", "yes", "no", item.waypoint)
+            yield ItemDifference(place, "going on afterwards", "yes", "no", item.waypoint)
     for place in range(len(held), len(wanted)):
-        yield Difference(place, "command", str(wanted[place].command), "missing", wanted[place].waypoint)
+        yield ItemDifference(place, "command", str(wanted[place].command), "missing", wanted[place].waypoint)
     for place in range(len(wanted), len(held)):
-        yield Difference(place, "command", "nothing", str(held[place].item.command))
+        yield ItemDifference(place, "command", "nothing", str(held[place].item.command))
 
 
 def is_identical(one: OnboardItem, other: OnboardItem) -> bool:

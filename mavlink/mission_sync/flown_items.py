@@ -12,7 +12,7 @@ RESET_S = 5.0  # within which a vehicle that has landed tells that it is disarme
 
 
 @dataclass(frozen=True)
-class Flown:
+class FlownMissionItem:
     """`item` counts from 0 without home. `is_down`: it has landed and is disarmed; `item` is then the last one it was at or on its way to.
 
     `is_reached` tells which of the two.
@@ -54,7 +54,7 @@ class FlightWatch:
         """Another list was put on it: nothing of that one is flown yet."""
         self.has_flown_list, self._reached, self._bound_for, self._back_at_s = False, -1, -1, None
 
-    def check(self, state: VehicleState, kind: str) -> list[Flown]:
+    def check(self, state: VehicleState, kind: str) -> list[FlownMissionItem]:
         """kind: the message's type."""
         if state.is_armed and state.is_in_air and state.is_in(Mode.MISSION):
             self.has_flown_list = True
@@ -65,7 +65,7 @@ class FlightWatch:
             self._note_bound_for(state, offset)
         if kind == "MISSION_ITEM_REACHED" and state.reached_item is not None and state.reached_item >= offset:
             self._reached = state.reached_item - offset
-            return [Flown(self._reached)]
+            return [FlownMissionItem(self._reached)]
         if state.is_armed is False and state.is_in_air is False:
             current = state.mission_item or 0 if self._bound_for < 0 else self._bound_for
             return self._ended(current - offset)
@@ -81,9 +81,11 @@ class FlightWatch:
         elif state.received_at_s - self._back_at_s > RESET_S:
             self._bound_for = state.mission_item
 
-    def _ended(self, current: int) -> list[Flown]:
+    def _ended(self, current: int) -> list[FlownMissionItem]:
         reached = self._reached
         self.forget()
         if max(reached, current) < 0:
             return []
-        return [Flown(reached, is_down=True) if reached >= current else Flown(current, is_reached=False, is_down=True)]
+        return [
+            FlownMissionItem(reached, is_down=True) if reached >= current else FlownMissionItem(current, is_reached=False, is_down=True)
+        ]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from mavlink.mission_sync.compare import Difference
+from mavlink.mission_sync.compare import ItemDifference
 from mavlink.vehicle_plan import MissionType
 
 
@@ -39,13 +39,13 @@ class SyncOutcome:
     sha256: str = ""
     is_critical: bool = False
     mixes: tuple[Mix, ...] = ()
-    differences: tuple[Difference, ...] = ()
+    differences: tuple[ItemDifference, ...] = ()
     left_alone: str = ""
     left_sha256: Mapping[MissionType, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
-class Progress:
+class SyncProgress:
     """Of the list that is under way; `stage` is reading, sending, clearing or restoring."""
 
     kind: MissionType

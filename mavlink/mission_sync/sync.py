@@ -5,12 +5,12 @@ from typing import Any
 
 from mavlink.addressing import Addressing, Message, Messages
 from mavlink.autopilot_type import AutopilotType, Mode
-from mavlink.mission_sync.compare import Difference, Found, are_identical, differences, found, mix_in_words
+from mavlink.mission_sync.compare import ItemDifference, ReadbackMatch, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
-from mavlink.mission_sync.outcome import Mix, Progress, SyncOutcome, SyncState
+from mavlink.mission_sync.outcome import Mix, SyncOutcome, SyncProgress, SyncState
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
-from mavlink.mission_sync.upload import REQUESTS, Clear, TransferOutcome, TransferState, Upload
+from mavlink.mission_sync.upload import REQUESTS, Clear, ListUpload, TransferOutcome, TransferState
 from mavlink.mission_sync.wire import OnboardList, has_home, onboard_list, onboard_sha256, sent_list
 from mavlink.script import Course, Machine, Steps
 from mavlink.timeouts import TransferRules
@@ -45,13 +45,13 @@ class MissionSync:
         self.load = load
         self.mixes: list[Mix] = []
         self.before: dict[MissionType, OnboardList] = {}
-        self.found_before: dict[MissionType, Found] = {}
+        self.found_before: dict[MissionType, ReadbackMatch] = {}
         self._state = state
         self._addressing = addressing
         self._rules = rules
         self._known = tuple(known)
         self._now: dict[MissionType, OnboardList | None] = {}  # as last read; None: it was touched since
-        self._sent: dict[MissionType, Upload] = {}
+        self._sent: dict[MissionType, ListUpload] = {}
         self._touched: list[MissionType] = []
         self._reason = ""
         self._why = ""  # in words: what the vehicle refused, or keeps otherwise than it was sent
@@ -69,19 +69,19 @@ class MissionSync:
         return self._steps.wake_at_s
 
     @property
-    def progress(self) -> Progress:
+    def progress(self) -> SyncProgress:
         """Of what is under way now."""
         total = len(self.load.of(self._kind))
         step = self._steps.step
-        done = min(step.items_done, total) if isinstance(step, Upload | Download) else 0
-        return Progress(self._kind, RESTORING if self._is_restoring else self._stage, done, total)
+        done = min(step.items_done, total) if isinstance(step, ListUpload | Download) else 0
+        return SyncProgress(self._kind, RESTORING if self._is_restoring else self._stage, done, total)
 
     def start(self, now_s: float) -> Messages:
         return self._steps.start(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
         answers = self._steps.receive(message, now_s)
-        if message.get_type() in REQUESTS and not isinstance(self._steps.step, Upload):
+        if message.get_type() in REQUESTS and not isinstance(self._steps.step, ListUpload):
             late = self._sent.get(MissionType(message.mission_type)) if message.mission_type in set(MissionType) else None
             answers += [] if late is None else late.receive(message, now_s)
         return answers
@@ -101,7 +101,7 @@ class MissionSync:
             return False
         if not state.is_in(Mode.MISSION) or MissionType.MISSION not in self._touched:
             return True
-        return state.autopilot_type is AutopilotType.PX4 and isinstance(self._steps.step, Upload) and self._kind is MissionType.MISSION
+        return state.autopilot_type is AutopilotType.PX4 and isinstance(self._steps.step, ListUpload) and self._kind is MissionType.MISSION
 
     def cancel(self, now_s: float) -> Messages:
         """Ends by a failure like others: what was begun is put back."""
@@ -110,7 +110,7 @@ class MissionSync:
         self._is_cancelled, self._reason = True, "left-hold" if self.is_endangered else "cancelled"
         self._sent.clear()
         step = self._steps.step
-        messages = step.cancel(now_s) if isinstance(step, Upload | Download) else []
+        messages = step.cancel(now_s) if isinstance(step, ListUpload | Download) else []
         return messages + self._steps.go_on(now_s)
 
     # the course of events
@@ -126,7 +126,7 @@ class MissionSync:
             self.before[kind] = read
             known = [load.of(kind) for load in self._known]
             self.found_before[kind] = found(read, self.load.of(kind), known, self._autopilot_type)
-            if self.found_before[kind] is Found.MIXED:
+            if self.found_before[kind] is ReadbackMatch.MIXED:
                 self._note_mix(kind, read)
         for kind in ORDER:
             if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
@@ -192,7 +192,7 @@ class MissionSync:
         """A fence or rally points of somebody else, where the load has none."""
         if kind is MissionType.MISSION or self.load.of(kind):
             return False
-        return self.found_before[kind] is Found.FOREIGN
+        return self.found_before[kind] is ReadbackMatch.FOREIGN
 
     def _left_alone_in_words(self) -> str:
         names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
@@ -209,20 +209,20 @@ class MissionSync:
     def _put(self, kind: MissionType, items: Sequence[MissionItem]) -> Generator[Machine, None, TransferState]:
         self._now[kind] = None
         self._kind, self._stage = kind, SENDING if items else CLEARING
-        step: Upload | Clear
+        step: ListUpload | Clear
         if items:
-            step = self._sent[kind] = Upload(
+            step = self._sent[kind] = ListUpload(
                 sent_list(items, kind, self._autopilot_type, self._state.firmware), kind, self._addressing, self._rules
             )
         else:
             self._sent.pop(kind, None)
             step = Clear(kind, self._addressing, self._rules)
         yield step
-        if isinstance(step, Upload) and not self._is_restoring:
+        if isinstance(step, ListUpload) and not self._is_restoring:
             self._why = self._refusal_in_words(step)
         return self._ended(step.outcome)
 
-    def _refusal_in_words(self, upload: Upload) -> str:
+    def _refusal_in_words(self, upload: ListUpload) -> str:
         """Which item, by its command, which firmware would not take; empty where none was refused."""
         ended: TransferOutcome | None = upload.outcome
         if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
@@ -318,7 +318,7 @@ class MissionSync:
     def _differs(self, kind: MissionType, held: OnboardList) -> bool:
         return bool(differences(self.load.of(kind), held, self._autopilot_type))
 
-    def _differences(self, kind: MissionType) -> tuple[Difference, ...]:
+    def _differences(self, kind: MissionType) -> tuple[ItemDifference, ...]:
         return differences(self.load.of(kind), self._now[kind] or (), self._autopilot_type)
 
     def _note_mix(self, kind: MissionType, held: OnboardList) -> None:

@@ -84,7 +84,7 @@ class Clear:
         return []
 
 
-class Upload:
+class ListUpload:
     """A list on its way to a vehicle; an empty one takes off what is there.
 
     Whatever the vehicle asks for it gets, be it again or out of turn. When it is silent, the item that it asked for last is sent again,

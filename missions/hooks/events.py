@@ -49,7 +49,7 @@ class EventKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class EventPlace:
     """Where an event is stored: its source, the row and what of the row it is. Ordered by `at` and `key`, no two are the same."""
 
     source: str
@@ -78,7 +78,7 @@ class MissionEvent:
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
+class EventSource:
     """Events of one kind of rows.
 
     `statement` selects row (text), step (text), at and mission_id of the missions `%(missions)s` (uuid[]); `%(names)s` are the same as
@@ -88,17 +88,17 @@ class Source:
 
     name: str
     statement: str
-    read: Callable[[Sequence[Place]], Mapping[Place, MissionEvent]]
+    read: Callable[[Sequence[EventPlace]], Mapping[EventPlace, MissionEvent]]
 
 
 _registered: list[str] = []
 
 
 def register_sources(name: str) -> None:
-    """The dotted name of a sequence of `Source`. It is loaded when events are first read."""
+    """The dotted name of a sequence of `EventSource`. It is loaded when events are first read."""
     if name not in _registered:
         _registered.append(name)
 
 
-def registered_sources() -> list[Source]:
+def registered_sources() -> list[EventSource]:
     return [source for name in _registered for source in import_string(name)]

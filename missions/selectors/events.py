@@ -11,7 +11,7 @@ from django.db import connection
 from django.db.models import Q
 from django.utils import timezone
 
-from missions.hooks.events import EventKind, MissionEvent, Place, Source, registered_sources
+from missions.hooks.events import EventKind, EventPlace, EventSource, MissionEvent, registered_sources
 from missions.models import InspectionTarget, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.outcome_messages import command_outcome_in_words
 from workspace.models import AuditEntry, Organisation
@@ -115,7 +115,7 @@ WHERE entry.subject_type = 'mission' AND entry.subject_id = ANY(%(names)s) AND e
 class LoggedEvent:
     """One line of the log. No event: it was gone when its words were to be read."""
 
-    place: Place
+    place: EventPlace
     event: MissionEvent | None
 
 
@@ -132,16 +132,18 @@ def events_of_missions(mission_ids: Collection[UUID], *, before: tuple[datetime,
     """
     sources = {source.name: source for source in (*_OWN, *registered_sources())}
     places = _places(list(sources.values()), mission_ids, before, limit) if mission_ids else []
-    by_source: dict[str, list[Place]] = defaultdict(list)
+    by_source: dict[str, list[EventPlace]] = defaultdict(list)
     for place in places:
         by_source[place.source].append(place)
-    read: dict[Place, MissionEvent] = {}
+    read: dict[EventPlace, MissionEvent] = {}
     for name, of_source in by_source.items():
         read.update(sources[name].read(of_source))
     return [LoggedEvent(place, read.get(place)) for place in places]
 
 
-def _places(sources: Sequence[Source], mission_ids: Collection[UUID], before: tuple[datetime, str] | None, limit: int) -> list[Place]:
+def _places(
+    sources: Sequence[EventSource], mission_ids: Collection[UUID], before: tuple[datetime, str] | None, limit: int
+) -> list[EventPlace]:
     parts = " UNION ALL ".join(
         f"SELECT '{source.name}', part.* FROM ({source.statement}) AS part(row, step, at, mission_id)"  # noqa: S608 - texts of ours
         for source in sources
@@ -158,10 +160,10 @@ def _places(sources: Sequence[Source], mission_ids: Collection[UUID], before: tu
     }  # fmt: skip
     with connection.cursor() as cursor:
         cursor.execute(statement, values)
-        return [Place(*row) for row in cursor.fetchall()]
+        return [EventPlace(*row) for row in cursor.fetchall()]
 
 
-def _read_commands(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_commands(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = UavCommand.objects.select_related("uav", "created_by").in_bulk([UUID(place.row) for place in places])
     return {place: _of_command(row, place.step) for place in places if (row := rows.get(UUID(place.row))) is not None}
 
@@ -181,7 +183,7 @@ def _of_command(command: UavCommand, step: str) -> MissionEvent:
     )  # fmt: skip
 
 
-def _read_targets(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_targets(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = InspectionTarget.objects.only("label", "sequence", "state", "state_reason").in_bulk([int(place.row) for place in places])
     found = {}
     for place in places:
@@ -194,7 +196,7 @@ def _read_targets(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
     return found
 
 
-def _read_history(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_history(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = AuditEntry.objects.select_related("actor").in_bulk([int(place.row) for place in places])
     uavs = Uav.objects.only("name", "is_simulated").in_bulk([uav for row in rows.values() if (uav := _uav_of(row)) is not None])
     return {place: _of_entry(row, place.step, uavs) for place in places if (row := rows.get(int(place.row))) is not None}
@@ -223,7 +225,7 @@ def _of_entry(entry: AuditEntry, step: str, uavs: Mapping[int, Uav]) -> MissionE
 
 
 _OWN = (
-    Source("command", _COMMANDS, _read_commands),
-    Source("target", _TARGETS, _read_targets),
-    Source("history", _HISTORY, _read_history),
+    EventSource("command", _COMMANDS, _read_commands),
+    EventSource("target", _TARGETS, _read_targets),
+    EventSource("history", _HISTORY, _read_history),
 )

@@ -5,7 +5,7 @@ from datetime import timedelta
 from django.conf import settings
 from django.db.models.functions import Now
 
-from inspection.auto_apply_hooks import HeldBack, WrittenGround
+from inspection.auto_apply_hooks import AutoApplyRefusal, WrittenGround
 from missions.hooks.in_air import uavs_in_the_air
 from missions.models import ENDED_STATES, InspectionTarget, MissionState, Route, Waypoint
 from missions.selectors.flights import STILL_FLOWN
@@ -14,7 +14,7 @@ ON_UAVS = (MissionState.DISPATCHED, MissionState.ACTIVE)
 TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and from what stands tall
 
 
-def flown_missions_touched(written: WrittenGround) -> list[HeldBack]:
+def flown_missions_touched(written: WrittenGround) -> list[AutoApplyRefusal]:
     """Why an import that nobody has looked at is not to be applied; empty where it touches no mission of any organisation.
 
     A mission that is over counts while its UAVs are in the air: those of an aborted one are on their way home. Assets count within 200 m
@@ -25,7 +25,7 @@ def flown_missions_touched(written: WrittenGround) -> list[HeldBack]:
     if not touched:
         return []
     message = f"Missions that are flown or were sent to UAVs and whose targets or routes it touches: {len(touched)}."
-    return [HeldBack("flown_missions", message)]
+    return [AutoApplyRefusal("flown_missions", message)]
 
 
 def _routes() -> list[Route]:

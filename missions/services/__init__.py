@@ -3,7 +3,15 @@
 from missions.selectors.planning_context import with_bases
 from missions.selectors.resolved_targets import resolved_targets
 from missions.services.fleet.credentials import make_credential, mavlink_signing_key, revoke_credential
-from missions.services.fleet.rows import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
+from missions.services.fleet.rows import (
+    FleetChanged,
+    FleetRowInUse,
+    NameTaken,
+    NotDeleted,
+    SystemIdQuota,
+    SystemIdTaken,
+    UavExternalIdTaken,
+)
 from missions.services.fleet.types_and_bases import (
     change_base,
     change_uav_type,
@@ -60,7 +68,6 @@ __all__ = [
     "BaseRequest",
     "Charging",
     "Departure",
-    "ExternalIdTaken",
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",
@@ -77,6 +84,7 @@ __all__ = [
     "SystemIdQuota",
     "SystemIdTaken",
     "TargetRequest",
+    "UavExternalIdTaken",
     "UavRequest",
     "change_base",
     "change_mission",

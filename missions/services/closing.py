@@ -13,7 +13,7 @@ from missions.services.approval.approval import change_state, locked_mission, ua
 from missions.services.commands.dispatch import busy_elsewhere
 from missions.services.commands.flight_progress import ON_ITS_WAY, UNDECIDED
 from missions.services.commands.outbox import queue_command
-from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, refuse, refuse_for
 from missions.services.missions import note
 from workspace.models import User
 
@@ -51,12 +51,12 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
     return held
 
 
-def _in_the_air(held: Mission) -> list[Reason]:
+def _in_the_air(held: Mission) -> list[RefusalReason]:
     """UAVs with a route of the mission, as far as they do not fly another one by now."""
     own = held.mission_uavs.filter(uav__isnull=False, route__geometry__isnull=False).exclude(uav__in=busy_elsewhere(held))
     names = dict(own.values_list("uav", "name"))
     return [
-        Reason("in_the_air", _("%(uav)s is in the air: the mission can be closed once it is down.") % {"uav": names[uav_id]})
+        RefusalReason("in_the_air", _("%(uav)s is in the air: the mission can be closed once it is down.") % {"uav": names[uav_id]})
         for uav_id in sorted(uavs_in_the_air(list(names)))
     ]
 

@@ -10,7 +10,7 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from missions.hooks.events import EventKind, MissionEvent, Place
+from missions.hooks.events import EventKind, EventPlace, MissionEvent
 from missions.models import Mission
 from missions.selectors.events import LoggedEvent, events_of_missions, missions_with_live_events
 from missions.selectors.missions import mission_alone
@@ -49,7 +49,7 @@ class MissionEventPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-def event_json(place: Place, event: MissionEvent) -> dict[str, Any]:
+def event_json(place: EventPlace, event: MissionEvent) -> dict[str, Any]:
     return {
         "key": place.key,
         "at": place.at,

@@ -12,7 +12,6 @@ from inspection.selectors import NoGraph
 from missions.reason_texts import fault_texts
 from missions.selectors.fleet import last_change
 from missions.services import (
-    ExternalIdTaken,
     FleetChanged,
     FleetRowInUse,
     GraphOutdated,
@@ -24,6 +23,7 @@ from missions.services import (
     NothingToPlan,
     SystemIdQuota,
     SystemIdTaken,
+    UavExternalIdTaken,
 )
 from missions.services.commands.refused import Refused
 from workspace.api.errors import ApiProblem
@@ -46,7 +46,7 @@ def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
             "uav": _("Another UAV has this name."), "uav_type": _("Another type has this name."), "base": _("Another base has this name.")
         }  # fmt: skip
         raise ApiProblem(409, "name_taken", messages[error.subject], details={"name": [messages[error.subject]]}) from error
-    except ExternalIdTaken as error:
+    except UavExternalIdTaken as error:
         message = _("Another UAV has this external id.")
         raise ApiProblem(409, "external_id_taken", message, details={"external_id": [message]}) from error
     except SystemIdTaken as error:

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
-from simulation.assessment.flown import Ending, FloatArray, FlownRoute, FlownTrack, IntArray, frame_of
+from simulation.assessment.flown import AssessedRoute, FloatArray, FlownTrack, IntArray, TrackEnding, frame_of
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class ClosestApproach:
         return math.hypot(self.beside_m, self.height_m)
 
 
-def closest_approaches_of(routes: Sequence[FlownRoute], *, step_s: float) -> list[ClosestApproach]:
+def closest_approaches_of(routes: Sequence[AssessedRoute], *, step_s: float) -> list[ClosestApproach]:
     """One for each pair that was in the air at the same time; the tracks are read every step_s of the mission's time."""
     frame = frame_of(routes)
     if frame is None:
@@ -45,13 +45,13 @@ def closest_approaches_of(routes: Sequence[FlownRoute], *, step_s: float) -> lis
     return found
 
 
-def _by_step(route: FlownRoute, frame: LocalFrame, step_s: float, ends_s: float) -> tuple[IntArray, FloatArray]:
+def _by_step(route: AssessedRoute, frame: LocalFrame, step_s: float, ends_s: float) -> tuple[IntArray, FloatArray]:
     """Numbers of the steps at which it was in the air, ascending, and east, north, up [m] at each; who hovers stays until the end."""
     steps, places = [], []
     for track in route.tracks:
         if not len(track):
             continue
-        until_s = ends_s if track.ending is Ending.HOVERING else float(track.t_s[-1])
+        until_s = ends_s if track.ending is TrackEnding.HOVERING else float(track.t_s[-1])
         wanted = np.arange(math.ceil(track.t_s[0] / step_s), math.floor(until_s / step_s) + 1)
         at = np.interp(wanted * step_s, track.t_s, np.arange(len(track)))
         is_up = track.is_in_air[np.rint(at).astype(np.int64)]

@@ -16,7 +16,7 @@ BoolArray = NDArray[np.bool_]
 NO_WAYPOINT = -1
 
 
-class Ending(StrEnum):
+class TrackEnding(StrEnum):
     LANDED = "landed"
     HOVERING = "hovering"  # after its last waypoint, as it was planned
     CRASHED = "crashed"
@@ -48,7 +48,7 @@ class FlownTrack:
     is_in_air: BoolArray
     is_coming_down: BoolArray
     attitude_deg: FloatArray
-    ending: Ending
+    ending: TrackEnding
     stated: tuple[str, ...] = ()
 
     def __len__(self) -> int:
@@ -56,7 +56,7 @@ class FlownTrack:
 
     @property
     def is_over_well(self) -> bool:
-        return self.ending in (Ending.LANDED, Ending.HOVERING)
+        return self.ending in (TrackEnding.LANDED, TrackEnding.HOVERING)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ class FlownFlight:
 
 
 @dataclass(frozen=True, eq=False)
-class FlownRoute:
+class AssessedRoute:
     """A UAV's whole route. `uav` is its place in the mission; reserve_percent is what its plan leaves in the battery."""
 
     uav: int
@@ -84,7 +84,7 @@ class FlownRoute:
         return tuple(flown.track for flown in self.flights if flown.track is not None)
 
 
-def frame_of(routes: Sequence[FlownRoute]) -> LocalFrame | None:
+def frame_of(routes: Sequence[AssessedRoute]) -> LocalFrame | None:
     """One flat frame for all of them; None where nothing was flown."""
     flown = [track.position for route in routes for track in route.tracks if len(track)]
     if not flown:

@@ -8,7 +8,7 @@ from planning.rules import FlightRules, SeparationRules
 
 
 @dataclass(frozen=True)
-class Limits:
+class AssessmentLimits:
     """`..._warn_...` is worth a warning, `..._fail_...` a fail."""
 
     waypoint_warn_m: float = 2.0
@@ -32,7 +32,7 @@ class Limits:
     column_m: float = 15.0
 
     @classmethod
-    def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_beside_m: float, zone_height_m: float) -> "Limits":
+    def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_beside_m: float, zone_height_m: float) -> "AssessmentLimits":
         """As the settings have them: a rehearsal is held against what the plan was made by."""
         return cls(
             late_warn_s=separation.time_s,
@@ -70,7 +70,7 @@ SOURCES: Mapping[str, str] = {
 }
 
 
-def limits_to_json(limits: Limits) -> dict[str, dict[str, float | str]]:
+def limits_to_json(limits: AssessmentLimits) -> dict[str, dict[str, float | str]]:
     """By name, each with its value and its source."""
     return {name: {"value": value, "source": SOURCES[name]} for name, value in asdict(limits).items()}
 

@@ -11,7 +11,7 @@ from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
 from simulation.flight.airframe import Airframe
 from simulation.flight.course import Vector
 from simulation.flight.faults import Weather
-from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Ground, Motion, Plant
+from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Motion, Plant, TerrainHeights
 
 DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
 WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
@@ -113,7 +113,7 @@ class Gusts:
         return self._ned
 
 
-class Air:
+class SurroundingAir:
     """`wind_ned_mps` is the velocity of the air at the UAV, without what Dryden turbulence adds to it."""
 
     def __init__(self, plant: Plant, weather: Weather, *, ground_m: float, seed: int) -> None:
@@ -157,7 +157,7 @@ class Body:
         airframe: Airframe,
         home: LonLat,
         *,
-        ground: Ground,
+        ground: TerrainHeights,
         weather: Weather,
         seed: int,
         heading_deg: float,
@@ -169,7 +169,7 @@ class Body:
         self._ground, self._ground_at = ground, home
         self.home, self.frame = home, LocalFrame.around(home.lon, home.lat)
         self.plant = Plant(airframe, home, ground_m=self._ground_m, heading_deg=heading_deg, seed=seed, physics_hz=physics_hz)
-        self.air = Air(self.plant, weather, ground_m=self._ground_m, seed=seed * SEEDS_APART + 1)
+        self.air = SurroundingAir(self.plant, weather, ground_m=self._ground_m, seed=seed * SEEDS_APART + 1)
         self._navigation = Navigation(seed * SEEDS_APART + 2)
         self._battery = Battery.charged(airframe, battery_percent)
         self._parked_j = 0.0

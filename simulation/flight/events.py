@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from inspection.geodesy import LonLat
-from simulation.flight.states import Mode, Severity
+from simulation.flight.states import FlightMode, Severity
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class ModeChanged:
     """`is_own`: by the UAV itself, not by an order."""
 
     at_s: float
-    mode: Mode
+    mode: FlightMode
     is_own: bool
 
 
@@ -43,7 +43,7 @@ class PhotoTaken:
 
 
 @dataclass(frozen=True, slots=True)
-class StatusText:
+class StatusTextSent:
     """A text for the operator."""
 
     at_s: float
@@ -81,4 +81,4 @@ class Crashed:
     reason: str
 
 
-Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | StatusText | Armed | Disarmed | TookOff | LandedAt | Crashed
+Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | StatusTextSent | Armed | Disarmed | TookOff | LandedAt | Crashed

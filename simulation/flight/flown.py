@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from inspection.geodesy import LonLat
 from simulation.flight.events import Crashed, Event
-from simulation.flight.states import MissionState, Mode, Refused, UavState
+from simulation.flight.states import FlightMode, MissionItemState, OrderRefused, SimulatedState
 from simulation.flight.uav import SimulatedUav
 
 MAX_DURATION_S = 4 * 3_600.0  # no battery of ours lasts so long
@@ -33,14 +33,14 @@ class Sample(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Flown:
+class FlownFlightLog:
     """`samples` begin with the arming. `end` is the state at the end; `refusal` why it did not take off."""
 
     ending: Ending
     samples: tuple[Sample, ...]
     events: tuple[Event, ...]
-    end: UavState
-    refusal: Refused | None = None
+    end: SimulatedState
+    refusal: OrderRefused | None = None
 
     @property
     def crash(self) -> Crashed | None:
@@ -51,16 +51,16 @@ class Flown:
         return self.end.true_position if self.ending is Ending.LANDED else None
 
 
-def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_steps: int = 1) -> Flown:
+def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_steps: int = 1) -> FlownFlightLog:
     """Arm, fly the mission that was loaded, until it stands on the ground, hovers after its last item, or has crashed.
 
     A sample each `sample_steps` steps of 0.04 s. It ends for each mission: one that never comes to an end empties the battery.
     """
-    outcome = uav.set_mode(Mode.MISSION)
+    outcome = uav.set_mode(FlightMode.MISSION)
     if outcome.is_done:
         outcome = uav.arm()
-    if isinstance(outcome, Refused):
-        return Flown(Ending.REFUSED, (), tuple(uav.take_events()), uav.state, outcome)
+    if isinstance(outcome, OrderRefused):
+        return FlownFlightLog(Ending.REFUSED, (), tuple(uav.take_events()), uav.state, outcome)
     samples, events, began_s = [_sample(uav)], uav.take_events(), uav.now_s
     hovers_since_s: float | None = None
     ending = Ending.FLYING
@@ -77,14 +77,14 @@ def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_
         if not uav.is_armed:
             ending = Ending.LANDED
             break
-        if uav.mission_state is MissionState.COMPLETE:
+        if uav.mission_state is MissionItemState.COMPLETE:
             hovers_since_s = uav.now_s if hovers_since_s is None else hovers_since_s
             if uav.now_s - hovers_since_s >= SETTLES_S:
                 ending = Ending.HOVERING
                 break
     if steps % sample_steps:
         samples.append(_sample(uav))
-    return Flown(ending, tuple(samples), tuple(events), uav.state)
+    return FlownFlightLog(ending, tuple(samples), tuple(events), uav.state)
 
 
 def _sample(uav: SimulatedUav) -> Sample:

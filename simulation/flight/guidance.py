@@ -140,7 +140,7 @@ class GuidanceRules:
     landing_slope_per_s: float = 0.18  # m/s for each metre above ground: the last 8 m take the 11 s that plans count
 
 
-class Command(NamedTuple):
+class GuidanceCommand(NamedTuple):
     """Velocity [m/s] and acceleration [m/s²] to east, north and up; `along` is the direction of the course."""
 
     velocity: Vector
@@ -206,7 +206,7 @@ class Guidance:
         """The reference stands where the course ends."""
         return self._reference is None or (self._reference.is_at_end and not self._pending)
 
-    def step(self, dt_s: float, here: Vector, *, above_m: float, effort: float) -> Command:
+    def step(self, dt_s: float, here: Vector, *, above_m: float, effort: float) -> GuidanceCommand:
         rules, reference = self._rules, self._reference
         self.marks = []
         if reference is None:
@@ -225,7 +225,7 @@ class Guidance:
         (px, py, pz), (u, v, w), speed = reference.place, reference.along, reference.speed_mps
         pull = self._pull(px - here[0], py - here[1], pz - here[2])
         velocity = (u * speed + pull[0], v * speed + pull[1], w * speed + pull[2])
-        return Command(velocity, reference.acceleration(rules.lead_s), reference.along)
+        return GuidanceCommand(velocity, reference.acceleration(rules.lead_s), reference.along)
 
     def _pass_gates(self, marks: list[int], moved_m: float, here: Vector) -> None:
         if not self._pending:
@@ -246,11 +246,11 @@ class Guidance:
             east, north = east * rules.most_pull_mps / strength, north * rules.most_pull_mps / strength
         return east, north, min(max(rules.lift_per_s * up_m, -rules.most_lift_mps), rules.most_lift_mps)
 
-    def _to_place(self, here: Vector, above_m: float) -> Command:
+    def _to_place(self, here: Vector, above_m: float) -> GuidanceCommand:
         away = (self._place[0] - here[0], self._place[1] - here[1], self._place[2] - here[2])
         east, north, up = self._pull(*away)
         self.off_m = math.sqrt(away[0] ** 2 + away[1] ** 2 + away[2] ** 2)
         if self._is_descending:
             rules = self._rules
             up = -min(self._airframe.descent_mps, max(rules.slow_landing_mps, rules.landing_slope_per_s * above_m))
-        return Command((east, north, up), STILL, STILL)
+        return GuidanceCommand((east, north, up), STILL, STILL)

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from simulation.flight.course import Vector, Via
 from simulation.flight.manoeuvre_context import ManoeuvreContext
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 
 INSIDE_M = 0.1  # by which the chords may lie inside the circle
 MAX_RAD = math.radians(15.0)  # of one chord
@@ -34,7 +34,7 @@ class Manoeuvre(Protocol):
     `is_landing`: the ground is to be touched. `lifts_off`: it can begin on the ground.
     """
 
-    mode: Mode
+    mode: FlightMode
     lifts_off: bool
     is_done: bool
 
@@ -49,7 +49,7 @@ class Manoeuvre(Protocol):
 class Hold:
     """Stands where it comes to a stand."""
 
-    mode = Mode.HOLD
+    mode = FlightMode.HOLD
     lifts_off = False
     is_landing = False
     is_done = False
@@ -61,10 +61,10 @@ class Hold:
         pass
 
 
-class TakeOff:
+class TakeOffManoeuvre:
     """Straight up to a height above home; done there."""
 
-    mode = Mode.TAKE_OFF
+    mode = FlightMode.TAKE_OFF
     lifts_off = True
     is_landing = False
 
@@ -87,7 +87,7 @@ class TakeOff:
 class GoTo:
     """To a place, and stays there."""
 
-    mode = Mode.GO_TO
+    mode = FlightMode.GO_TO
     lifts_off = False
     is_landing = False
     is_done = False
@@ -105,7 +105,7 @@ class GoTo:
 class Around:
     """To the nearest point of a circle, so many times around its centre, and to a stand; see circle.around."""
 
-    mode = Mode.GO_TO
+    mode = FlightMode.GO_TO
     lifts_off = False
     is_landing = False
 
@@ -123,7 +123,7 @@ class Around:
 class Land:
     """Flies over the place at the height it has, or stays over where it is, and descends to the ground. Touching it ends the manoeuvre."""
 
-    mode = Mode.LAND
+    mode = FlightMode.LAND
     lifts_off = False
 
     def __init__(self, place: Vector | None = None) -> None:
@@ -148,7 +148,7 @@ class Land:
 class Return:
     """Up to the height of returns, at that height home or to the rally point that is nearer, and down. Near there it does not climb."""
 
-    mode = Mode.RETURN
+    mode = FlightMode.RETURN
     lifts_off = False
 
     def __init__(self) -> None:

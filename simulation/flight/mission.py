@@ -5,18 +5,18 @@ from simulation.flight.course import Via
 from simulation.flight.events import ItemReached, MissionEnded
 from simulation.flight.guidance import Gate
 from simulation.flight.manoeuvre_context import ManoeuvreContext
-from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOff
-from simulation.flight.states import Mode
+from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOffManoeuvre
+from simulation.flight.states import FlightMode
 
 MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
 STOPPED_WITHIN_M = 0.5
 MAX_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
 
 
-class Mission:
+class MissionManoeuvre:
     """Flies the orders from `index` on. `index` is the first that is not done; one past the last when all are."""
 
-    mode = Mode.MISSION
+    mode = FlightMode.MISSION
     lifts_off = True
 
     def __init__(self, orders: tuple[flown.Order, ...], index: int) -> None:
@@ -66,15 +66,15 @@ class Mission:
 
     def _begins(self, context: ManoeuvreContext, order: flown.Order) -> bool:
         if isinstance(order, flown.FlyTo | flown.FlyAround) and not context.is_in_air:
-            return self._starts(context, TakeOff(max(context.vector_of(order.place)[2], context.settings.take_off_height_m)))
+            return self._starts(context, TakeOffManoeuvre(max(context.vector_of(order.place)[2], context.settings.take_off_height_m)))
         if isinstance(order, flown.FlyTo):
             self._begin_run(context)
             return True
         if isinstance(order, flown.FlyAround):
             return self._starts(context, Around(context.vector_of(order.place), order.turns, order.radius_m))
-        if isinstance(order, flown.TakeOff):
+        if isinstance(order, flown.TakeOffOrder):
             height_m = context.settings.take_off_height_m if order.place.height_m is None else context.vector_of(order.place)[2]
-            return self._starts(context, TakeOff(max(height_m, 1.0)))
+            return self._starts(context, TakeOffManoeuvre(max(height_m, 1.0)))
         if isinstance(order, flown.LandAt | flown.ReturnHome) and not context.is_in_air:
             return self._reached(context)
         if isinstance(order, flown.LandAt):
@@ -99,7 +99,7 @@ class Mission:
         if not part.is_done:
             return False
         self._part = None
-        if isinstance(part, TakeOff) and not isinstance(self.orders[self.index], flown.TakeOff):
+        if isinstance(part, TakeOffManoeuvre) and not isinstance(self.orders[self.index], flown.TakeOffOrder):
             return True  # what was begun on the ground is flown to now
         return self._reached(context)
 
@@ -121,7 +121,7 @@ class Mission:
                     break
             elif isinstance(order, flown.SetSpeed):
                 speed_mps = min(order.speed_mps, context.airframe.max_speed_mps)
-            elif isinstance(order, flown.TakeOff | flown.FlyAround | flown.LandAt | flown.ReturnHome | flown.Wait | flown.Jump):
+            elif isinstance(order, flown.TakeOffOrder | flown.FlyAround | flown.LandAt | flown.ReturnHome | flown.Wait | flown.Jump):
                 break
         self._run_end = end
         self._turn_for(context, self.orders[self.index])

@@ -29,7 +29,7 @@ class Above(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class OrderPlace:
     """`position` None: where the UAV is; `height_m` None: as high as it is."""
 
     position: LonLat | None
@@ -38,15 +38,15 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class TakeOff:
-    place: Place
+class TakeOffOrder:
+    place: OrderPlace
 
 
 @dataclass(frozen=True, slots=True)
 class FlyTo:
     """`hold_s` is stood there, inf: for good; `radius_m` 0: as the settings have it; `heading_deg` None: along the course."""
 
-    place: Place
+    place: OrderPlace
     hold_s: float
     radius_m: float = 0.0
     heading_deg: float | None = None
@@ -56,14 +56,14 @@ class FlyTo:
 class FlyAround:
     """So many turns around a place; a negative radius is against the clock's hands."""
 
-    place: Place
+    place: OrderPlace
     turns: float
     radius_m: float
 
 
 @dataclass(frozen=True, slots=True)
 class LandAt:
-    place: Place
+    place: OrderPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ class SetSpeed:
 class LookAt:
     """None: along the course again."""
 
-    place: Place | None
+    place: OrderPlace | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +123,7 @@ class Nothing:
     """An item that this UAV takes and has nothing to do for: servos, gimbals, markers."""
 
 
-Order = TakeOff | FlyTo | FlyAround | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
+Order = TakeOffOrder | FlyTo | FlyAround | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
 NOTHING = Nothing()
 
 
@@ -178,7 +178,7 @@ def _order(index: int, item: MissionItem) -> Order:
     command = item.command
     one, two, three, four = item.parameters
     if command == mavlink.MAV_CMD_NAV_TAKEOFF:
-        return TakeOff(_place(index, item))
+        return TakeOffOrder(_place(index, item))
     if command in (mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_SPLINE_WAYPOINT):
         return FlyTo(_place(index, item), _seconds(index, one, 1), _positive(index, two, 2), _heading(index, four))
     if command == mavlink.MAV_CMD_NAV_LOITER_TIME:
@@ -223,7 +223,7 @@ def _order(index: int, item: MissionItem) -> Order:
     raise CannotFly(index, "unsupported", f"command {command} is not known to this UAV.")
 
 
-def _place(index: int, item: MissionItem) -> Place:
+def _place(index: int, item: MissionItem) -> OrderPlace:
     lon, lat, height_m = item.longitude_e7 / E7, item.latitude_e7 / E7, item.altitude_m
     if item.frame not in _AMSL | _RELATIVE | _TERRAIN:
         raise CannotFly(index, "frame", f"a place in frame {item.frame} is not known to this UAV.")
@@ -235,7 +235,7 @@ def _place(index: int, item: MissionItem) -> Place:
         raise CannotFly(index, "invalid", f"a height of {height_m:g} m is beyond what is flown.", 7)
     above = Above.SEA if item.frame in _AMSL else Above.HOME if item.frame in _RELATIVE else Above.GROUND
     is_here = item.longitude_e7 == 0 and item.latitude_e7 == 0
-    return Place(None if is_here else LonLat(lon, lat), None if math.isnan(height_m) else height_m, above)
+    return OrderPlace(None if is_here else LonLat(lon, lat), None if math.isnan(height_m) else height_m, above)
 
 
 def _seconds(index: int, value: float, parameter: int) -> float:

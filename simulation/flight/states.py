@@ -6,7 +6,7 @@ from enum import StrEnum
 from inspection.geodesy import LonLat
 
 
-class Mode(StrEnum):
+class FlightMode(StrEnum):
     """Our own names; what the wire calls them is the endpoint's matter."""
 
     HOLD = "hold"
@@ -24,7 +24,7 @@ class Landed(StrEnum):
     LANDING = "landing"
 
 
-class MissionState(StrEnum):
+class MissionItemState(StrEnum):
     NONE = "none"
     NOT_STARTED = "not-started"
     ACTIVE = "active"
@@ -56,7 +56,7 @@ class Gps:
 
 
 @dataclass(frozen=True, slots=True)
-class UavState:
+class SimulatedState:
     """At `at_s` seconds after the start.
 
     `position` is where the UAV takes itself to be, which is what it reports and flies by; `true_position` where it is. They differ only
@@ -87,11 +87,11 @@ class UavState:
     is_armed: bool
     is_in_air: bool
     landed: Landed
-    mode: Mode
+    mode: FlightMode
     is_crashed: bool
     gps: Gps
     current_item: int
-    mission_state: MissionState
+    mission_state: MissionItemState
     home: LonLat
     home_amsl_m: float
     target_speed_mps: float
@@ -105,7 +105,7 @@ class Done:
 
 
 @dataclass(frozen=True, slots=True)
-class Refused:
+class OrderRefused:
     """The order is not carried out: `code` for programs, `words` for people."""
 
     code: str
@@ -113,5 +113,5 @@ class Refused:
     is_done: bool = False
 
 
-Outcome = Done | Refused
+Outcome = Done | OrderRefused
 DONE = Done()

@@ -10,7 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from mavlink.approved_route import HOVER, Flight, FrozenRoute
 from mavlink.vehicle_plan import MissionItem
-from simulation.assessment.flown import NO_WAYPOINT, Ending, FlownFlight, FlownRoute, FlownTrack
+from simulation.assessment.flown import NO_WAYPOINT, AssessedRoute, FlownFlight, FlownTrack, TrackEnding
 
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
 STEP_S = 0.04  # of a UAV's step
@@ -22,7 +22,7 @@ TIMEOUT_S = 600.0  # and so much more: then a flight does not end by itself
 UP_THERE = 0.95  # of a take-off's height
 
 
-class Vehicle(Protocol):
+class RehearsedVehicle(Protocol):
     """What flying a mission needs of a simulated UAV; see simulation.flight.uav.SimulatedUav."""
 
     @property
@@ -49,7 +49,7 @@ class Start:
     seed: int
 
 
-MakeVehicle = Callable[[Start], Vehicle]
+MakeVehicle = Callable[[Start], RehearsedVehicle]
 OnProgress = Callable[[float], None]
 
 
@@ -71,7 +71,7 @@ class RouteToFly:
     limit_mps: float = math.inf
 
 
-def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[FlownRoute]:
+def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[AssessedRoute]:
     """Fly them all, from the first take-off to the last landing. on_progress is told the share that is done; what it raises ends it all."""
     flyers = [_Flyer(route, make, turnaround_s, seed * 1_000 + number) for number, route in enumerate(routes)]
     now_s = min((flyer.next_s for flyer in flyers), default=math.inf)
@@ -98,7 +98,7 @@ class _Flyer:
         self._route, self._make, self._turnaround_s, self._seed = route, make, turnaround_s, seed
         self._flights = route.route.flights
         self._flown: list[FlownFlight] = []
-        self._vehicle: Vehicle | None = None
+        self._vehicle: RehearsedVehicle | None = None
         self._rows = _Rows()
         self._begins_s = route.route.departs_s
         self._was_up = self._is_waiting_to_start = False
@@ -131,10 +131,10 @@ class _Flyer:
             else:
                 self._sample_and_step(self._vehicle)
 
-    def flown(self) -> FlownRoute:
+    def flown(self) -> AssessedRoute:
         route = self._route
         missing = tuple(FlownFlight(flight, None) for flight in self._flights[len(self._flown) :])
-        return FlownRoute(
+        return AssessedRoute(
             route.uav, route.name, route.route, (*self._flown, *missing), route.reserve_percent, route.planned_wh, route.planned_s
         )
 
@@ -165,9 +165,9 @@ class _Flyer:
         refused = next((order for order in orders if not order.is_done), None)
         if refused is not None:
             self._rows.texts.append(refused.words)
-            self._end(Ending.REFUSED)
+            self._end(TrackEnding.REFUSED)
 
-    def _sample_and_step(self, vehicle: Vehicle) -> None:
+    def _sample_and_step(self, vehicle: RehearsedVehicle) -> None:
         for _ in range(STEPS_A_SAMPLE):
             vehicle.step()
         self._note(vehicle)
@@ -179,15 +179,15 @@ class _Flyer:
         if state.mission_state == "complete" and math.isinf(self._complete_s):
             self._complete_s = vehicle.now_s
         if state.is_crashed:
-            self._end(Ending.CRASHED)
+            self._end(TrackEnding.CRASHED)
         elif self._was_up and not state.is_in_air and not state.is_armed:
-            self._end(Ending.LANDED)
+            self._end(TrackEnding.LANDED)
         elif self._flight.end_action == HOVER and vehicle.now_s >= self._complete_s + HOVERS_S:
-            self._end(Ending.HOVERING)
+            self._end(TrackEnding.HOVERING)
         elif vehicle.now_s > TIMEOUT * self._planned_s(self._flight) + TIMEOUT_S:
-            self._end(Ending.UNFINISHED)
+            self._end(TrackEnding.UNFINISHED)
 
-    def _note(self, vehicle: Vehicle) -> None:
+    def _note(self, vehicle: RehearsedVehicle) -> None:
         state = vehicle.state
         index = state.current_item
         item = self._items[index] if 0 <= index < len(self._items) else None
@@ -201,7 +201,7 @@ class _Flyer:
         ))  # fmt: skip
         self._rows.texts += vehicle.take_texts()
 
-    def _end(self, ending: Ending) -> None:
+    def _end(self, ending: TrackEnding) -> None:
         columns = np.array(self._rows.rows, dtype=np.float64)
         track = FlownTrack(
             t_s=columns[:, 0],

@@ -17,7 +17,7 @@ from mavlink.vehicle_plan import FlightLoad, load_from_json, load_to_json
 from missions.models import Approval, Mission, MissionUav
 from missions.selectors.zones import departure_s
 from missions.services.approval.document import frozen_route
-from missions.services.commands.refused import Reason, Refused, refuse
+from missions.services.commands.refused import RefusalReason, Refused, refuse
 from planning.energy.conditions import Conditions, conditions_from_json
 from planning.energy.performance import performance_from_json
 from planning.trajectory.heights import asset_height_m
@@ -79,7 +79,7 @@ def plan_to_fly(mission: Mission) -> PlanToFly:
             frozen, loads = approved[uav.sequence] if uav.sequence in approved else _made(frozen_route(route, mission))
         except (CannotBeFlown, NotARoute) as error:
             values = {"uav": uav.name, "why": str(error)}
-            reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
+            reasons.append(RefusalReason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
             continue
         routes.append(_to_fly(uav, frozen, loads, route.energy_wh, route.duration_s))
         stand_ins.append(stand_in_of(uav))

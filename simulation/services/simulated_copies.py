@@ -15,7 +15,7 @@ from missions.models import LinkKind, Mission, MissionUav, Uav, UavState
 from missions.models.missions import MAX_NAME_LENGTH
 from missions.selectors.missions import approval_in_force, mission_of_organisation
 from missions.services.approval.approval import approve_mission
-from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, refuse, refuse_for
 from missions.services.fleet.uavs import change_uav, create_uav
 from missions.services.mission_copies import duplicate_mission
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
@@ -98,13 +98,13 @@ def _make_copy(mission: Mission, places: Sequence[MissionUav], actor: User) -> M
     return copy
 
 
-def _why_not(place: MissionUav) -> Reason | None:
+def _why_not(place: MissionUav) -> RefusalReason | None:
     """Why a UAV of a mission has no twin."""
     values = {"uav": place.name}
     if place.uav is None:
-        return Reason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
+        return RefusalReason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
     if SimulatedVehicle.objects.filter(uav__twin_of=place.uav_id, state__in=PRESENT).exists():
-        return Reason("already_simulated", _("%(uav)s is already flown in simulation.") % values, place.sequence)
+        return RefusalReason("already_simulated", _("%(uav)s is already flown in simulation.") % values, place.sequence)
     return None
 
 

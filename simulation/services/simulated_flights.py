@@ -8,7 +8,7 @@ from django.db import transaction
 from django.utils.translation import gettext as _
 
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, MissionUav, Uav
-from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, Refused, refuse, refuse_for
 from missions.services.fleet.credentials import make_credential
 from missions.services.fleet.rows import SystemIdQuota
 from missions.services.fleet.uavs import change_uav
@@ -80,16 +80,18 @@ def reachable(uav: Uav, actor: User) -> Uav:
     return uav
 
 
-def _why_not(place: MissionUav) -> Reason | None:
+def _why_not(place: MissionUav) -> RefusalReason | None:
     """Why a UAV of a mission cannot be stood in for."""
     uav, values = place.uav, {"uav": place.name}
     if uav is None:
-        return Reason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
+        return RefusalReason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
     if not uav.is_simulated:
         words = _("%(uav)s is a real UAV. Only UAVs that the fleet marks as simulated are flown in simulation.")
-        return Reason("real_uav", words % values, place.sequence)
+        return RefusalReason("real_uav", words % values, place.sequence)
     if uav.link != LinkKind.MAVLINK:
-        return Reason("not_by_mavlink", _("%(uav)s is reached through a companion computer, not by MAVLink.") % values, place.sequence)
+        return RefusalReason(
+            "not_by_mavlink", _("%(uav)s is reached through a companion computer, not by MAVLink.") % values, place.sequence
+        )
     return None
 
 
@@ -97,7 +99,7 @@ def _refuse_flown(places: Mapping[int, MissionUav], routes: Sequence[RouteToFly]
     by_uav = {places[route.uav].uav_id: places[route.uav] for route in routes}
     flown = set(SimulatedVehicle.objects.filter(uav__in=list(by_uav), state__in=PRESENT).values_list("uav_id", flat=True))
     reasons = [
-        Reason("already_simulated", _("%(uav)s is already flown in simulation.") % {"uav": place.name}, place.sequence)
+        RefusalReason("already_simulated", _("%(uav)s is already flown in simulation.") % {"uav": place.name}, place.sequence)
         for uav_id, place in by_uav.items()
         if uav_id in flown
     ]

@@ -8,7 +8,7 @@ from typing import Any
 from uuid import UUID
 
 from simulation.models import SimulatedVehicle, Simulation
-from simulation.vehicle_endpoint.fleet import Change, Fleet
+from simulation.vehicle_endpoint.fleet import Fleet, VehicleChange
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.launch import Launch, fleet_of
 
@@ -18,7 +18,7 @@ ENDS_WITHIN_S = 5.0
 
 
 @dataclass
-class Flight:
+class RunningSimulation:
     """`vehicles` and the fleet's UAVs stand in the same order. It flies no step after `held_until_s` (monotonic), whatever holds up the
     thread that renews the lease: another simulator may fly the same UAVs by then.
     """
@@ -37,7 +37,7 @@ class Flight:
         self._thread = threading.Thread(target=self._run, name=f"simulation {self.simulation.pk}", daemon=True)
         self._thread.start()
 
-    def post(self, change: Change) -> None:
+    def post(self, change: VehicleChange) -> None:
         """At the next step."""
         self.speed = change.speed or self.speed
         self.fleet.post(change)
@@ -45,7 +45,7 @@ class Flight:
     def drop(self, vehicle: SimulatedVehicle) -> None:
         """It is gone at the next step; the others fly on."""
         self._dropped.add(vehicle.pk)
-        self.fleet.post(Change(system=vehicle.system_id, ends=True))
+        self.fleet.post(VehicleChange(system=vehicle.system_id, ends=True))
 
     def end(self) -> None:
         self.fleet.end()
@@ -83,9 +83,11 @@ class Flight:
             logger.exception("simulation %s fell", self.simulation.pk)
 
 
-def flight_of(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch], *, held_until_s: float) -> Flight:
+def flight_of(
+    simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch], *, held_until_s: float
+) -> RunningSimulation:
     """Raises OSError where a socket cannot be had."""
-    return Flight(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed, held_until_s)
+    return RunningSimulation(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed, held_until_s)
 
 
 def _reported(flying: FlyingUav) -> dict[str, Any]:

@@ -33,9 +33,9 @@ from simulation.services.simulator_leases import (
     take_simulation,
     tell,
 )
-from simulation.simulator.flight import Flight, flight_of
-from simulation.simulator.options import Options
-from simulation.vehicle_endpoint.fleet import Change, InvalidSpeed
+from simulation.simulator.flight import RunningSimulation, flight_of
+from simulation.simulator.options import SimulatorOptions
+from simulation.vehicle_endpoint.fleet import InvalidSpeed, VehicleChange
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import Flavour
 from workspace.api.errors import DATABASE_UNAVAILABLE
@@ -52,7 +52,7 @@ class NoGateway(Exception):
     """A mission's UAV has nowhere to connect to."""
 
 
-def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Options) -> Launch:
+def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: SimulatorOptions) -> Launch:
     """Over the stored terrain; a ground height that was said holds where it is known from nowhere else. Raises NoGateway."""
     if vehicle.uav is not None and options.gateway is None:
         raise NoGateway
@@ -83,8 +83,8 @@ def _key_of(uav: Uav) -> bytes | None:
 class Simulator:
     """`run` until `stop`. The database is this thread's alone; a simulation's own thread knows its UAVs and their sockets."""
 
-    options: Options
-    flights: dict[UUID, Flight] = field(default_factory=dict)
+    options: SimulatorOptions
+    flights: dict[UUID, RunningSimulation] = field(default_factory=dict)
     _stop: threading.Event = field(default_factory=threading.Event)
     _told_s: float = 0.0
     _quiet_until_s: float = -UNAVAILABLE_INTERVAL_S
@@ -177,7 +177,7 @@ class Simulator:
             return
         try:
             flight.post(
-                Change(
+                VehicleChange(
                     system=None if change.vehicle is None else change.vehicle.system_id,
                     weather=None if change.conditions is None else weather_of(sky_from_json(change.conditions)),
                     faults=None if change.faults is None else faults_told(change.faults),

@@ -65,7 +65,7 @@ class InvalidSpeed(ValueError):
 
 
 @dataclass(frozen=True)
-class Change:
+class VehicleChange:
     """What is to be different from now on; None stays. `system` None: of all UAVs. `faults` is made of those that a UAV has."""
 
     system: int | None = None
@@ -102,7 +102,7 @@ class Fleet:
     speed: float = 1.0
     _failed: set[int] = field(default_factory=set)
     _gone: set[int] = field(default_factory=set)
-    _changes: SimpleQueue[Change] = field(default_factory=SimpleQueue)
+    _changes: SimpleQueue[VehicleChange] = field(default_factory=SimpleQueue)
     _is_ended: bool = False
 
     def __post_init__(self) -> None:
@@ -110,7 +110,7 @@ class Fleet:
         self._began_s = time.monotonic()
         self._step_timer = StepTimer(STEP_S, self.speed, self._began_s)
 
-    def post(self, change: Change) -> None:
+    def post(self, change: VehicleChange) -> None:
         """At the next step. Raises InvalidSpeed."""
         if change.speed is not None:
             _check_speed(change.speed)

@@ -7,7 +7,7 @@ from typing import Any
 
 from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
 from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFaults, faults_from
-from simulation.vehicle_endpoint.fleet import Change
+from simulation.vehicle_endpoint.fleet import VehicleChange
 
 WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
 ORDER = frozenset({"system", "weather", "faults", "pace"})
@@ -18,7 +18,7 @@ class WrongOrder(ValueError):
     """A line that says nothing that could be done."""
 
 
-def change_of(line: str) -> Change:
+def change_of(line: str) -> VehicleChange:
     """`{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "pace": 5}`, or parts of it.
 
     Without a system all UAVs are meant. Weather is as the line has it, calm in all that it leaves out; faults it leaves out stay as they
@@ -32,7 +32,7 @@ def change_of(line: str) -> Change:
     system, pace = order.get("system"), order.get("pace")
     if system is not None and not isinstance(system, int):
         raise WrongOrder("system is a number from 1 to 255")
-    return Change(
+    return VehicleChange(
         system=system,
         weather=weather_of(order["weather"]) if "weather" in order else None,
         faults=faults_of(order["faults"]) if "faults" in order else None,

@@ -20,7 +20,7 @@ FORGOTTEN_AFTER_S = 60.0  # of silence; the addresses it was given never
 Address = tuple[str, int]
 
 
-class WrongAddress(ValueError):
+class InvalidStationAddress(ValueError):
     """Text that is no HOST:PORT, or a host that is not known."""
 
 
@@ -28,11 +28,11 @@ def address_of(text: str) -> Address:
     """HOST:PORT, with an IPv6 host in brackets; the host is looked up. Raises WrongAddress."""
     host, _, port = text.strip().rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65_536:
-        raise WrongAddress(f"{text!r} is not HOST:PORT.")
+        raise InvalidStationAddress(f"{text!r} is not HOST:PORT.")
     try:
         where = socket.getaddrinfo(host.strip("[]"), int(port), type=socket.SOCK_DGRAM)[0][4]
     except OSError as error:
-        raise WrongAddress(f"{text!r}: {error}.") from error
+        raise InvalidStationAddress(f"{text!r}: {error}.") from error
     return str(where[0]), int(where[1])
 
 

@@ -21,7 +21,7 @@ class NotFinite(ValueError):
 
 
 @dataclass(frozen=True)
-class Command:
+class ReceivedCommand:
     """`values` are its seven parameters, None where it left the choice to the vehicle; 5 and 6 of a place are latitude and longitude [deg].
 
     `is_above_sea` tells how the seventh counts, where the message said so; COMMAND_LONG does not. `is_frame_known` is False where it said
@@ -43,14 +43,14 @@ class Command:
         return int(value) if value is not None and value == int(value) else None
 
 
-def command_of(message: Any) -> Command:
+def command_of(message: Any) -> ReceivedCommand:
     """Of COMMAND_LONG or COMMAND_INT. Raises NotFinite."""
     first = (message.param1, message.param2, message.param3, message.param4)
     if message.get_type() == "COMMAND_LONG":
-        return Command(message.command, _finite(*first, message.param5, message.param6, message.param7))
+        return ReceivedCommand(message.command, _finite(*first, message.param5, message.param6, message.param7))
     place = (math.nan if value == NO_PLACE_E7 else value / E7 for value in (message.x, message.y))
     is_known = message.frame in PLACED_FRAMES
-    return Command(message.command, _finite(*first, *place, message.z), message.frame in ABOVE_SEA if is_known else None, is_known)
+    return ReceivedCommand(message.command, _finite(*first, *place, message.z), message.frame in ABOVE_SEA if is_known else None, is_known)
 
 
 def acknowledgement(number: int, result: int, station: Station) -> Outgoing:

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from simulation.flight.states import DONE, Mode, Outcome, Refused
-from simulation.vehicle_protocol.command_door import Command
+from simulation.flight.states import DONE, FlightMode, OrderRefused, Outcome
+from simulation.vehicle_protocol.command_door import ReceivedCommand
 from simulation.vehicle_protocol.item_rules import begins_with_take_off
 from simulation.vehicle_protocol.mode_numbers import (
     COPTER_BY_HAND,
@@ -51,7 +51,7 @@ class Pilot:
         state = self.vehicle.state
         return self.shown.number(state.mode, is_in_air=state.is_in_air)
 
-    def carry_out(self, command: Command) -> int:
+    def carry_out(self, command: ReceivedCommand) -> int:
         """A MAV_RESULT; UNSUPPORTED for what is not a pilot's matter."""
         order = _ORDERS.get(command.number)
         return UNSUPPORTED if order is None else order(self, command)
@@ -64,16 +64,16 @@ class Pilot:
         state = self.vehicle.state
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and number in COPTER_BY_HAND and state.is_armed and state.is_in_air:
             return self._refused("This mode needs a pilot at the sticks, and there is none.")
-        is_begun_on_ground = mode is Mode.MISSION and state.is_armed and not state.is_in_air
+        is_begun_on_ground = mode is FlightMode.MISSION and state.is_armed and not state.is_in_air
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and is_begun_on_ground and not begins_with_take_off(self.vehicle.items):
             return self._refused("Auto: Missing Takeoff Cmd")
-        is_there = mode is Mode.HOLD and state.mode is Mode.HOLD
+        is_there = mode is FlightMode.HOLD and state.mode is FlightMode.HOLD
         outcome = DONE if is_there else self.vehicle.set_mode(mode)
         if outcome.is_done:
             self.shown.asked = number
         return self._result(outcome)
 
-    def set_mode(self, mode: Mode) -> int:
+    def set_mode(self, mode: FlightMode) -> int:
         return self.set_mode_number(usual_number(self.autopilot_type, mode))
 
     def set_current(self, number: int) -> int:
@@ -81,7 +81,7 @@ class Pilot:
         outcome = self.vehicle.set_current(max(number - self.autopilot_type.first_item, 0))
         return self._result(outcome, DENIED)
 
-    def _arm(self, command: Command) -> int:
+    def _arm(self, command: ReceivedCommand) -> int:
         wanted, is_forced = command.whole(1), command.whole(2) == FORCE
         if wanted == 1:
             if (
@@ -95,7 +95,7 @@ class Pilot:
             return self._result(self.vehicle.disarm(force=is_forced))
         return DENIED
 
-    def _take_off(self, command: Command) -> int:
+    def _take_off(self, command: ReceivedCommand) -> int:
         """PX4 is told before it is armed, by the height above sea level; ArduCopter armed in GUIDED, by the height above home."""
         state, height_m = self.vehicle.state, command[7]
         if not command.is_frame_known:
@@ -112,10 +112,10 @@ class Pilot:
             relative_m = wanted_m if wanted_m >= MIN_TAKE_OFF_M else relative_m
         outcome = self.vehicle.take_off(relative_m)
         if outcome.is_done:
-            self.shown.asked = usual_number(self.autopilot_type, Mode.TAKE_OFF)
+            self.shown.asked = usual_number(self.autopilot_type, FlightMode.TAKE_OFF)
         return self._result(outcome)
 
-    def _set_mode(self, command: Command) -> int:
+    def _set_mode(self, command: ReceivedCommand) -> int:
         base, main, sub = command.whole(1), command.whole(2), command.whole(3)
         if base is None or not base & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED or main is None:
             return UNSUPPORTED
@@ -125,30 +125,30 @@ class Pilot:
             return DENIED
         return self.set_mode_number(px4_number(main, sub or 0))
 
-    def _start(self, command: Command) -> int:
+    def _start(self, command: ReceivedCommand) -> int:
         """PX4 arms by itself; ArduCopter agrees while it is disarmed, and does nothing."""
         first = command.whole(1)
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
-            return self.set_mode(Mode.MISSION) if self.vehicle.state.is_armed else ACCEPTED
+            return self.set_mode(FlightMode.MISSION) if self.vehicle.state.is_armed else ACCEPTED
         if first is not None and first > 0 and (result := self.set_current(first)) != ACCEPTED:
             return result
-        result = self.set_mode(Mode.MISSION)
+        result = self.set_mode(FlightMode.MISSION)
         return self._result(self.vehicle.arm()) if result == ACCEPTED and not self.vehicle.state.is_armed else result
 
-    def _pause(self, command: Command) -> int:
+    def _pause(self, command: ReceivedCommand) -> int:
         wanted = command.whole(1)
         if wanted not in (PAUSE, GO_ON):
             return DENIED
-        return self.set_mode(Mode.HOLD if wanted == PAUSE else Mode.MISSION)
+        return self.set_mode(FlightMode.HOLD if wanted == PAUSE else FlightMode.MISSION)
 
-    def _go_to(self, command: Command) -> int:
+    def _go_to(self, command: ReceivedCommand) -> int:
         """What is left open stays as it is; everything left open is a pause."""
         state = self.vehicle.state
         lat, lon, height_m = command[5], command[6], command[7]
         if not state.is_in_air:
             return self._refused("It stands on the ground", REJECTED)
         if all(value is None for value in (lat, lon, height_m, command[4])):
-            return self.set_mode(Mode.HOLD)
+            return self.set_mode(FlightMode.HOLD)
         if height_m is not None and not command.is_frame_known:
             return DENIED
         if (lat is not None and not -90 <= lat <= 90) or (lon is not None and not -180 <= lon <= 180):
@@ -165,10 +165,10 @@ class Pilot:
         heading_rad = command[4]
         outcome = self.vehicle.go_to(place, relative_m, None if heading_rad is None else math.degrees(heading_rad))
         if outcome.is_done:
-            self.shown.asked = usual_number(self.autopilot_type, Mode.GO_TO)
+            self.shown.asked = usual_number(self.autopilot_type, FlightMode.GO_TO)
         return self._result(outcome)
 
-    def _change_speed(self, command: Command) -> int:
+    def _change_speed(self, command: ReceivedCommand) -> int:
         """-1 is no change, -2 back to what is usual."""
         if (command[1] or AIRSPEED) not in (AIRSPEED, GROUND_SPEED):
             return UNSUPPORTED
@@ -177,25 +177,25 @@ class Pilot:
             return ACCEPTED
         return self._result(self.vehicle.change_speed(speed_mps), DENIED) if speed_mps > 0 else DENIED
 
-    def _set_current(self, command: Command) -> int:
+    def _set_current(self, command: ReceivedCommand) -> int:
         number = command.whole(1)
         return DENIED if number is None or number < 0 else self.set_current(number)
 
-    def _land(self, command: Command) -> int:
-        return self.set_mode(Mode.LAND)
+    def _land(self, command: ReceivedCommand) -> int:
+        return self.set_mode(FlightMode.LAND)
 
-    def _return(self, command: Command) -> int:
-        return self.set_mode(Mode.RETURN)
+    def _return(self, command: ReceivedCommand) -> int:
+        return self.set_mode(FlightMode.RETURN)
 
     def _result(self, outcome: Outcome, refused: int = FAILED) -> int:
-        return self._refused(outcome.words, refused) if isinstance(outcome, Refused) else ACCEPTED
+        return self._refused(outcome.words, refused) if isinstance(outcome, OrderRefused) else ACCEPTED
 
     def _refused(self, words: str, result: int = FAILED) -> int:
         self.refusal = words
         return result
 
 
-_ORDERS: dict[int, Callable[[Pilot, Command], int]] = {
+_ORDERS: dict[int, Callable[[Pilot, ReceivedCommand], int]] = {
     mavlink.MAV_CMD_COMPONENT_ARM_DISARM: Pilot._arm,
     mavlink.MAV_CMD_NAV_TAKEOFF: Pilot._take_off,
     mavlink.MAV_CMD_NAV_LAND: Pilot._land,

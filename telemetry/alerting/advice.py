@@ -9,7 +9,7 @@ from typing import Any
 
 from telemetry.alerting.finding import LAND, RETURN
 from telemetry.alerting.modes import LEADS_TO, ModeKind
-from telemetry.alerting.surroundings import Order
+from telemetry.alerting.surroundings import IssuedOrder
 
 ADVICE, OWN_ACT = "advice", "own_act"  # in the details of an alert
 
@@ -48,7 +48,7 @@ def advice(template: str, **values: object) -> dict[str, Any]:
     return {ADVICE: {"message": template, "values": values}}
 
 
-def own_act(mode: ModeKind | None, since_s: float | None, order: Order | None) -> dict[str, Any]:
+def own_act(mode: ModeKind | None, since_s: float | None, order: IssuedOrder | None) -> dict[str, Any]:
     """Return what a UAV in a mode does about it by itself, as alerts have it in their details; empty where it neither returns nor lands.
 
     since_s: when it was first reported in this mode; None: it was in it when it was first heard.

@@ -70,7 +70,7 @@ def battery_forecast(inputs: DetectorInput, fresh: Report, left_percent: float) 
     per_s = consumption.percent_per_s(airspeed_mps)
     detector_state.drain.note(fresh.measured_s, left_percent, kind, per_s, inputs.link.clock_rate)
     reserve_percent = USUAL_RESERVE_PERCENT if model is None else model.reserve_percent
-    ways = _Ways() if model is None else _ways(inputs, model, reported, consumption, wind_mps, position_of(fresh))
+    ways = _ReturnEnergy() if model is None else _ways(inputs, model, reported, consumption, wind_mps, position_of(fresh))
     moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * detector_state.drain.ratio(FlightKind.MOVING)
     rest_percent = None if model is None else _rest_percent(inputs, model, reported, consumption)
     if rest_percent is not None and ways.down_percent is not None and _lands_at_end(inputs):
@@ -93,7 +93,7 @@ def battery_forecast(inputs: DetectorInput, fresh: Report, left_percent: float) 
     )
 
 
-def _lands_percent(inputs: DetectorInput, left_percent: float, rest_percent: float | None, ways: "_Ways") -> float | None:
+def _lands_percent(inputs: DetectorInput, left_percent: float, rest_percent: float | None, ways: "_ReturnEnergy") -> float | None:
     """None for one that is held or flown by hand: it does not land as it flies now."""
     needs = {ModeKind.RETURN: ways.home_percent, ModeKind.LAND: ways.down_percent}
     need = rest_percent if inputs.flies_mission or inputs.mode is None else needs.get(inputs.mode)
@@ -108,7 +108,7 @@ def _lands_at_end(inputs: DetectorInput) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class _Ways:
+class _ReturnEnergy:
     """As BatteryForecast has them; moving_per_s: drain on the way home [% a second]."""
 
     home_percent: float | None = None
@@ -121,10 +121,10 @@ class _Ways:
 
 def _ways(
     inputs: DetectorInput, model: FlightModel, reported: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
-) -> _Ways:
+) -> _ReturnEnergy:
     """Straight from where it is; none without a position."""
     if position is None:
-        return _Ways()
+        return _ReturnEnergy()
     height_m, drain, home = reported.altitude_relative_m or 0.0, inputs.detector_state.drain, model.line.vertices[0]
     here = model.line.east_north(position)
     way, own = (home[0] - here[0], home[1] - here[1]), inputs.link.rtl_behaviour
@@ -132,7 +132,7 @@ def _ways(
     home_s, home_percent, moving_per_s = _way_to(consumption, drain, way, height_m, wind_mps, climb_m=climb_m)
     landings = [(math.hypot(*way), way) for way in (east_north_m(position, point) for point in model.rally_points)]
     landing_m, nearest = min(landings, default=(None, None))
-    return _Ways(
+    return _ReturnEnergy(
         home_percent=home_percent,
         home_s=home_s,
         moving_per_s=moving_per_s,

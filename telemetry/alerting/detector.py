@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import Finding
-from telemetry.alerting.limits import Limits
+from telemetry.alerting.limits import AlertLimits
 
 POLL_INTERVAL_S = 1.0
 
 
-def _none(_limits: Limits, _interval_s: float) -> float:
+def _none(_limits: AlertLimits, _interval_s: float) -> float:
     return 0.0
 
 
@@ -32,9 +32,9 @@ class Detector:
     reports: int = 1
     needs_flight: bool = True
     suppressed_by: tuple[str, ...] = ()
-    own_delay_s: Callable[[Limits, float], float] = _none
+    own_delay_s: Callable[[AlertLimits, float], float] = _none
 
-    def delay_s(self, limits: Limits, report_interval_s: float = 1.0) -> float:
+    def delay_s(self, limits: AlertLimits, report_interval_s: float = 1.0) -> float:
         """From a fault until its alert is open, at most, where reports come so often."""
         waits_s = self.own_delay_s(limits, report_interval_s) + self.raise_after_s
         return self.reports * report_interval_s + waits_s + POLL_INTERVAL_S

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 from uuid import UUID
 
 from telemetry.alerting.detector_state import DetectorState
-from telemetry.alerting.limits import Limits
+from telemetry.alerting.limits import AlertLimits
 from telemetry.alerting.modes import AT_THE_END, FLY_LIST, ModeKind, mode_kind
-from telemetry.alerting.route_line import Place
-from telemetry.alerting.status_texts import StatusText
-from telemetry.alerting.surroundings import Conflict, FlightModel, LinkFacts, NearZone, OnboardState, Order
+from telemetry.alerting.route_line import RoutePlace
+from telemetry.alerting.status_texts import AutopilotText
+from telemetry.alerting.surroundings import Conflict, FlightModel, IssuedOrder, LinkFacts, NearZone, OnboardState
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.report import Report
 
@@ -46,16 +46,16 @@ class DetectorInput:
 
     now_s: float
     uav: WatchedUav
-    limits: Limits
+    limits: AlertLimits
     detector_state: DetectorState
     link: LinkFacts = field(default_factory=LinkFacts)
     open_levels: Mapping[Key, str] = field(default_factory=dict)
     model: FlightModel | None = None
     held: OnboardState | None = None
-    order: Order | None = None
+    order: IssuedOrder | None = None
     zones: tuple[NearZone, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
-    status_texts: tuple[StatusText, ...] = ()
+    status_texts: tuple[AutopilotText, ...] = ()
     is_accounted_for: bool = False  # it is down away from its plan, and a person has closed that alert
 
     def is_open(self, code: str, subject: str = "") -> bool:
@@ -84,7 +84,7 @@ class DetectorInput:
         return newest
 
     @property
-    def place(self) -> Place | None:
+    def place(self) -> RoutePlace | None:
         """On its line, by the newest report; None without a position, or when that is old."""
         return None if self.fresh is None else self.detector_state.place
 

@@ -8,7 +8,7 @@ from typing import Any
 from inspection.geodesy import LonLat
 from telemetry.alerting.consumption import DrainState
 from telemetry.alerting.modes import ModeKind
-from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.estimation.report import Report
 
 INTERVALS_KEPT = 5
@@ -18,7 +18,7 @@ MIN_FALL_S = 0.2  # between two reports, for their heights to tell a speed
 
 
 @dataclass
-class Cause:
+class AlertCause:
     """Since when something is found at a level or above, and since when it is found no more."""
 
     since_s: dict[str, float] = field(default_factory=dict)
@@ -26,7 +26,7 @@ class Cause:
 
 
 @dataclass(frozen=True, slots=True)
-class Progress:
+class RouteProgress:
     """How far it had come at a time."""
 
     at_s: float
@@ -40,9 +40,9 @@ class DetectorState:
 
     newest: Report | None = None
     before: Report | None = None
-    place: Place | None = None
+    place: RoutePlace | None = None
     line: RouteLine | None = None
-    progress: deque[Progress] = field(default_factory=deque)
+    progress: deque[RouteProgress] = field(default_factory=deque)
     jumped_s: float | None = None
     jump_m: float = 0.0
     was_in_flight: bool = False  # on this line
@@ -55,7 +55,7 @@ class DetectorState:
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
     drain: DrainState = field(default_factory=DrainState)
     battery: dict[str, Any] | None = None  # as live pages show it
-    causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
+    causes: dict[tuple[str, str], AlertCause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
 
     def take(self, report: Report | None, line: RouteLine | None = None) -> bool:
@@ -118,6 +118,6 @@ def _is_falling(report: Report, before: Report | None) -> bool:
     return seconds >= MIN_FALL_S and (earlier_m - reported.altitude_relative_m) / seconds > FALL_MPS
 
 
-def _place(line: RouteLine, report: Report, before: Place | None) -> Place | None:
+def _place(line: RouteLine, report: Report, before: RoutePlace | None) -> RoutePlace | None:
     position = position_of(report)
     return None if position is None else line.place(position, report.measurement.waypoint_sequence, before)

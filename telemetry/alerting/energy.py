@@ -11,7 +11,7 @@ from planning.energy.power import NoHeadway
 from planning.rules import FlightRules
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, Waypoints
-from telemetry.alerting.route_line import NEAR_VERTEX_M, Place
+from telemetry.alerting.route_line import NEAR_VERTEX_M, RoutePlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +23,7 @@ class EnergyPlan:
     until_percent: tuple[float, ...]
     reserve_percent: float
 
-    def used_at(self, place: Place, climbed_share: float = 1.0) -> float:
+    def used_at(self, place: RoutePlace, climbed_share: float = 1.0) -> float:
         """climbed_share: of the way from the ground up to the first waypoint."""
         if place.along_m <= NEAR_VERTEX_M and climbed_share < 1.0:
             return self.used_percent[0] * climbed_share
@@ -31,7 +31,7 @@ class EnergyPlan:
         start_percent = self.used_percent[place.leg]
         return start_percent + place.share * (self.used_percent[end] - start_percent)
 
-    def rest_at(self, place: Place, used_percent: float) -> float:
+    def rest_at(self, place: RoutePlace, used_percent: float) -> float:
         """Still to be used, to the end of the flight or to where it charges next."""
         end = min(place.leg + 1, len(self.used_percent) - 1)
         return max(0.0, self.until_percent[end] - used_percent)

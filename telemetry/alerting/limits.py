@@ -19,7 +19,7 @@ def _limit(usual: float, low: float, high: float) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class AlertLimits:
     """A name ends with its unit. What clears an alert lies below what raises it by a share that the detectors state.
 
     link_late_s        nothing heard for so long: a warning; with reports that come more rarely, two and a half of their intervals
@@ -64,7 +64,7 @@ class Limits:
 
 
 _ORDERED = (("link_late_s", "link_lost_s"), ("off_route_m", "off_route_critical_m"), ("height_off_m", "height_off_critical_m"))
-BOUNDS = {entry.name: (entry.metadata["from"], entry.metadata["to"]) for entry in fields(Limits)}
+BOUNDS = {entry.name: (entry.metadata["from"], entry.metadata["to"]) for entry in fields(AlertLimits)}
 
 
 def checked_limits(value: Any) -> dict[str, float]:
@@ -86,19 +86,19 @@ def checked_limits(value: Any) -> dict[str, float]:
     return read
 
 
-def limits_of(*stated: Any) -> Limits:
+def limits_of(*stated: Any) -> AlertLimits:
     """The usual limits with those stated, the later ones before the earlier. Raises InvalidLimits."""
     read: dict[str, float] = {}
     for value in stated:
         read |= checked_limits(value or {})
-    return Limits(**read)
+    return AlertLimits(**read)
 
 
-def sound_limits(stated: Sequence[Mapping[str, float]]) -> Limits:
+def sound_limits(stated: Sequence[Mapping[str, float]]) -> AlertLimits:
     """Of a UAV's type and of its mission, in this order. A mission's that do not fit the type's are passed over."""
     for believed in (stated, stated[:1]):
         try:
             return limits_of(*believed)
         except InvalidLimits:
             continue
-    return Limits()
+    return AlertLimits()

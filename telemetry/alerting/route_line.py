@@ -24,7 +24,7 @@ Point = tuple[float, float, float]  # east, north, height above take-off [m]
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class RoutePlace:
     """Beside which point of the line a UAV is. `leg` leads from vertex `leg` to the next one; `share` of it lies behind."""
 
     along_m: float
@@ -72,7 +72,7 @@ class RouteLine:
             return None
         return bisect_right(self.sequences, sequence) - 1
 
-    def place(self, position: LonLat, sequence: int | None = None, before: Place | None = None) -> Place:
+    def place(self, position: LonLat, sequence: int | None = None, before: RoutePlace | None = None) -> RoutePlace:
         """The nearest point of the legs that it may be on: about the waypoint that it flies to, or else about where it was before.
 
         A way out and back lies twice over the same ground: the leg that is expected is taken unless another is clearly nearer.
@@ -90,25 +90,25 @@ class RouteLine:
         nearest = min(found, key=lambda place: place.across_m + (0.0 if expected is None else LEG_OFF_M * abs(place.leg - expected)))
         return replace(nearest, across_m=min(place.across_m for place in found))
 
-    def place_from(self, position: LonLat, before: Place) -> Place:
+    def place_from(self, position: LonLat, before: RoutePlace) -> RoutePlace:
         """The nearest point of all legs from where it was before; of equals the first."""
         east, north = self.east_north(position)
         last = max(len(self.vertices) - 2, 0)
         return min((self._beside(leg, east, north) for leg in range(min(before.leg, last), last + 1)), key=lambda place: place.across_m)
 
-    def beside(self, leg: int, position: LonLat) -> Place:
+    def beside(self, leg: int, position: LonLat) -> RoutePlace:
         """The nearest point of one leg."""
         return self._beside(leg, *self.east_north(position))
 
-    def _beside(self, leg: int, east: float, north: float) -> Place:
+    def _beside(self, leg: int, east: float, north: float) -> RoutePlace:
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
         de, dn = east_2 - east_1, north_2 - north_1
         square = de * de + dn * dn
         share = 0.0 if square == 0.0 else min(1.0, max(0.0, ((east - east_1) * de + (north - north_1) * dn) / square))
         across_m = math.hypot(east - east_1 - share * de, north - north_1 - share * dn)
-        return Place(self.along_m[leg] + share * math.sqrt(square), across_m, leg, share)
+        return RoutePlace(self.along_m[leg] + share * math.sqrt(square), across_m, leg, share)
 
-    def heights_at(self, place: Place) -> tuple[float, float]:
+    def heights_at(self, place: RoutePlace) -> tuple[float, float]:
         """The lowest and the highest that the plan has the UAV there [m above take-off].
 
         An autopilot climbs evenly along a leg, the plan's times have it level first: whatever lies between is right. About a waypoint so
@@ -129,7 +129,7 @@ class RouteLine:
                     heights_m.append(self.grounds_m[vertex])
         return min(heights_m), max(heights_m)
 
-    def ground_m(self, place: Place) -> float:
+    def ground_m(self, place: RoutePlace) -> float:
         """Of the ground below, above this flight's take-off, as planned."""
         end = min(place.leg + 1, len(self.vertices) - 1)
         return self.grounds_m[place.leg] + place.share * (self.grounds_m[end] - self.grounds_m[place.leg])
@@ -142,7 +142,7 @@ class RouteLine:
         share = 0.0 if length_m <= 0.0 else min(1.0, max(0.0, (along_m - self.along_m[leg]) / length_m))
         return east_1 + share * (east_2 - east_1), north_1 + share * (north_2 - north_1)
 
-    def planned_ahead(self, place: Place, height_m: float, climb_mps: float, seconds: Sequence[float]) -> list[Point] | None:
+    def planned_ahead(self, place: RoutePlace, height_m: float, climb_mps: float, seconds: Sequence[float]) -> list[Point] | None:
         """Where the plan has it after so many seconds from a place and a height [m above take-off]; None where its times are not known.
 
         From the ground it first climbs straight up to its first waypoint. At a waypoint it goes on at once, and at the end it sinks. None
@@ -181,10 +181,10 @@ class RouteLine:
         )  # fmt: skip
         return list(accumulate(moments, max)), points
 
-    def _charges_near(self, place: Place) -> bool:
+    def _charges_near(self, place: RoutePlace) -> bool:
         return any(abs(self.along_m[vertex] - place.along_m) <= NEAR_VERTEX_M for vertex in self.charges_at)
 
-    def _planned_s(self, place: Place) -> float:
+    def _planned_s(self, place: RoutePlace) -> float:
         moments, _ = self._timetable
         end = min(place.leg + 1, len(self.vertices) - 1)
         leaves_s, arrives_s = moments[2 * place.leg + 1], moments[2 * end]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput, Key
-from telemetry.alerting.detector_state import Cause
+from telemetry.alerting.detector_state import AlertCause
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
 
@@ -60,7 +60,7 @@ def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Fi
     by_key: dict[Key, Finding] = {(finding.code, finding.subject): finding for finding in findings}
     found: list[Change] = []
     for key, finding in by_key.items():
-        level = _lasting_level(causes.setdefault(key, Cause()), finding.level, now_s, detector.raise_after_s)
+        level = _lasting_level(causes.setdefault(key, AlertCause()), finding.level, now_s, detector.raise_after_s)
         is_open = inputs.open_levels.get(key)
         if is_open is not None or level is not None:
             highest = max((entry for entry in (is_open, level) if entry is not None), key=RANK.__getitem__)
@@ -69,7 +69,7 @@ def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Fi
     for key in {*causes, *inputs.open_levels}:
         if key[0] != detector.code or key in by_key:
             continue
-        cause = causes.setdefault(key, Cause())
+        cause = causes.setdefault(key, AlertCause())
         cause.since_s.clear()
         cause.gone_s = now_s if cause.gone_s is None else cause.gone_s
         if key not in inputs.open_levels:
@@ -80,7 +80,7 @@ def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Fi
     return found
 
 
-def _lasting_level(cause: Cause, level: str, now_s: float, raise_after_s: float) -> str | None:
+def _lasting_level(cause: AlertCause, level: str, now_s: float, raise_after_s: float) -> str | None:
     """The highest level at or above which it has been found for long enough."""
     cause.gone_s = None
     for name, rank in RANK.items():

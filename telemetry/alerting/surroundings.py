@@ -31,7 +31,7 @@ class LinkFacts:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class IssuedOrder:
     """The latest command of ours about its flight that did not fail. `done_s` is None as long as it is on its way."""
 
     kind: str

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from telemetry.estimation.profile import Profile
+from telemetry.estimation.profile import FlightProfile
 
 FloatArray = NDArray[np.float64]
 
@@ -75,18 +75,18 @@ def at_start() -> AlongTrack:
     return AlongTrack(np.zeros(PLACES))
 
 
-def anywhere(profile: Profile, observation: Observation) -> AlongTrack | None:
+def anywhere(profile: FlightProfile, observation: Observation) -> AlongTrack | None:
     """Of a flight of which nothing was heard before."""
     start = at_start()
     return _found_anew(profile, start, clock_of(profile, start), 0.0, observation, within_s=math.inf)
 
 
-def clock_of(profile: Profile, along_track: AlongTrack) -> FloatArray:
+def clock_of(profile: FlightProfile, along_track: AlongTrack) -> FloatArray:
     """Of each knot."""
     return profile.moving_s / along_track.speed_factor + profile.standing_s
 
 
-def ahead(profile: Profile, along_track: AlongTrack, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
+def ahead(profile: FlightProfile, along_track: AlongTrack, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
     """after_s: since the places were right, at least 0. Without is_surely_under_way it may have stood still for any part of it."""
     clock = clock_of(profile, along_track)
     from_s = np.interp(along_track.nominal_s, profile.nominal_s, clock)
@@ -98,7 +98,7 @@ def ahead(profile: Profile, along_track: AlongTrack, after_s: float, *, is_surel
 
 
 def updated(
-    profile: Profile, along_track: AlongTrack, after_s: float, observation: Observation, *, is_surely_under_way: bool = True
+    profile: FlightProfile, along_track: AlongTrack, after_s: float, observation: Observation, *, is_surely_under_way: bool = True
 ) -> AlongTrack | None:
     """The places that are left after a report, and a better pace. None where it is nowhere near the profile.
 
@@ -128,7 +128,7 @@ def updated(
 
 
 def _moved(
-    profile: Profile, along_track: AlongTrack, clock: FloatArray, from_s: FloatArray, after_s: float
+    profile: FlightProfile, along_track: AlongTrack, clock: FloatArray, from_s: FloatArray, after_s: float
 ) -> tuple[FloatArray, FloatArray]:
     """Mean and standard deviation of the clock after some time, for each place."""
     plain_s = from_s + after_s
@@ -148,7 +148,7 @@ def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatAr
     return np.interp(reading_s, clock, column)
 
 
-def velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def velocity(profile: FlightProfile, clock: FloatArray, reading_s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """East, north and up [m/s] by the profile, over a second around each reading; over the half of it that there is at the beginning."""
     before, after = np.maximum(reading_s - 0.5, clock[0]), reading_s + 0.5
     columns = (profile.east_m, profile.north_m, profile.height_m)
@@ -156,7 +156,7 @@ def velocity(profile: Profile, clock: FloatArray, reading_s: FloatArray) -> tupl
     return east, north, up
 
 
-def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, observation: Observation) -> FloatArray:
+def _likelihood(profile: FlightProfile, clock: FloatArray, grid_s: FloatArray, observation: Observation) -> FloatArray:
     found = np.ones_like(grid_s)
     if observation.east_m is not None and observation.north_m is not None:
         off_east, off_north = (
@@ -179,7 +179,13 @@ def _likelihood(profile: Profile, clock: FloatArray, grid_s: FloatArray, observa
 
 
 def _found_anew(
-    profile: Profile, along_track: AlongTrack, clock: FloatArray, expected_s: float, observation: Observation, *, within_s: float = 120.0
+    profile: FlightProfile,
+    along_track: AlongTrack,
+    clock: FloatArray,
+    expected_s: float,
+    observation: Observation,
+    *,
+    within_s: float = 120.0,
 ) -> AlongTrack | None:
     """It is not where it was expected: looked for along the whole profile."""
     grid_s = np.unique(np.concatenate([clock, np.linspace(clock[0], clock[-1], max(GRID, int(clock[-1] - clock[0])))]))
@@ -207,7 +213,7 @@ def _places(grid_s: FloatArray, weight: FloatArray) -> FloatArray | None:
 
 
 def _learnt(
-    profile: Profile,
+    profile: FlightProfile,
     along_track: AlongTrack,
     clock: FloatArray,
     from_s: FloatArray,
@@ -233,7 +239,7 @@ def _learnt(
     return AlongTrack(nominal_s, better, variance, _now(profile, clock, places_s, observation))
 
 
-def _now(profile: Profile, clock: FloatArray, places_s: FloatArray, observation: Observation) -> float:
+def _now(profile: FlightProfile, clock: FloatArray, places_s: FloatArray, observation: Observation) -> float:
     """By the speed that was told, where it flies evenly: 0 near corners and stops."""
     if observation.east_mps is None or observation.north_mps is None:
         return 0.0

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from telemetry.estimation.along_track_filter import clock_of
 from telemetry.estimation.eta import end_of
 from telemetry.estimation.motion import State
-from telemetry.estimation.profile import Profile
+from telemetry.estimation.profile import FlightProfile
 
 FloatArray = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ AT_ONCE = 500  # places
 class LinkModel:
     """What is known of a profile's cells; `received` (cells,) grows."""
 
-    profile: Profile
+    profile: FlightProfile
     received: NDArray[np.bool_] = field(init=False)
     _along_m: FloatArray = field(init=False)
     _east_m: FloatArray = field(init=False)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from telemetry.estimation.along_track_filter import AlongTrack, ahead, velocity
 from telemetry.estimation.phases import Phase
-from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, Profile
+from telemetry.estimation.profile import LANDING_MPS, SLOW_BELOW_M, FlightProfile
 from telemetry.estimation.state_estimate import CHI2_95, StateEstimate, gate2_of, isotropic_covariance
 
 FloatArray = NDArray[np.float64]
@@ -33,7 +33,7 @@ SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors that reports share: of GPS, and
 class Track:
     """A profile and the place on it."""
 
-    profile: Profile
+    profile: FlightProfile
     along_track: AlongTrack
 
 

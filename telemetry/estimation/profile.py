@@ -34,7 +34,7 @@ CLIMB_SHARE = 0.26  # of the time that a leg takes because of its height
 
 
 @dataclass(frozen=True, eq=False)
-class Profile:
+class FlightProfile:
     """Columns by knot, each with k entries; between two knots everything is linear.
 
     moving_s      time in motion so far, and
@@ -80,7 +80,7 @@ class _Node:
     lands: bool = False
 
 
-def profile_of(knowledge: Knowledge) -> Profile | None:
+def profile_of(knowledge: Knowledge) -> FlightProfile | None:
     """From standing at the take-off to the end of the flight. None without a flight."""
     flight = knowledge.flight
     if flight is None or not flight.waypoints:
@@ -89,7 +89,7 @@ def profile_of(knowledge: Knowledge) -> Profile | None:
     return _profile(_route_nodes(flight, frame, knowledge), frame, knowledge, ends_in_air=flight.end_action == HOVER)
 
 
-def way_home(frame: LocalFrame, start_m: tuple[float, float, float], start_mps: float, home: LonLat, knowledge: Knowledge) -> Profile:
+def way_home(frame: LocalFrame, start_m: tuple[float, float, float], start_mps: float, home: LonLat, knowledge: Knowledge) -> FlightProfile:
     """From a place (east, north, height) in a frame, at a speed towards `home`, straight there at that height, and down."""
     east_m, north_m = frame.to_metres(np.array([home]))[0]
     height_m = max(start_m[2], SLOW_BELOW_M)
@@ -136,7 +136,7 @@ def _speed_in_wind(east_m: float, north_m: float, wished_mps: float, agl_m: floa
     return MIN_SPEED_MPS if speed_mps == TOO_STRONG else float(speed_mps)
 
 
-def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, ends_in_air: bool, start_mps: float = 0.0) -> Profile:
+def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, ends_in_air: bool, start_mps: float = 0.0) -> FlightProfile:
     place = np.array([(node.east_m, node.north_m, node.height_m) for node in nodes])
     step = np.diff(place, axis=0)
     level_m, length_m = np.hypot(step[:, 0], step[:, 1]), np.linalg.norm(step, axis=1)
@@ -181,7 +181,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
             points.append(place[number + 1])
             leg.append(number)
     columns = np.array(points)
-    return Profile(
+    return FlightProfile(
         frame=frame,
         moving_s=np.array(moving),
         standing_s=np.array(standing),

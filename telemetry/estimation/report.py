@@ -9,7 +9,7 @@ FUTURE_S = 2.0  # a time measured later than it was received by more than clocks
 
 
 @dataclass(frozen=True, slots=True)
-class Boot:
+class VehicleBoot:
     """What the vehicle's own clock showed since it booted; the stream names the boot."""
 
     stream: int
@@ -26,7 +26,7 @@ class Report:
     measured_s: float
     received_s: float
     measurement: Measurement
-    boot: Boot | None = None
+    boot: VehicleBoot | None = None
 
     @property
     def has_position(self) -> bool:

@@ -12,7 +12,7 @@ from telemetry.estimation.along_track_filter import PLACES, AlongTrack, Observat
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after
 from telemetry.estimation.phases import Phase, phase_of
-from telemetry.estimation.profile import Profile, way_home
+from telemetry.estimation.profile import FlightProfile, way_home
 from telemetry.estimation.report import Report
 from telemetry.estimation.state_estimate import StateEstimate
 
@@ -31,7 +31,7 @@ class Course:
 
     knowledge: Knowledge
     frame: LocalFrame
-    profile: Profile | None
+    profile: FlightProfile | None
 
 
 def first_state(course: Course, report: Report) -> State | None:

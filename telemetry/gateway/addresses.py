@@ -15,7 +15,7 @@ MAX_RECENT = 512  # frames that are remembered, to know their copies
 
 
 @dataclass
-class Received:
+class ReceivedFrom:
     since_s: float
     last_s: float
 
@@ -26,7 +26,7 @@ class Addresses:
 
     main: Peer | None = None
     copied: tuple[str, float] | None = None
-    _received: dict[Peer, Received] = field(default_factory=dict)
+    _received: dict[Peer, ReceivedFrom] = field(default_factory=dict)
     _first: dict[tuple[str, int], tuple[Peer, float]] = field(default_factory=dict)  # who brought a frame first, and when
     _order: deque[tuple[str, int]] = field(default_factory=deque)
 
@@ -70,7 +70,7 @@ class Addresses:
         if received is not None and not _is_silent(received, now_s):
             received.last_s = now_s
         elif received is not None or self._has_room(peer, now_s):
-            self._received[peer] = Received(now_s, now_s)
+            self._received[peer] = ReceivedFrom(now_s, now_s)
 
     def _has_room(self, newcomer: Peer, now_s: float) -> bool:
         """Make some where a host has several addresses more than the newcomer's: many ports of one must not keep out another."""
@@ -101,7 +101,7 @@ class Addresses:
             self.main = peer
 
 
-def _is_silent(received: Received, now_s: float) -> bool:
+def _is_silent(received: ReceivedFrom, now_s: float) -> bool:
     """Also where our clock of the day was set back since."""
     return abs(now_s - received.last_s) >= MOVE_AFTER_S
 

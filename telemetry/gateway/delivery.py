@@ -40,7 +40,7 @@ from missions.services.commands.commands import (
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (
     CannotCarry,
-    Task,
+    DeliveryTask,
     as_begun,
     reason_not_to,
     reason_not_to_start,
@@ -50,7 +50,7 @@ from telemetry.gateway.preparation import (
 from telemetry.gateway.protocol_driver import OTHER_LIST_READ, ProtocolDriver, ask_for_the_present, read_back
 from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from telemetry.services.alerts.mission_alerts import raise_mission_mismatch, raise_other_list
-from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
+from telemetry.services.links.onboard_lists import Carried, LoadedLists, begin_loading, confirm_loaded, end_loading, fail_loading
 
 RETRIES = 2  # a parameter that a vehicle does not have draws no answer
 ADVICE = {
@@ -160,11 +160,11 @@ class Delivery:
                 await self._send_unacknowledged()
                 return
             task = await self._surely(task_of, self.command)
-            if isinstance(task, Task):
+            if isinstance(task, DeliveryTask):
                 if task.take_off is not None:
                     self.session.message_requests.rtl_reading.ask_anew(time.monotonic())
                 task = await self._reason_against(task) or await self._beyond_limits(task) or task
-            if isinstance(task, Task):
+            if isinstance(task, DeliveryTask):
                 task = as_begun(task, self.session.state)
             if isinstance(task, CannotCarry):
                 await self._refuse(task)
@@ -199,17 +199,17 @@ class Delivery:
         else:
             await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
 
-    async def _reason_against(self, task: Task) -> CannotCarry | None:
+    async def _reason_against(self, task: DeliveryTask) -> CannotCarry | None:
         if task.onboard is not None:
             await ask_for_the_present(self.session, lambda: self.is_ours)
         return reason_not_to(task, self.session.state, time.monotonic())
 
-    async def _beyond_limits(self, task: Task) -> CannotCarry | None:
+    async def _beyond_limits(self, task: DeliveryTask) -> CannotCarry | None:
         if task.load is None or not task.load.mission:
             return None
         return await reason_not_to_load(task.load, self.session, is_wanted=lambda: self.is_ours)
 
-    async def _order(self, task: Task) -> None:
+    async def _order(self, task: DeliveryTask) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
         order, parameters = task.order, task.parameters
         if task.onboard is not None and not await self._is_onboard(task.onboard, task.before):
@@ -264,7 +264,7 @@ class Delivery:
         else:
             await self._end(note_released)
 
-    async def _is_onboard(self, load: FlightLoad, before: Loaded | None) -> bool:
+    async def _is_onboard(self, load: FlightLoad, before: LoadedLists | None) -> bool:
         """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command.
 
         Its time runs from the end of the reading; as long as that goes on, it is not over.
@@ -305,7 +305,7 @@ class Delivery:
         else:
             await self._end(note_failed, outcome.code or "failed", outcome.words or "The vehicle did not do it.")
 
-    async def _load(self, task: Task) -> None:
+    async def _load(self, task: DeliveryTask) -> None:
         assert task.load is not None  # noqa: S101 - the caller has looked
         if not await self._surely(begin_loading, self.carried):
             await self._end(note_released)
@@ -333,7 +333,7 @@ class Delivery:
         else:
             await self._report_load(task, outcome)
 
-    async def _report_load(self, task: Task, outcome: SyncOutcome) -> None:
+    async def _report_load(self, task: DeliveryTask, outcome: SyncOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
         still_mixed = outcome.state is SyncState.MIXED or (outcome.state is SyncState.UNREAD and outcome.is_critical)
         await self._surely(raise_mission_mismatch, self.command, is_mixed=still_mixed, words=outcome.words)

@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Protocol
 
-from operation.snapshots import Described, Snapshot, Values
+from operation.snapshots import Described, SnapshotCollector, Values
 from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from telemetry.gateway.store import Store
 
@@ -32,9 +32,9 @@ class ReportedValue(Protocol):
         """What was no frame of a UAV, by cause."""
 
 
-def figures_of(gateway: ReportedValue) -> Snapshot:
+def figures_of(gateway: ReportedValue) -> SnapshotCollector:
     """To be told for as long as it is entered."""
-    return Snapshot(DESCRIBED, lambda: _read(gateway))
+    return SnapshotCollector(DESCRIBED, lambda: _read(gateway))
 
 
 def _read(gateway: ReportedValue) -> Mapping[str, Values]:

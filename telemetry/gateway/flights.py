@@ -21,7 +21,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.models import Uav
 from missions.services.commands.steering import mission_in_hand
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.options import Options
+from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.session import Session
 from telemetry.models import FlightLog
 
@@ -118,7 +118,7 @@ class FlightRecorder:
 
 @dataclass
 class Flights:
-    options: Options
+    options: GatewayOptions
     _open: dict[int, tuple[Session, FlightRecorder, str]] = field(default_factory=dict)  # by system id
     _disarmed_s: dict[int, float] = field(default_factory=dict)  # since when
     _rows: list[Callable[[], None]] = field(default_factory=list)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from mavlink.frames import Frame
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.options import Options
+from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
 from telemetry.services.links.links import UNHEARD_S, renew_leases, take_leases
@@ -31,7 +31,7 @@ def served_until_s(asked_s: float, lease_s: float) -> float:
 class Leasing:
     """`receive` is given what a vehicle said while it was not served yet; `end_flight` the sessions that are lost, and when."""
 
-    options: Options
+    options: GatewayOptions
     database: DatabaseThread
     sessions: Callable[[], list[Session]]
     receive: Callable[[Session, Frame, Peer, float], None]

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from mavlink.frames import Damage, Frame, StreamParser, frames_of_datagram
-from telemetry.gateway.options import Address
+from telemetry.gateway.options import UdpAddress
 
 logger = logging.getLogger(__name__)
 
@@ -71,14 +71,14 @@ class Listeners:
     _servers: list[asyncio.Server] = field(default_factory=list)
     _connections: dict[asyncio.StreamWriter, float] = field(default_factory=dict)  # when each brought a frame last, monotonic
 
-    async def open(self, udp: list[Address], tcp: list[Address]) -> list[str]:
+    async def open(self, udp: list[UdpAddress], tcp: list[UdpAddress]) -> list[str]:
         """Where it listens, with the ports that the system chose for 0. Raises OSError."""
         names = [f"udp:{self._open_udp(address)}" for address in udp]
         for address in tcp:
             server = await asyncio.start_server(self._serve, address.host, address.port, limit=PIECE)
             self._servers.append(server)
             host, port = server.sockets[0].getsockname()[:2]
-            names.append(f"tcp:{Address(host, port)}")
+            names.append(f"tcp:{UdpAddress(host, port)}")
         return names
 
     def close(self) -> None:
@@ -91,7 +91,7 @@ class Listeners:
         for writer in self._connections:
             writer.close()
 
-    def _open_udp(self, address: Address) -> Address:
+    def _open_udp(self, address: UdpAddress) -> UdpAddress:
         family, kind, protocol, _, where = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_DGRAM)[0]
         listener = socket.socket(family, kind, protocol)
         try:
@@ -103,7 +103,7 @@ class Listeners:
             raise
         self._sockets.append(listener)
         asyncio.get_running_loop().add_reader(listener, self._drain, listener)
-        return Address(*listener.getsockname()[:2])
+        return UdpAddress(*listener.getsockname()[:2])
 
     def _drain(self, listener: socket.socket) -> None:
         until_s = time.monotonic() + DRAINED_FOR_S

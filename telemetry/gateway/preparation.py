@@ -19,7 +19,7 @@ from missions.command_rules import ALONG_ROUTE
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
-from telemetry.services.links.onboard_lists import Loaded, loaded_on
+from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
 SAME_M = 1.0  # of two legs that are as near it is on the first
@@ -66,7 +66,7 @@ _OFF_ROUTE = CannotCarry("off-route", "The UAV is not on the way on which its ro
 
 
 @dataclass(frozen=True)
-class Task:
+class DeliveryTask:
     """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
 
     `onboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
@@ -79,8 +79,8 @@ class Task:
     parameters: dict[str, float] | None = None
     onboard: FlightLoad | None = None
     take_off: TakeOff | None = None
-    wanted: Loaded | None = None
-    before: Loaded | None = None
+    wanted: LoadedLists | None = None
+    before: LoadedLists | None = None
     begun_by: int | None = None
     return_height_m: float | None = None
     along: OnBoard | None = None
@@ -93,18 +93,18 @@ def reason_not_to_start(start: UavCommand) -> CannotCarry | None:
     return CannotCarry(START_SLOT, to_wait[0].message) if to_wait else None
 
 
-def task_of(command: UavCommand) -> Task | CannotCarry:
+def task_of(command: UavCommand) -> DeliveryTask | CannotCarry:
     """Reads the database."""
     before = loaded_on(command.uav_id)
     if command.kind == CommandKind.CLEAR_MISSION:
-        return Task(load=EMPTY, before=before, known=_others(command, EMPTY))
+        return DeliveryTask(load=EMPTY, before=before, known=_others(command, EMPTY))
     if command.kind == CommandKind.SET_RETURN_HEIGHT:
-        return Task(return_height_m=float(command.parameters["height_m"]), before=before)
+        return DeliveryTask(return_height_m=float(command.parameters["height_m"]), before=before)
     if command.kind == CommandKind.RETURN and command.parameters.get(ALONG_ROUTE):
         return _return_along(command, before)
     if command.kind not in (CommandKind.UPLOAD_MISSION, *FLIES_LIST):
         parameters = {name: float(value) for name, value in command.parameters.items() if isinstance(value, int | float)}
-        return Task(order=Order(command.kind), parameters=parameters, before=before)
+        return DeliveryTask(order=Order(command.kind), parameters=parameters, before=before)
     try:
         approved = _approved(command, before)
     except DamagedApproval:
@@ -115,11 +115,11 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         return approved
     if approved.load is None:
         return CannotCarry("not-mavlink", "It was approved for a UAV with a companion computer. Revoke, and approve it again.")
-    wanted = Loaded(approved.load.content_sha256, approved.approval, approved.flight)
+    wanted = LoadedLists(approved.load.content_sha256, approved.approval, approved.flight)
     if command.kind == CommandKind.UPLOAD_MISSION:
         known = _others(command, approved.load)
         begun_by = approved.route.begun_by
-        return Task(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, begun_by=begun_by, known=known)
+        return DeliveryTask(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, begun_by=begun_by, known=known)
     if before != wanted:
         return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
     begun_by = approved.route.begun_by if command.kind == CommandKind.START else None
@@ -127,15 +127,15 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         too_near = reason_not_to_start(command)
         if too_near is not None:
             return too_near
-    return Task(order=Order(command.kind), take_off=approved.take_off, onboard=approved.load, before=before, begun_by=begun_by)
+    return DeliveryTask(order=Order(command.kind), take_off=approved.take_off, onboard=approved.load, before=before, begun_by=begun_by)
 
 
-def _return_along(command: UavCommand, before: Loaded | None) -> Task | CannotCarry:
+def _return_along(command: UavCommand, before: LoadedLists | None) -> DeliveryTask | CannotCarry:
     approval = command.approval
     held = None if approval is None else held_flight(approval, command.uav_id, before)
     if held is None or approval is None or approval.revoked_at is not None or approval.revoke_requested_at is not None:
         return CannotCarry("not-loaded", "The UAV does not surely hold its approved route: it cannot return along it.")
-    return Task(order=Order.RETURN, before=before, along=held)
+    return DeliveryTask(order=Order.RETURN, before=before, along=held)
 
 
 def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: datetime) -> dict[str, float] | CannotCarry:
@@ -157,7 +157,7 @@ def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: dateti
     return {ITEM: float(found.item), SPEED_MPS: found.path.speed_mps}
 
 
-def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | CannotCarry:
+def _approved(command: UavCommand, before: LoadedLists | None) -> ApprovedLoad | CannotCarry:
     """The flight that a command is about; a resumed one is that which is on the UAV. Raises as `load_of`."""
     approval = command.approval
     if approval is None or command.mission is None:
@@ -173,7 +173,7 @@ def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | Cann
     return approved_load(approval, uav_id=command.uav_id, flight=before.flight)
 
 
-def reason_not_to(task: Task, state: VehicleState, now_s: float) -> CannotCarry | None:
+def reason_not_to(task: DeliveryTask, state: VehicleState, now_s: float) -> CannotCarry | None:
     """Whether the vehicle stands where its flight was planned to begin, or flies where it was to fly, and counts its heights from there.
 
     now_s: by the state's clock. What was told longer ago may have been before a boot, or before somebody carried the vehicle away.
@@ -215,7 +215,7 @@ def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s:
     return None
 
 
-def as_begun(task: Task, state: VehicleState) -> Task | CannotCarry:
+def as_begun(task: DeliveryTask, state: VehicleState) -> DeliveryTask | CannotCarry:
     """With the item that it begins with, where it is held in the air. One that flies its list already is told to fly it."""
     if task.begun_by is None or task.onboard is None or state.is_in(Mode.MISSION):
         return task

@@ -26,7 +26,7 @@ from telemetry.gateway.dispatcher import Dispatcher
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
 from telemetry.gateway.leasing import Leasing
-from telemetry.gateway.options import Options
+from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.reporter import Reporter
 from telemetry.gateway.sender_authentication import UnknownSenders
@@ -68,7 +68,7 @@ async def listen(on_message: Callable[[], None]) -> None:
 class Gateway:
     """`run` until `stop`. `listening` says where, once it does."""
 
-    options: Options
+    options: GatewayOptions
     listening: list[str] = field(default_factory=list)
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)

@@ -82,7 +82,7 @@ class ProtocolDriver:
 
 
 @dataclass(frozen=True)
-class Reading:
+class OnboardReading:
     """`code` and `words` say why it is not `is_onboard`."""
 
     is_onboard: bool
@@ -96,7 +96,7 @@ def _notify(on_item: Callable[[int], None], before: int, done: int) -> None:
 
 async def read_back(
     session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
-) -> Reading | None:
+) -> OnboardReading | None:
     """None once it is not wanted any more. `on_item` is told how many items were read of all lists.
 
     `beside` names lists of the vehicle's own that were left there, and told, when the load was brought.
@@ -110,7 +110,7 @@ async def read_back(
         if reading is None or not reading.is_onboard:
             return reading
         before += len(load.of(kind))
-    return Reading(True)
+    return OnboardReading(True)
 
 
 async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
@@ -131,7 +131,7 @@ async def _read(
     beside: Mapping[str, str],
     is_wanted: Callable[[], bool],
     on_item: Callable[[int], None],
-) -> Reading | None:
+) -> OnboardReading | None:
     download = Download(kind, Addressing(session.uav.system), settings.TRANSFER_RULES)
     most = len(load.of(kind))
     outcome = await ProtocolDriver(session, download, is_wanted).run(on_change=lambda: on_item(min(download.items_done, most)))
@@ -139,13 +139,15 @@ async def _read(
         return None
     name = kind.name.lower()
     if outcome.code == "unsupported" and not load.of(kind):
-        return Reading(True)  # it has no such list
+        return OnboardReading(True)  # it has no such list
     if outcome.state is not TransferState.DONE:
-        return Reading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
+        return OnboardReading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
     autopilot_type = session.autopilot_type or AutopilotType.OTHER
     held = onboard_list(download.read, kind, autopilot_type)
     found = differences(load.of(kind), held, autopilot_type)
     if not found or (not load.of(kind) and beside.get(name) == onboard_sha256(held)):
-        return Reading(True)
+        return OnboardReading(True)
     more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-    return Reading(False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")
+    return OnboardReading(
+        False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more})."
+    )

@@ -15,7 +15,7 @@ MAX_REQUESTS = 5  # a vehicle that has no such parameters says nothing
 
 
 @dataclass(frozen=True)
-class ReportedReturn:
+class ReportedRtl:
     """`at_s` is when the last of them was heard, monotonic."""
 
     autopilot: str
@@ -49,13 +49,13 @@ class RtlReading:
         names = [name for group in untold for name in group]
         return [mavlink.MAVLink_param_request_read_message(state.system, AUTOPILOT, name.encode(), BY_NAME) for name in names]
 
-    def news(self, state: VehicleState) -> ReportedReturn | None:
+    def news(self, state: VehicleState) -> ReportedRtl | None:
         """What was told since `note` was called last, also without having been asked: all that is known."""
         autopilot_type = state.autopilot_type or ""
         last_message_s = {name: state.parameters_at_s[name] for name in NAMES.get(autopilot_type, ()) if name in state.parameters_at_s}
         if not last_message_s or max(last_message_s.values()) <= self._reported_s:
             return None
-        return ReportedReturn(str(autopilot_type), {name: state.parameters[name] for name in last_message_s}, max(last_message_s.values()))
+        return ReportedRtl(str(autopilot_type), {name: state.parameters[name] for name in last_message_s}, max(last_message_s.values()))
 
-    def note(self, reported: ReportedReturn) -> None:
+    def note(self, reported: ReportedRtl) -> None:
         self._reported_s = max(self._reported_s, reported.at_s)

@@ -15,10 +15,9 @@ from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, AutopilotType
 from mavlink.decoding.boots import Stamp, VehicleTime
 from mavlink.decoding.measurement import LinkQuality
-from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_place, is_vehicle
+from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
-from mavlink.mission_sync.flown_items import FlightWatch
-from mavlink.mission_sync.flown_items import Flown as FlownItem
+from mavlink.mission_sync.flown_items import FlightWatch, FlownMissionItem
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.signing import FrameWriter, Refusal
 from mavlink.vehicle_state import VehicleState
@@ -131,7 +130,7 @@ class Session:
     losses: Counter[str] = field(default_factory=Counter)  # also those that gateways before this one have seen
     lost_here: Counter[str] = field(default_factory=Counter)  # of all sessions of this gateway
     texts: list[StatusText] = field(default_factory=list)
-    flown: list[FlownItem] = field(default_factory=list)
+    flown: list[FlownMissionItem] = field(default_factory=list)
     authentication: SenderAuthentication = field(init=False)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
@@ -144,7 +143,7 @@ class Session:
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MAX_WAITING))
     _writer: FrameWriter = field(init=False, repr=False)
-    _reporter: Reporter = field(default_factory=Reporter)
+    _reporter: MeasurementDecoder = field(default_factory=MeasurementDecoder)
     _collector: TextCollector = field(default_factory=TextCollector)
     _quality: LinkQuality = field(default_factory=LinkQuality)
     _flight: FlightWatch = field(default_factory=FlightWatch)
@@ -349,7 +348,7 @@ class Session:
         self._flight.forget()
         self.flown.clear()
 
-    def _note_flown(self, flown: list[FlownItem]) -> None:
+    def _note_flown(self, flown: list[FlownMissionItem]) -> None:
         """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""
         for item in flown:
             if len(self.flown) > 1 and not (self.flown[-1].is_down or item.is_down):
@@ -366,7 +365,7 @@ class Session:
 
     def _record(self, message: Message, stamp: Stamp, now_s: float) -> None:
         state = self.state
-        flown = Flown(state.mode, state.is_armed, state.is_in_air, state.mission_item, self._quality.percent(now_s))
+        flown = FlownState(state.mode, state.is_armed, state.is_in_air, state.mission_item, self._quality.percent(now_s))
         self.records.append(
             NewRecord(
                 uav_id=self.uav.uav_id,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.services.ingest import NewRecord
-from telemetry.services.links.gateway_messages import Received, ReceivedText, store_received
+from telemetry.services.links.gateway_messages import ReceivedBatch, ReceivedText, store_received
 from telemetry.services.links.links import LinkState
 from telemetry.services.links.sightings import Sighting
 
@@ -44,7 +44,7 @@ class Store:
         records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
         texts, self.texts = self.texts, deque(maxlen=MAX_TEXTS)
         sightings, self.sightings = self.sightings, {}
-        received = Received(records, self.links(), list(texts), list(sightings.values()))
+        received = ReceivedBatch(records, self.links(), list(texts), list(sightings.values()))
         if not received:
             return False
         is_stored = False
@@ -63,7 +63,7 @@ class Store:
         self._notify(is_away=False)
         return bool(self.records)
 
-    async def _store(self, received: Received) -> None:
+    async def _store(self, received: ReceivedBatch) -> None:
         try:
             counted = await self.database.run(store_received, received=received, holder=self.holder)
         except DatabaseAway:
@@ -74,7 +74,7 @@ class Store:
             self.stored += counted.stored
             self.duplicates += counted.duplicates
 
-    async def _store_what_can_be(self, received: Received) -> None:
+    async def _store_what_can_be(self, received: ReceivedBatch) -> None:
         """One value that the database refuses must not keep out the rest."""
         for part in _parts(received):
             if len(part.records) <= 1 and part == received:
@@ -118,14 +118,14 @@ def _most_of_each(numbers: Iterable[int], most: int) -> int:
     return most
 
 
-def _parts(received: Received) -> Sequence[Received]:
+def _parts(received: ReceivedBatch) -> Sequence[ReceivedBatch]:
     """Records by halves; apart from them links, texts and sightings one by one."""
     if len(received.records) > 1 or (received.records and (received.links or received.texts or received.sightings)):
         middle = max(len(received.records) // 2, 1)
-        halves = [Received(records) for records in (received.records[:middle], received.records[middle:]) if records]
+        halves = [ReceivedBatch(records) for records in (received.records[:middle], received.records[middle:]) if records]
         rest = replace(received, records=())
         return [*halves, rest] if rest else halves
     if received.records:
         return [received]
     kinds = ("links", "texts", "sightings")
-    return [Received(**{kind: [entry]}) for kind in kinds for entry in getattr(received, kind)]
+    return [ReceivedBatch(**{kind: [entry]}) for kind in kinds for entry in getattr(received, kind)]

@@ -9,7 +9,7 @@ from django.db import Error as DatabaseError
 
 from telemetry.live.messages import changes, everything, message
 from telemetry.live.reader import Reader
-from telemetry.live.snapshot import Snapshot, changed_between
+from telemetry.live.snapshot import LiveSnapshot, changed_between
 from telemetry.selectors.live import Key
 from workspace.live.timed_waits import wait_for_event
 
@@ -18,7 +18,7 @@ logger = logging.getLogger(__name__)
 POLL_INTERVAL_S = 1.0  # whether a word has come or not
 POLL_PAUSE_S = 0.1  # between two looks, however many words come
 
-SnapshotReader = Callable[[int, Collection[UUID], Collection[str], Snapshot], Awaitable[Snapshot]]
+SnapshotReader = Callable[[int, Collection[UUID], Collection[str], LiveSnapshot], Awaitable[LiveSnapshot]]
 
 
 class Feed:
@@ -28,7 +28,7 @@ class Feed:
         self.organisation_id = organisation_id
         self.readers: set[Reader] = set()
         self._read_snapshot = read_snapshot
-        self._snapshot = Snapshot()
+        self._snapshot = LiveSnapshot()
         self._waiting: set[Reader] = set()  # for the first look that has begun since they came
         self._message = asyncio.Event()
         self._bodies: dict[tuple[UUID | None, str, frozenset[Key] | None], str] = {}
@@ -80,7 +80,7 @@ class Feed:
         self._bodies.clear()
         self._notify(before, newcomers)
 
-    def _notify(self, before: Snapshot, newcomers: set[Reader]) -> None:
+    def _notify(self, before: LiveSnapshot, newcomers: set[Reader]) -> None:
         changed: dict[UUID | None, set[Key]] = {}
         for reader in self.readers:
             if (

@@ -14,7 +14,7 @@ from redis.exceptions import RedisError
 
 from telemetry.live.feed import Feed
 from telemetry.live.reader import Reader
-from telemetry.live.snapshot import Snapshot, read_snapshot
+from telemetry.live.snapshot import LiveSnapshot, read_snapshot
 from workspace.live.changes import live_channel
 
 logger = logging.getLogger(__name__)
@@ -74,7 +74,9 @@ class Hub:
         if organisation_id in self._feeds:
             self._feeds[organisation_id][0].wake()
 
-    async def _read(self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Snapshot) -> Snapshot:
+    async def _read(
+        self, organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: LiveSnapshot
+    ) -> LiveSnapshot:
         return await self._read_snapshot(organisation_id, missions, languages, before)
 
 

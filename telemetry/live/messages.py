@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from datetime import UTC, datetime
 from uuid import UUID
 
-from telemetry.live.snapshot import Snapshot
+from telemetry.live.snapshot import LiveSnapshot
 from telemetry.selectors.live import KINDS, Key
 
 
@@ -17,12 +17,12 @@ def message(kind: str, sequence: int, body: str = "") -> str:
     return f"{{{head},{body}}}" if body else f"{{{head}}}"
 
 
-def everything(read_snapshot: Snapshot, mission: UUID | None, language: str) -> str:
+def everything(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) -> str:
     """The body of a snapshot."""
     return f'"live":{live_text(read_snapshot, mission, language)}'
 
 
-def live_text(read_snapshot: Snapshot, mission: UUID | None, language: str) -> str:
+def live_text(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) -> str:
     """`{"uavs": […], …}`, as GET /api/v1/live has it, too."""
     texts: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for key, entry in read_snapshot.shown.items():
@@ -32,7 +32,7 @@ def live_text(read_snapshot: Snapshot, mission: UUID | None, language: str) -> s
     return "{" + ",".join(f'"{kind}":[{",".join(texts[kind])}]' for kind in KINDS) + "}"
 
 
-def changes(read_snapshot: Snapshot, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
+def changes(read_snapshot: LiveSnapshot, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
     """The body of a message of changes: what is shown, whole; of the rest that it is gone."""
     there: dict[str, list[str]] = {kind: [] for kind in KINDS}
     gone: dict[str, list[str]] = {kind: [] for kind in KINDS}

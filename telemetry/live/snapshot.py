@@ -6,7 +6,7 @@ from hashlib import sha256
 from uuid import UUID
 
 from telemetry.live.objects import SAME_IN_ALL, language_of, texts_of
-from telemetry.selectors.live import Key, Shown, shown_live
+from telemetry.selectors.live import Key, ShownObject, shown_live
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,10 +16,10 @@ class Text:
 
 
 @dataclass(frozen=True)
-class Snapshot:
+class LiveSnapshot:
     """`texts` by language; what has no words is under SAME_IN_ALL."""
 
-    shown: Mapping[Key, Shown] = field(default_factory=dict)
+    shown: Mapping[Key, ShownObject] = field(default_factory=dict)
     texts: Mapping[str, Mapping[Key, Text]] = field(default_factory=dict)
 
     def text(self, key: Key, language: str) -> str | None:
@@ -31,28 +31,28 @@ class Snapshot:
         return entry is not None and entry.is_for(mission)
 
 
-def read_snapshot(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: Snapshot) -> Snapshot:
+def read_snapshot(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: LiveSnapshot) -> LiveSnapshot:
     """An object that changes while it is read may be newer than its version: then the next look finds it changed, and tells it again."""
     shown = shown_live(organisation_id, missions)
     texts = {language: _texts(shown, language, before.texts.get(language, {})) for language in {SAME_IN_ALL, *languages}}
-    return Snapshot(shown, texts)
+    return LiveSnapshot(shown, texts)
 
 
-def page_snapshot(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> Snapshot:
+def page_snapshot(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> LiveSnapshot:
     """Of one page alone; without texts where it is what has the ETag `known`."""
     shown = shown_live(organisation_id, [] if mission is None else [mission])
-    snapshot = Snapshot({key: entry for key, entry in shown.items() if entry.is_for(mission)})
+    snapshot = LiveSnapshot({key: entry for key, entry in shown.items() if entry.is_for(mission)})
     if known and known == etag_of(snapshot, language):
         return snapshot
-    return Snapshot(snapshot.shown, {each: _texts(snapshot.shown, each, {}) for each in {SAME_IN_ALL, language}})
+    return LiveSnapshot(snapshot.shown, {each: _texts(snapshot.shown, each, {}) for each in {SAME_IN_ALL, language}})
 
 
-def etag_of(snapshot: Snapshot, language: str) -> str:
+def etag_of(snapshot: LiveSnapshot, language: str) -> str:
     versions = sorted((*key, entry.version) for key, entry in snapshot.shown.items())
     return f'"{sha256(repr((language, versions)).encode()).hexdigest()[:32]}"'
 
 
-def changed_between(before: Snapshot, now: Snapshot, mission: UUID | None) -> set[Key]:
+def changed_between(before: LiveSnapshot, now: LiveSnapshot, mission: UUID | None) -> set[Key]:
     """What pages of the mission, or of the whole organisation, are to be told: changed, come, or gone."""
     changed = {
         key
@@ -62,7 +62,7 @@ def changed_between(before: Snapshot, now: Snapshot, mission: UUID | None) -> se
     return changed | {key for key in before.shown.keys() - now.shown.keys() if before.is_shown(key, mission)}
 
 
-def _texts(shown: Mapping[Key, Shown], language: str, before: Mapping[Key, Text]) -> dict[Key, Text]:
+def _texts(shown: Mapping[Key, ShownObject], language: str, before: Mapping[Key, Text]) -> dict[Key, Text]:
     own = {key: entry for key, entry in shown.items() if language_of(key[0], language) == language}
     stale = [key for key, entry in own.items() if key not in before or before[key].version != entry.version]
     fresh = texts_of(stale, language) if stale else {}

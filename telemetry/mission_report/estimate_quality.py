@@ -15,7 +15,7 @@ AGES_S = (2.0, 5.0, 10.0, 30.0, math.inf)  # upper ends
 
 
 @dataclass(frozen=True, slots=True)
-class Measured:
+class MeasuredError:
     """A position that was measured; seconds since the epoch, speeds [m/s] east and north, None where not told."""
 
     at_s: float
@@ -73,13 +73,13 @@ class Compared:
     is_height_inside: bool
 
 
-def estimate_quality(estimates: Iterable[Estimated], measured: Sequence[Measured]) -> EstimateQuality:
+def estimate_quality(estimates: Iterable[Estimated], measured: Sequence[MeasuredError]) -> EstimateQuality:
     """measured: of one UAV, as all of `estimates`, sorted by time. Several UAVs: `compare` one by one, all together to `quality_of`."""
     compared, untold = compare(estimates, measured)
     return quality_of(compared, untold)
 
 
-def compare(estimates: Iterable[Estimated], measured: Sequence[Measured]) -> tuple[list[Compared], int]:
+def compare(estimates: Iterable[Estimated], measured: Sequence[MeasuredError]) -> tuple[list[Compared], int]:
     """Of one UAV; what was found, and how many estimates no measurement tells of."""
     times = [one.at_s for one in measured]
     found, untold = [], 0
@@ -119,7 +119,7 @@ def _rms(errors_m: Sequence[float]) -> float:
     return math.sqrt(sum(error_m**2 for error_m in errors_m) / len(errors_m))
 
 
-def _at(measured: Sequence[Measured], times: Sequence[float], at_s: float) -> Measured | None:
+def _at(measured: Sequence[MeasuredError], times: Sequence[float], at_s: float) -> MeasuredError | None:
     """Between two measurements that are near each other, or beside one by its speed; None where neither is."""
     place = bisect_left(times, at_s)
     before = measured[place - 1] if place else None
@@ -130,26 +130,26 @@ def _at(measured: Sequence[Measured], times: Sequence[float], at_s: float) -> Me
     return _beside(min(near, key=lambda one: abs(one.at_s - at_s)), at_s) if near else None
 
 
-def _between(before: Measured, after: Measured, at_s: float) -> Measured:
+def _between(before: MeasuredError, after: MeasuredError, at_s: float) -> MeasuredError:
     gap_s = after.at_s - before.at_s
     share = (at_s - before.at_s) / gap_s if gap_s > 0 else 0.0
     lon = before.position.lon + share * (after.position.lon - before.position.lon)
     lat = before.position.lat + share * (after.position.lat - before.position.lat)
     heights = before.altitude_relative_m, after.altitude_relative_m
     height_m = None if heights[0] is None or heights[1] is None else heights[0] + share * (heights[1] - heights[0])
-    return Measured(at_s, LonLat(lon, lat), height_m)
+    return MeasuredError(at_s, LonLat(lon, lat), height_m)
 
 
-def _beside(one: Measured, at_s: float) -> Measured:
+def _beside(one: MeasuredError, at_s: float) -> MeasuredError:
     if one.east_mps is None or one.north_mps is None:
         return one
     frame, after_s = LocalFrame.around(*one.position), at_s - one.at_s
     lon = one.position.lon + one.east_mps * after_s / frame.metres_per_degree_east
     lat = one.position.lat + one.north_mps * after_s / frame.metres_per_degree_north
-    return Measured(at_s, LonLat(lon, lat), one.altitude_relative_m)
+    return MeasuredError(at_s, LonLat(lon, lat), one.altitude_relative_m)
 
 
-def _compared(estimate: Estimated, truth: Measured) -> Compared:
+def _compared(estimate: Estimated, truth: MeasuredError) -> Compared:
     frame = LocalFrame.around(*estimate.position)
     east_m = (truth.position.lon - estimate.position.lon) * frame.metres_per_degree_east
     north_m = (truth.position.lat - estimate.position.lat) * frame.metres_per_degree_north

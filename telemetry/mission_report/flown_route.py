@@ -9,7 +9,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat, path_length_m
 from mavlink.approved_route import Flight, FrozenRoute
-from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.mission_report.fix import Fix, airborne, uav_span_s
 
 PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
@@ -45,7 +45,7 @@ class FlownStage:
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class TrackGap:
     """A time in the air without reports for longer than MAX_GAP_S; length_m: how much of the route lies between its ends."""
 
     began_s: float
@@ -54,7 +54,7 @@ class Gap:
 
 
 @dataclass(frozen=True, slots=True)
-class FlownRoute:
+class ReportedRoute:
     """A whole route, from its first take-off to its last landing; reports are those in the air.
 
     flown_m is the length of the track as it was reported, without gaps; duration_s is by the vehicle's own clock, and clock_rate how many
@@ -77,23 +77,23 @@ class FlownRoute:
     battery_used_percent: float | None
     duration_s: float | None = None
     clock_rate: float = 1.0
-    gaps: tuple[Gap, ...] = ()
+    gaps: tuple[TrackGap, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
     fix: Fix
-    place: Place
+    place: RoutePlace
     height_error_m: float | None
 
 
-def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
+def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> ReportedRoute:
     """fixes: of its UAV in this mission, in order."""
     in_air = airborne(fixes)
     legs: list[FlownLeg] = []
     stages: list[FlownStage] = []
     seen: list[_Seen] = []
-    gaps: list[Gap] = []
+    gaps: list[TrackGap] = []
     for flight, own in zip(route.flights, _by_flight(route.flights, in_air), strict=True):
         line = RouteLine(flight, route.charging_stops)
         on_line = _on_line(line, own)
@@ -106,7 +106,7 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
     batteries = [fix.battery_percent for fix in in_air if fix.battery_percent is not None]
     duration_s = uav_span_s([in_air]) if in_air else None
     lasted_s = in_air[-1].at_s - in_air[0].at_s if in_air else 0.0
-    return FlownRoute(
+    return ReportedRoute(
         legs=tuple(legs),
         stages=tuple(stages),
         reports=len(in_air),
@@ -127,10 +127,10 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
     )
 
 
-def _gaps(seen: Sequence[_Seen]) -> Iterator[Gap]:
+def _gaps(seen: Sequence[_Seen]) -> Iterator[TrackGap]:
     for one, after in pairwise(seen):
         if after.fix.at_s - one.fix.at_s > MAX_GAP_S:
-            yield Gap(one.fix.at_s, after.fix.at_s, max(after.place.along_m - one.place.along_m, 0.0))
+            yield TrackGap(one.fix.at_s, after.fix.at_s, max(after.place.along_m - one.place.along_m, 0.0))
 
 
 def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix]]:
@@ -153,7 +153,7 @@ def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
     may be the one that is flown.
     """
     seen: list[_Seen] = []
-    before: Place | None = None
+    before: RoutePlace | None = None
     before_s, is_old = math.inf, False
     old_sequence: int | None = None
     for fix in fixes:
@@ -169,7 +169,7 @@ def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
     return seen
 
 
-def _height_error_m(line: RouteLine, place: Place, altitude_m: float | None) -> float | None:
+def _height_error_m(line: RouteLine, place: RoutePlace, altitude_m: float | None) -> float | None:
     if altitude_m is None:
         return None
     lowest_m, highest_m = line.heights_at(place)

@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Any
 
 from inspection.geodesy import LonLat
-from telemetry.mission_report.visits import Visit
+from telemetry.mission_report.visits import ReportedVisit
 
 CAUSE_BEFORE_S, CAUSE_AFTER_S = 60.0, 5.0  # of an incident: what a vehicle says then may name its cause
 _CAUSES = {
@@ -44,7 +44,7 @@ EXPLAINS = ENDS_A_FLIGHT | {IncidentKind.BATTERY, IncidentKind.LINK_LOST}
 
 
 @dataclass(frozen=True, slots=True)
-class Reason:
+class OutcomeReason:
     """`code` names the words, `values` are put into them; `at_s` is when it happened [Unix s], None where that says nothing."""
 
     code: str
@@ -57,7 +57,7 @@ class Incident:
     """`place` is the UAV's in the mission, None for all of them; `position` where it was then, as far as that is known."""
 
     kind: IncidentKind
-    reason: Reason
+    reason: OutcomeReason
     at_s: float
     place: int | None = None
     position: LonLat | None = None
@@ -80,7 +80,7 @@ class FlightFacts:
 
     place: int
     name: str
-    visit: Visit | None
+    visit: ReportedVisit | None
     has_reports: bool
     last_visit_s: float | None
     is_continued: bool = False
@@ -89,7 +89,7 @@ class FlightFacts:
 @dataclass(frozen=True, slots=True)
 class Outcome:
     result: Result
-    reason: Reason | None = None
+    reason: OutcomeReason | None = None
 
 
 def cause_in(texts: Iterable[tuple[float, str]], at_s: float) -> str:
@@ -105,7 +105,7 @@ def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Seque
     reason = _why(target, flight, incidents)
     if target.state in ("pending", "in-progress") and not is_over:
         return Outcome(Result.OPEN, reason)
-    return Outcome(Result.NOT_INSPECTED, reason or Reason("ended"))
+    return Outcome(Result.NOT_INSPECTED, reason or OutcomeReason("ended"))
 
 
 def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
@@ -114,43 +114,47 @@ def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
     if target.reported is not None and target.reported[0] == "complete":
         return Outcome(Result.INSPECTED)
     if visit is None:
-        return Outcome(Result.INSPECTED) if target.reached_s is not None else Outcome(Result.NOT_CONFIRMED, Reason("no-report"))
+        return Outcome(Result.INSPECTED) if target.reached_s is not None else Outcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
     if visit.is_confirmed:
         return Outcome(Result.INSPECTED)
     if visit.closest_m is None:
-        return Outcome(Result.NOT_CONFIRMED, Reason("no-report"))
-    return Outcome(Result.NOT_CONFIRMED, Reason("nearest-report", {"metres": round(visit.closest_m)}))
+        return Outcome(Result.NOT_CONFIRMED, OutcomeReason("no-report"))
+    return Outcome(Result.NOT_CONFIRMED, OutcomeReason("nearest-report", {"metres": round(visit.closest_m)}))
 
 
-def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident]) -> Reason | None:
+def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident]) -> OutcomeReason | None:
     """None where nothing says it yet."""
     if target.reported is not None:
         outcome, note = target.reported
         values = {"uav": flight.name if flight else "", "outcome": outcome, "note": note}
-        return Reason("reported-note" if note else "reported", values)
+        return OutcomeReason("reported-note" if note else "reported", values)
     if flight is None:
-        return _stated(target.state_reason or target.unassigned) or Reason("not-planned")
+        return _stated(target.state_reason or target.unassigned) or OutcomeReason("not-planned")
     visit = flight.visit
     if target.state_reason == "not-reached":
         metres = None if visit is None or visit.closest_m is None else round(visit.closest_m)
-        return Reason("not-seen", {"uav": flight.name}) if metres is None else Reason("not-reached", {"uav": flight.name, "metres": metres})
+        return (
+            OutcomeReason("not-seen", {"uav": flight.name})
+            if metres is None
+            else OutcomeReason("not-reached", {"uav": flight.name, "metres": metres})
+        )
     if target.state_reason == "not-held" and visit is not None:
         held = {"held": math.floor(visit.held_s), "planned": round(visit.planned_hold_s)}
-        return Reason("not-held", {"uav": flight.name, **held})
+        return OutcomeReason("not-held", {"uav": flight.name, **held})
     if target.state_reason not in ("", "flight-failed", "not-held"):
         return _stated(target.state_reason)
     if flight.is_continued:
-        return Reason("continued")
+        return OutcomeReason("continued")
     found = _decisive(flight, incidents)
     if found is not None:
         return found.reason
     if target.state_reason == "flight-failed":
-        return Reason("flight-failed", {"uav": flight.name})
-    return None if flight.has_reports else Reason("not-flown", {"uav": flight.name})
+        return OutcomeReason("flight-failed", {"uav": flight.name})
+    return None if flight.has_reports else OutcomeReason("not-flown", {"uav": flight.name})
 
 
-def _stated(words: str) -> Reason | None:
-    return Reason("stated", {"words": words}) if words else None
+def _stated(words: str) -> OutcomeReason | None:
+    return OutcomeReason("stated", {"words": words}) if words else None
 
 
 def _decisive(flight: FlightFacts, incidents: Sequence[Incident]) -> Incident | None:

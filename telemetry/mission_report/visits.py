@@ -15,7 +15,7 @@ import numpy as np
 from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute, FrozenWaypoint
-from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.mission_report.fix import Fix, airborne, uav_s
 
 REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
@@ -28,7 +28,7 @@ Pass = tuple[Sequence[Fix], int]  # reports, and how many of them are from befor
 
 
 @dataclass(frozen=True, slots=True)
-class Visit:
+class ReportedVisit:
     """What the reports say of one target of a route.
 
     closest_m is the nearest that the track of its reports came, altitude_relative_m its height at the nearest report [m above take-off],
@@ -56,7 +56,7 @@ class Visit:
         return self.can_have_reached and self.held_s >= self.planned_hold_s - HOLD_SLACK_S
 
 
-def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[Visit]:
+def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[ReportedVisit]:
     """Of each waypoint with a target, in the order of the route. fixes: in order, of one UAV; fastest_mps: over ground, wind and all."""
     in_air = airborne(fixes)
     reported = _waypoints_reported(in_air) or _waypoints_by_place(route, in_air)
@@ -71,7 +71,7 @@ def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -
     return found
 
 
-def _best(visits: Sequence[Visit]) -> Visit:
+def _best(visits: Sequence[ReportedVisit]) -> ReportedVisit:
     """Of several passes, as of a mission that was begun anew: the first that was long enough, else the longest."""
     done = next((visit for visit in visits if visit.is_done), None)
     return done or max(visits, key=lambda visit: (visit.can_have_reached, visit.held_s))
@@ -81,12 +81,12 @@ def _apart_m(one: FrozenWaypoint, other: FrozenWaypoint) -> float:
     return float(distance_m(np.array([one.position]), np.array([other.position]))[0])
 
 
-def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_mps: float) -> Visit:
+def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_mps: float) -> ReportedVisit:
     """before: how many of the reports are from before it flew to the waypoint."""
     hold_s = 0.0 if waypoint.task is None else waypoint.task.hold_s
     target = -1 if waypoint.target is None else waypoint.target
     if not near:
-        return Visit(target, waypoint.sequence, hold_s)
+        return ReportedVisit(target, waypoint.sequence, hold_s)
     here = np.broadcast_to(np.array(waypoint.position), (len(near), 2))
     away_m = distance_m(np.array([fix.position for fix in near]), here).tolist()
     seen = [fix.at_s for fix, metres in zip(near[before:], away_m[before:], strict=True) if metres <= REACHED_M]
@@ -101,7 +101,7 @@ def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_m
         if first_between_s is None:
             share = (max(earlier_m - REACHED_M, 0.0) / fastest_mps + spare_s / 2.0) / between_s
             first_between_s = earlier.at_s + share * (later.at_s - earlier.at_s)
-    return Visit(
+    return ReportedVisit(
         target=target,
         waypoint_sequence=waypoint.sequence,
         planned_hold_s=hold_s,
@@ -139,7 +139,7 @@ def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] |
         if is_at_end or has_turned:
             leg = min(leg + 1, len(line.vertices) - 2)
         elif on_leg.across_m > OFF_LEG_M:
-            ahead = line.place_from(fix.position, Place(line.along_m[leg], 0.0, leg, 0.0))
+            ahead = line.place_from(fix.position, RoutePlace(line.along_m[leg], 0.0, leg, 0.0))
             leg = ahead.leg if ahead.across_m + OFF_LEG_M < on_leg.across_m else leg
         farthest_m = max(farthest_m, line.along_m[leg])
         reported.append(line.sequences[leg + 1])

@@ -15,8 +15,8 @@ from mavlink.rtl import RtlBehaviour, rtl_behaviour
 from missions.command_rules import ALONG_ROUTE
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.modes import RETURN_ALONG
-from telemetry.alerting.status_texts import KEPT_S, StatusText
-from telemetry.alerting.surroundings import LinkFacts, Order
+from telemetry.alerting.status_texts import KEPT_S, AutopilotText
+from telemetry.alerting.surroundings import IssuedOrder, LinkFacts
 from telemetry.estimation.uav_clock import plausible_rate
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alerts import BY_PERSON
@@ -25,7 +25,7 @@ WARNING_SEVERITY, MAX_TEXTS = 4, 30  # MAV_SEVERITY_WARNING
 
 
 @dataclass(frozen=True, slots=True)
-class Loaded:
+class LoadedFacts:
     """What was read back from a UAV."""
 
     sha256: str = ""
@@ -35,7 +35,7 @@ class Loaded:
     autopilot: str = ""
 
 
-def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
+def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, LoadedFacts]]:
     """A clock that runs at another rate is believed of a simulated UAV alone: a real one's only seems to, while its link lags."""
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
         "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
@@ -49,7 +49,7 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
         rate = plausible_rate(clock_rate if is_simulated else None)
         last_message_s = None if heard_at is None else heard_at.timestamp()
         facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _rtl_behaviour(reported))
-        found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
+        found[uav_id] = (facts, LoadedFacts(sha256, approval, flight, doubt, autopilot))
     return found
 
 
@@ -57,13 +57,13 @@ def _rtl_behaviour(reported: Mapping[str, Any]) -> RtlBehaviour | None:
     return rtl_behaviour(reported.get("autopilot", ""), reported.get("parameters", {}))
 
 
-def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[StatusText, ...]]:
+def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[AutopilotText, ...]]:
     """Warnings and worse of UAVs in their own words of late, the newest last."""
     since = datetime.fromtimestamp(now_s - KEPT_S, UTC)
     rows = VehicleText.objects.filter(uav__in=uav_ids, received_at__gt=since, severity__lte=WARNING_SEVERITY).order_by("received_at", "pk")
-    found: dict[int, list[StatusText]] = defaultdict(list)
+    found: dict[int, list[AutopilotText]] = defaultdict(list)
     for uav_id, received_at, text in rows.values_list("uav_id", "received_at", "text"):
-        found[uav_id].append(StatusText(received_at.timestamp(), text))
+        found[uav_id].append(AutopilotText(received_at.timestamp(), text))
     return {uav_id: tuple(words[-MAX_TEXTS:]) for uav_id, words in found.items()}
 
 
@@ -93,7 +93,7 @@ FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LE
 """
 
 
-def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | None, bool]]:
+def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[IssuedOrder | None, bool]]:
     """To UAVs with their missions: the last command about the flight that counts, and whether a mission is being brought or taken off.
 
     It is also while a UAV is held to be given another one.
@@ -110,11 +110,11 @@ def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | Non
     return {uav: (_order(kind, given_at, finished_at, state), is_changing) for uav, kind, given_at, finished_at, state, is_changing in rows}
 
 
-def _order(kind: str | None, given_at: datetime | None, finished_at: datetime | None, state: str | None) -> Order | None:
+def _order(kind: str | None, given_at: datetime | None, finished_at: datetime | None, state: str | None) -> IssuedOrder | None:
     if kind is None:
         return None
     done_s = finished_at.timestamp() if state == CommandState.APPLIED and finished_at is not None else None
-    return Order(kind, done_s, None if given_at is None else given_at.timestamp())
+    return IssuedOrder(kind, done_s, None if given_at is None else given_at.timestamp())
 
 
 def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mapping[str, float], Mapping[str, float]]]:

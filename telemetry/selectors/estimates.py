@@ -9,7 +9,7 @@ from django.db.models import QuerySet
 from inspection.geodesy import LonLat
 from missions.models import Mission
 from telemetry.estimation.estimate import Ellipse
-from telemetry.mission_report.estimate_quality import Compared, Estimated, EstimateQuality, Measured, compare, quality_of
+from telemetry.mission_report.estimate_quality import Compared, Estimated, EstimateQuality, MeasuredError, compare, quality_of
 from telemetry.models import PositionEstimate, TelemetryRecord
 from telemetry.selectors.columns import latitude, longitude, unix_s
 
@@ -57,9 +57,9 @@ def _estimated(mission_id: UUID, uav_id: int) -> Iterator[Estimated]:
         yield Estimated(at_s, LonLat(lon, lat), Ellipse(along_m, across_m, bearing_deg), report_s, *heights_m)
 
 
-def _measured(mission_id: UUID, uav_id: int) -> list[Measured]:
+def _measured(mission_id: UUID, uav_id: int) -> list[MeasuredError]:
     in_time = TelemetryRecord.objects.filter(mission=mission_id, uav=uav_id, is_from_future=False, position__isnull=False)
     rows = in_time.order_by("measured_at").values_list(
         unix_s("measured_at"), longitude(), latitude(), "altitude_relative_m", "velocity_east_mps", "velocity_north_mps"
     )
-    return [Measured(at_s, LonLat(lon, lat), *reported) for at_s, lon, lat, *reported in rows.iterator(chunk_size=ROWS_AT_ONCE)]
+    return [MeasuredError(at_s, LonLat(lon, lat), *reported) for at_s, lon, lat, *reported in rows.iterator(chunk_size=ROWS_AT_ONCE)]

@@ -5,7 +5,7 @@ from typing import Any
 
 from django.utils import translation
 
-from missions.hooks.events import EventKind, MissionEvent, Place, Source
+from missions.hooks.events import EventKind, EventPlace, EventSource, MissionEvent
 from telemetry.models import Alert, FlightEvent, VehicleText
 from telemetry.selectors.alert_facts import WARNING_SEVERITY
 from telemetry.selectors.alert_words import alert_words
@@ -34,7 +34,7 @@ WHERE mission.id = ANY(%(missions)s) AND said.severity <= {WARNING_SEVERITY} AND
 """  # noqa: S608 (a number of ours)
 
 
-def _read_alerts(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_alerts(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = Alert.objects.select_related("uav").in_bulk([int(place.row) for place in places])
     return {place: _of_alert(row, place.step) for place in places if (row := rows.get(int(place.row))) is not None}
 
@@ -59,7 +59,7 @@ def _of_alert(alert: Alert, step: str) -> MissionEvent:
     )  # fmt: skip
 
 
-def _read_flights(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_flights(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = FlightEvent.objects.select_related("uav").in_bulk([int(place.row) for place in places])
     found = {}
     for place in places:
@@ -69,7 +69,7 @@ def _read_flights(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
     return found
 
 
-def _read_crashes(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_crashes(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = VehicleText.objects.select_related("uav").in_bulk([int(place.row) for place in places])
     return {
         place: MissionEvent(
@@ -82,7 +82,7 @@ def _read_crashes(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
 
 
 SOURCES = (
-    Source("alert", _ALERTS, _read_alerts),
-    Source("flight", _FLIGHTS, _read_flights),
-    Source("crash", _CRASHES, _read_crashes),
+    EventSource("alert", _ALERTS, _read_alerts),
+    EventSource("flight", _FLIGHTS, _read_flights),
+    EventSource("crash", _CRASHES, _read_crashes),
 )

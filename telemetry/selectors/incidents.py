@@ -9,7 +9,7 @@ from inspection.geodesy import LonLat
 from missions.models import CommandKind, CommandState, Mission, UavCommand
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.mission_report.fix import Fix
-from telemetry.mission_report.outcomes import Incident, IncidentKind, Reason, cause_in
+from telemetry.mission_report.outcomes import Incident, IncidentKind, OutcomeReason, cause_in
 from telemetry.models import Alert, AlertLevel, VehicleText
 from telemetry.selectors.alert_facts import WARNING_SEVERITY
 from telemetry.selectors.alert_words import alert_words
@@ -54,23 +54,23 @@ def _of_alerts(mission: Mission, flown: Mapping[int, Flown], texts: Mapping[int,
     return found
 
 
-def _kind_of(alert: Alert, name: str, at_s: float, texts: list[tuple[float, str]]) -> tuple[IncidentKind, Reason]:
+def _kind_of(alert: Alert, name: str, at_s: float, texts: list[tuple[float, str]]) -> tuple[IncidentKind, OutcomeReason]:
     cause = cause_in(texts, at_s)
     if alert.code == "down-off-plan":
-        return IncidentKind.DOWN, Reason("down", {"uav": name, "metres": round(alert.details.get("away_m", 0.0))}, at_s)
+        return IncidentKind.DOWN, OutcomeReason("down", {"uav": name, "metres": round(alert.details.get("away_m", 0.0))}, at_s)
     if alert.code == "mode-changed":
         lands = mode_kind(str(alert.details.get("mode", ""))) is ModeKind.LAND
         kind = IncidentKind.FAILSAFE_LAND if lands else IncidentKind.FAILSAFE_RETURN
         return kind, _with_cause(kind, name, cause, at_s)
     if alert.code == "battery-short":
-        return IncidentKind.BATTERY, Reason("battery", {"uav": name}, at_s)
+        return IncidentKind.BATTERY, OutcomeReason("battery", {"uav": name}, at_s)
     if alert.code == "link-lost":
-        return IncidentKind.LINK_LOST, Reason("link-lost", {"uav": name}, at_s)
-    return IncidentKind.ALERT, Reason("stated", {"words": alert_words(alert.message, alert.values)}, at_s)
+        return IncidentKind.LINK_LOST, OutcomeReason("link-lost", {"uav": name}, at_s)
+    return IncidentKind.ALERT, OutcomeReason("stated", {"words": alert_words(alert.message, alert.values)}, at_s)
 
 
-def _with_cause(kind: IncidentKind, name: str, cause: str, at_s: float) -> Reason:
-    return Reason(f"{kind}-cause" if cause else kind, {"uav": name, "cause": cause}, at_s)
+def _with_cause(kind: IncidentKind, name: str, cause: str, at_s: float) -> OutcomeReason:
+    return OutcomeReason(f"{kind}-cause" if cause else kind, {"uav": name, "cause": cause}, at_s)
 
 
 def _with_crash(found: list[Incident], place: int, name: str, fixes: Sequence[Fix], texts: list[tuple[float, str]]) -> list[Incident]:
@@ -94,7 +94,9 @@ def _of_commands(mission: Mission, flown: Mapping[int, Flown]) -> list[Incident]
             continue
         kind, at_s = _TOLD[CommandKind(command.kind)], (command.sent_at or command.created_at).timestamp()
         values = {"uav": name, "who": _name(command.created_by), "why": command.why}
-        found.append(Incident(kind, Reason(f"{kind}-why" if command.why else kind, values, at_s), at_s, place, _position(fixes, at_s)))
+        found.append(
+            Incident(kind, OutcomeReason(f"{kind}-why" if command.why else kind, values, at_s), at_s, place, _position(fixes, at_s))
+        )
     return found
 
 
@@ -104,7 +106,7 @@ def _of_aborts(mission: Mission) -> list[Incident]:
     for entry in rows.order_by("recorded_at")[:1]:
         facts: dict[str, Any] = entry.after or {}
         values, at_s = {"who": _name(entry.actor), "why": facts.get("why", "")}, entry.recorded_at.timestamp()
-        found.append(Incident(IncidentKind.ABORTED, Reason("aborted-why" if values["why"] else "aborted", values, at_s), at_s))
+        found.append(Incident(IncidentKind.ABORTED, OutcomeReason("aborted-why" if values["why"] else "aborted", values, at_s), at_s))
     return found
 
 

@@ -15,7 +15,7 @@ KINDS = ("uavs", "missions", "alerts", "commands", "offers")
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownObject:
     """One object: another version after each change. If `is_in_whole`, pages of the organisation show it; those of `missions` do, too."""
 
     version: int
@@ -122,7 +122,7 @@ WHERE offer.state IN ('computing', 'open') OR coalesce(offer.decided_at, offer.c
 """  # noqa: S608 - a number of ours
 
 
-def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, Shown]:
+def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, ShownObject]:
     """With the missions asked for, as far as they are the organisation's and there."""
     rows = prepared_rows(_LOOK, [organisation_id, list(missions)])
-    return {(kind, key): Shown(version, is_in_whole, tuple(own)) for kind, key, version, is_in_whole, own in rows}
+    return {(kind, key): ShownObject(version, is_in_whole, tuple(own)) for kind, key, version, is_in_whole, own in rows}

@@ -13,9 +13,9 @@ from inspection.geodesy import LonLat
 from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import ENDED_STATES, Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, airborne, in_order, uav_after_s, uav_span_s
-from telemetry.mission_report.flown_route import FlownRoute, flown_route
-from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, Reason, Result, TargetFacts, outcome_of
-from telemetry.mission_report.visits import Visit, visits_of
+from telemetry.mission_report.flown_route import ReportedRoute, flown_route
+from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, OutcomeReason, Result, TargetFacts, outcome_of
+from telemetry.mission_report.visits import ReportedVisit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
 from telemetry.selectors.columns import latitude, longitude, unix_s
 from telemetry.selectors.estimates import estimate_quality_of
@@ -36,8 +36,8 @@ class RouteOnRecord:
     name: str
     route: FrozenRoute
     planned: dict[str, Any]
-    flown: FlownRoute
-    visits: tuple[Visit, ...]
+    flown: ReportedRoute
+    visits: tuple[ReportedVisit, ...]
     in_air: tuple[Fix, ...]
 
 
@@ -50,7 +50,7 @@ class TargetOnRecord:
 
     row: InspectionTarget
     route: RouteOnRecord | None
-    visit: Visit | None
+    visit: ReportedVisit | None
     outcome: Outcome
     planned_after_s: float | None
     reached_after_s: float | None
@@ -227,7 +227,7 @@ def _summary(whole: WholeRecord) -> dict[str, Any]:
     }
 
 
-def _clock_rate(flown: Sequence[FlownRoute]) -> float:
+def _clock_rate(flown: Sequence[ReportedRoute]) -> float:
     """Of all UAVs together: seconds of their clocks in one of ours."""
     ours_s = sum(route.duration_s / route.clock_rate for route in flown if route.duration_s)
     return sum(route.duration_s for route in flown if route.duration_s) / ours_s if ours_s else 1.0
@@ -368,7 +368,7 @@ def _target(target: TargetOnRecord, mission: Mission) -> dict[str, Any]:
     }
 
 
-def _reason(reason: Reason | None) -> dict[str, Any] | None:
+def _reason(reason: OutcomeReason | None) -> dict[str, Any] | None:
     if reason is None:
         return None
     return {"code": reason.code, "message": reason_words(reason), "at": at(reason.at_s)}

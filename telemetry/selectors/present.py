@@ -18,7 +18,7 @@ MEASURED_FOR_S = 2.0  # a report counts as of now
 
 
 @dataclass(frozen=True)
-class Present:
+class PresentPosition:
     """A UAV's place at this moment. `altitude_relative_m` counts from where it took off; None: not known.
 
     age_s            since the report on which it rests
@@ -52,11 +52,11 @@ class Present:
 
 
 @dataclass(frozen=True)
-class Received:
+class LastReceived:
     """A UAV with what is known of it now. `battery` is what the watch has made of it, `battery_age_s` old; see battery_forecast.py."""
 
     uav: Uav
-    present: Present | None = None
+    present: PresentPosition | None = None
     is_in_air: bool | None = None
     mode: str = ""
     home: LonLat | None = None
@@ -70,7 +70,7 @@ class Received:
     waypoint_sequence: int | None = None
 
 
-def last_received(uavs: Iterable[Uav], now: datetime) -> list[Received]:
+def last_received(uavs: Iterable[Uav], now: datetime) -> list[LastReceived]:
     """In the order of the UAVs."""
     found = list(uavs)
     keys = [uav.pk for uav in found]
@@ -79,7 +79,7 @@ def last_received(uavs: Iterable[Uav], now: datetime) -> list[Received]:
     return [_received(uav, links.get(uav.pk), watches.get(uav.pk), now) for uav in found]
 
 
-def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime) -> Received:
+def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datetime) -> LastReceived:
     measured: dict[str, Any] = {} if watch is None or not watch.measured else watch.measured
     estimated: dict[str, Any] | None = None if watch is None else watch.estimated
     state, heights = measured.get("state", {}), measured.get("height", {})
@@ -87,7 +87,7 @@ def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datet
     if link is not None and link.is_in_air is not None:
         is_in_air = link.is_in_air
     waypoint = measured.get("waypoint", {}).get("waypoint_sequence")
-    return Received(
+    return LastReceived(
         uav,
         present=_present(measured, estimated, now),
         is_in_air=is_in_air,
@@ -104,7 +104,7 @@ def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datet
     )
 
 
-def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, now: datetime) -> Present | None:
+def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, now: datetime) -> PresentPosition | None:
     """The estimate while a watch makes one; else the last report, from which it may have come away since at its last speed."""
     reported, report = measured.get("position"), measured.get("report", {})
     age_s = None
@@ -113,7 +113,7 @@ def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, n
         age_s = _age_s(report["received_at"] if is_newest else reported["measured_at"], now)
     if estimated is not None and not estimated["is_lost"] and (age_s is None or _age_s(estimated["at"], now) <= max(age_s, MEASURED_FOR_S)):
         bound = estimated["bound"]
-        return Present(
+        return PresentPosition(
             LonLat(*estimated["position"]),
             estimated["altitude_relative_m"],
             is_measured=bool(estimated["is_measured"]),
@@ -127,7 +127,7 @@ def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, n
     speed_mps = measured.get("speed", {}).get("speed_mps")
     off_m = 0.0 if age_s <= MEASURED_FOR_S else age_s * (LAST_SPEED_MPS if speed_mps is None else float(speed_mps))
     height_m = measured.get("height", {}).get("altitude_relative_m")
-    return Present(LonLat(*reported["position"]), height_m, is_measured=True, age_s=age_s, along_m=off_m, across_m=off_m)
+    return PresentPosition(LonLat(*reported["position"]), height_m, is_measured=True, age_s=age_s, along_m=off_m, across_m=off_m)
 
 
 def _age_s(at: str, now: datetime) -> float:

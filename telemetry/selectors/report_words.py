@@ -3,7 +3,7 @@
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
-from telemetry.mission_report.outcomes import Reason
+from telemetry.mission_report.outcomes import OutcomeReason
 from workspace.message_rendering import in_words
 
 WORDS = {
@@ -44,7 +44,7 @@ CAUSES = {
 OUTCOMES = {"complete": gettext_noop("complete"), "skipped": gettext_noop("skipped"), "failed": gettext_noop("unsuccessful")}
 
 
-def reason_words(reason: Reason) -> str:
+def reason_words(reason: OutcomeReason) -> str:
     """Return part of a sentence, without the time at which it happened."""
     values = dict(reason.values)
     if reason.code == "stated":

@@ -13,7 +13,7 @@ from mavlink.decoding.measurement import Measurement
 from missions.models import ENDED_STATES, MissionState
 from missions.selectors.commands import SENT_LAST
 from telemetry.estimation.link_model import PROMPT_S
-from telemetry.estimation.report import Boot, Report
+from telemetry.estimation.report import Report, VehicleBoot
 from telemetry.exports.logged_record import REPORTED
 
 ON_ITS_WAY = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
@@ -170,5 +170,5 @@ def _report(
     *rest: Any,
 ) -> StoredReport:
     measurement = Measurement(lon, lat, **dict(zip(REPORTED, rest, strict=True)))
-    boot = None if boot_ms is None else Boot(stream, boot_ms / 1_000.0)
+    boot = None if boot_ms is None else VehicleBoot(stream, boot_ms / 1_000.0)
     return StoredReport(key, uav_id, measured_at, Report(measured_at.timestamp(), received_at.timestamp(), measurement, boot))

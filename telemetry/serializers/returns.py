@@ -8,7 +8,7 @@ from rest_framework import serializers
 
 from missions.fields import PositionField
 from missions.serializers.returns import ReturnCheckSerializer
-from telemetry.selectors.present import Present
+from telemetry.selectors.present import PresentPosition
 from telemetry.services.returns.landing_here import LandingHere
 from telemetry.services.returns.present_returns import PresentReturn
 
@@ -131,7 +131,7 @@ def present_return_json(found: PresentReturn) -> dict[str, Any]:
     }
 
 
-def _present_json(present: Present | None) -> dict[str, Any] | None:
+def _present_json(present: PresentPosition | None) -> dict[str, Any] | None:
     if present is None:
         return None
     return {

@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+from drf_spectacular.utils import extend_schema_serializer
 from rest_framework import serializers
 
 from mavlink.decoding.companion_reports import FLAGS, INTEGERS, MAX_MODE_LENGTH, NUMBERS, instant
@@ -107,7 +108,8 @@ class NotedListSerializer(serializers.Serializer):
     results = NotedSerializer(many=True)
 
 
-class ResultSerializer(KnownFieldsSerializer):
+@extend_schema_serializer(component_name="Result")
+class LinkResultSerializer(KnownFieldsSerializer):
     """What the UAV found at a target."""
 
     sequence = serializers.IntegerField(min_value=0, max_value=MAX_SEQUENCE)
@@ -129,7 +131,7 @@ class EndedFlightSerializer(KnownFieldsSerializer):
 
 def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
     """A result as it was sent, or what is wrong with it by field."""
-    serializer = ResultSerializer(data=sent)
+    serializer = LinkResultSerializer(data=sent)
     if not serializer.is_valid():
         return None, {str(name): " ".join(map(str, words)) for name, words in serializer.errors.items()}
     faults: dict[str, str] = {}
@@ -160,7 +162,7 @@ def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
 
 class ResultsSerializer(serializers.Serializer):
     stream = StreamField()
-    results: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ResultSerializer(), max_length=MAX_RESULTS)
+    results: serializers.ListSerializer[Any] = serializers.ListSerializer(child=LinkResultSerializer(), max_length=MAX_RESULTS)
     flights: serializers.ListSerializer[Any] = serializers.ListSerializer(
         child=EndedFlightSerializer(), required=False, max_length=MAX_RESULTS
     )

@@ -9,7 +9,7 @@ from mavlink.decoding.measurement import Measurement
 from telemetry.models import FlightEvent, FlightEventKind, UavWatch
 
 
-class Report(Protocol):
+class FlightEventReport(Protocol):
     """One stored report of a UAV."""
 
     @property
@@ -22,7 +22,7 @@ class Report(Protocol):
     def measurement(self) -> Measurement: ...
 
 
-def note_take_offs_and_landings(reports: Iterable[Report]) -> None:
+def note_take_offs_and_landings(reports: Iterable[FlightEventReport]) -> None:
     """Of reports that are not from the future; called before they are noted as the latest. What comes late changes nothing."""
     reported = sorted((report for report in reports if report.measurement.is_in_air is not None), key=lambda report: report.measured_at)
     if not reported:

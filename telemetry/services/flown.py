@@ -2,7 +2,7 @@
 
 from uuid import UUID
 
-from mavlink.mission_sync.flown_items import Flown
+from mavlink.mission_sync.flown_items import FlownMissionItem
 from missions.models import Approval, LinkKind, Uav
 from missions.services.commands.dispatch import DamagedApproval, approved_load
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended, mark_waypoint_reached
@@ -11,7 +11,7 @@ from telemetry.services.links.onboard_lists import Doubt, loaded_on
 OTHERS = frozenset({Doubt.OTHER_STATION, Doubt.OTHER_LENGTH})
 
 
-def note_flown(*, uav_id: int, flown: Flown) -> None:
+def note_flown(*, uav_id: int, flown: FlownMissionItem) -> None:
     """Of the flight that was last read back from the vehicle; of anything else it may have flown nothing is known, and nothing once
     another list may have been put on it.
 

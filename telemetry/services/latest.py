@@ -15,7 +15,7 @@ from django.db import connection
 from mavlink.decoding.measurement import Measurement
 
 
-class Report(Protocol):
+class LatestReport(Protocol):
     """One stored report of a UAV."""
 
     @property
@@ -42,7 +42,7 @@ WHERE EXISTS (SELECT FROM jsonb_each(excluded.measured) WHERE {_IS_NEWER})
 """  # noqa: S608 (nothing is put in but the line above)
 
 
-def note_latest(reports: Iterable[Report]) -> None:
+def note_latest(reports: Iterable[LatestReport]) -> None:
     """Of reports that are not from the future; in any order, and again."""
     newest: dict[int, dict[str, dict[str, Any]]] = {}
     for report in sorted(reports, key=lambda report: report.measured_at, reverse=True):
@@ -55,7 +55,7 @@ def note_latest(reports: Iterable[Report]) -> None:
         cursor.execute(NOTE, [list(newest), [json.dumps(groups) for groups in newest.values()]])
 
 
-def _add_what_is_missing(known: dict[str, dict[str, Any]], report: Report) -> None:
+def _add_what_is_missing(known: dict[str, dict[str, Any]], report: LatestReport) -> None:
     """Each group with its time as text of one length, so that texts compare as times do."""
     for name, read in _READ.items():
         if name not in known and (values := read(report)) is not None:
@@ -66,16 +66,16 @@ def time_text(at: datetime) -> str:
     return at.astimezone(UTC).isoformat(timespec="microseconds")
 
 
-def _report(report: Report) -> dict[str, Any]:
+def _report(report: LatestReport) -> dict[str, Any]:
     return {"received_at": time_text(report.received_at)}
 
 
-def _position(report: Report) -> dict[str, Any] | None:
+def _position(report: LatestReport) -> dict[str, Any] | None:
     reported = report.measurement
     return None if reported.longitude_deg is None else {"position": [reported.longitude_deg, reported.latitude_deg]}
 
 
-def _speed(report: Report) -> dict[str, Any] | None:
+def _speed(report: LatestReport) -> dict[str, Any] | None:
     reported = report.measurement
     if reported.velocity_north_mps is None or reported.velocity_east_mps is None:
         return None
@@ -83,7 +83,7 @@ def _speed(report: Report) -> dict[str, Any] | None:
     return {"speed_mps": math.hypot(reported.velocity_north_mps, reported.velocity_east_mps), "climb_mps": climb_mps}
 
 
-def _wind(report: Report) -> dict[str, Any] | None:
+def _wind(report: LatestReport) -> dict[str, Any] | None:
     """Pilots are reported where it comes from; the log keeps where the air goes."""
     north_mps, east_mps = report.measurement.wind_north_mps, report.measurement.wind_east_mps
     if north_mps is None or east_mps is None:
@@ -91,17 +91,17 @@ def _wind(report: Report) -> dict[str, Any] | None:
     return {"wind_speed_mps": math.hypot(north_mps, east_mps), "wind_from_deg": math.degrees(math.atan2(-east_mps, -north_mps)) % 360.0}
 
 
-def _as_reported(fields: Sequence[str]) -> Callable[[Report], dict[str, Any] | None]:
+def _as_reported(fields: Sequence[str]) -> Callable[[LatestReport], dict[str, Any] | None]:
     """Together as soon as one of them is known."""
 
-    def read(report: Report) -> dict[str, Any] | None:
+    def read(report: LatestReport) -> dict[str, Any] | None:
         values = {field: getattr(report.measurement, field) for field in fields}
         return values if any(value not in (None, "") for value in values.values()) else None
 
     return read
 
 
-_READ: dict[str, Callable[[Report], dict[str, Any] | None]] = {
+_READ: dict[str, Callable[[LatestReport], dict[str, Any] | None]] = {
     "report": _report,
     "position": _position,
     "speed": _speed,

@@ -26,7 +26,7 @@ from missions.selectors.missions import approval_in_force, mission_of_organisati
 from missions.services.approval.checks import check_approval
 from missions.services.commands.dispatch import TO_SEND
 from missions.services.commands.planned_starts import routes_not_begun, uavs_being_started
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState, return_checks
 from missions.services.commands.start_slots import reasons_to_wait
 from telemetry.models import UavLink
@@ -126,7 +126,7 @@ def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
 class _OnTheMap:
     """What zones, terrain and obstacles say of the routes and of the ways home, by place in the mission."""
 
-    reasons: tuple[Reason, ...]
+    reasons: tuple[RefusalReason, ...]
     returns: Mapping[int | None, ReturnCheck]
 
 
@@ -154,19 +154,21 @@ def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
     return NextAct.UPLOAD if links else NextAct.CONNECT
 
 
-def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[Reason]:
+def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[RefusalReason]:
     """What blocks the start of these UAVs by the checks before start; those of a mission that cannot be started have no checks."""
     found = preflight_of(mission, now=timezone.now())
-    against = [Reason(check.code, check.message) for check in found.checks if check.state == CheckState.FAILED]
+    against = [RefusalReason(check.code, check.message) for check in found.checks if check.state == CheckState.FAILED]
     for row in found.uavs:
         if row.uav in uav_ids:
             against += [
-                Reason(check.code, f"{row.name}: {check.message}", row.place) for check in row.checks if check.state == CheckState.FAILED
+                RefusalReason(check.code, f"{row.name}: {check.message}", row.place)
+                for check in row.checks
+                if check.state == CheckState.FAILED
             ]
     return against
 
 
-def _against(reasons: Sequence[Reason], place: int | None) -> Iterator[Check]:
+def _against(reasons: Sequence[RefusalReason], place: int | None) -> Iterator[Check]:
     """What speaks against this UAV's route, or against the whole mission."""
     return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
 

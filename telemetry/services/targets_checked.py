@@ -15,7 +15,7 @@ from django.utils import timezone
 from mavlink.approved_route import route_from_json
 from missions.models import Approval, InspectionTarget, Mission
 from missions.services.commands.flight_progress import NOT_HELD, NOT_REACHED, SETTLED, mark_missed, store_visit
-from telemetry.mission_report.visits import Visit, visits_of
+from telemetry.mission_report.visits import ReportedVisit, visits_of
 from telemetry.selectors.mission_record import approval_on_record, at, fastest_mps, fixes_of, routes_on_record
 
 SETTLED_S = 3.0  # by then the reports about it are stored
@@ -90,7 +90,7 @@ def store_missing_visits() -> int:
     return stored
 
 
-def _store(mission_id: UUID, visit: Visit) -> bool:
+def _store(mission_id: UUID, visit: ReportedVisit) -> bool:
     """Whether something new was stored; nothing is where no report tells where the UAV was."""
     if visit.closest_m is None:
         return False

@@ -14,7 +14,7 @@ from rest_framework.views import APIView
 from inspection.views.parameters import invalid
 from missions.models import Mission, UavType
 from missions.selectors.fleet import types_of_organisation
-from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_limits, limits_of
+from telemetry.alerting.limits import BOUNDS, AlertLimits, InvalidLimits, checked_limits, limits_of
 from telemetry.serializers.alerts import AlertLimitsSerializer
 from workspace.api.signed_in import SignedInRequest
 from workspace.audit import record_change
@@ -87,5 +87,5 @@ def _state(row: UavType | Mission, request: SignedInRequest) -> Response:
 
 
 def _answer(row: UavType | Mission) -> Response:
-    body: dict[str, Any] = {"stated": row.alert_limits, "in_force": asdict(limits_of(row.alert_limits)), "usual": asdict(Limits())}
+    body: dict[str, Any] = {"stated": row.alert_limits, "in_force": asdict(limits_of(row.alert_limits)), "usual": asdict(AlertLimits())}
     return Response(body | {"bounds": {name: list(bounds) for name, bounds in BOUNDS.items()}})

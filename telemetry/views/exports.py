@@ -34,7 +34,7 @@ BY_STREAM = ("uav_id", "stream_id", "sequence")  # as each counter ran: a track 
 UNSAFE = re.compile(r"[^A-Za-z0-9]+")  # in names of files: other programs stumble over more
 
 
-class FileKind(NamedTuple):
+class ExportFormat(NamedTuple):
     """`is_track`: it has the records with a place and a time that can have been, and no others."""
 
     media_type: str
@@ -44,10 +44,12 @@ class FileKind(NamedTuple):
 
 
 KINDS = {
-    "csv": FileKind("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
-    "gpx": FileKind("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name), is_track=True),
-    "kml": FileKind("application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True),
-    "geojson": FileKind("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
+    "csv": ExportFormat("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
+    "gpx": ExportFormat("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name), is_track=True),
+    "kml": ExportFormat(
+        "application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True
+    ),
+    "geojson": ExportFormat("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
 }
 ABOUT = (
     "One record a second of each UAV, and each with which its mode or waypoint changes; `every_s` asks for more or fewer. Values are "

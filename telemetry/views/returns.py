@@ -19,7 +19,7 @@ from workspace.api.whole_numbers import WholeNumber
 UAVS = WholeNumber("uav", "ids of UAVs", max_values=50, required=True)
 
 
-class Returns(APIView):
+class PresentReturnsView(APIView):
     @extend_schema(
         operation_id="list_returns_now",
         summary="What UAVs meet if all of them return now",

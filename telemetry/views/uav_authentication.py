@@ -18,7 +18,7 @@ from workspace.api.errors import ApiProblem
 from workspace.api.throttling import ScopedRate
 from workspace.api_tokens import hash_token
 from workspace.prepared_statements import prepared_rows
-from workspace.sessions.sign_in_attempts import HeldBack, address_of, count_attempt, network_of
+from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
 
 WRONG_TOKENS = 30  # of one network in a quarter of an hour; a right token is never held back
 GUESSING = "guessing tokens of UAVs"
@@ -53,7 +53,7 @@ class UavTokenAuthentication(BaseAuthentication):
     def _count_a_guess(request: Request) -> None:
         try:
             count_attempt(GUESSING, network_of(address_of(request)), most=WRONG_TOKENS)
-        except HeldBack as error:
+        except TooManyAttempts as error:
             raise ApiProblem(429, "throttled", "Too many wrong tokens from this network.", retry_after_s=error.wait_s) from error
 
 

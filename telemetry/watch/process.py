@@ -44,7 +44,7 @@ from telemetry.services.watches import (
     store_estimates,
     take_watches,
 )
-from telemetry.watch.options import Options
+from telemetry.watch.options import EstimatorOptions
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.live.changes import publish_live
 
@@ -140,7 +140,7 @@ class Watched:
 class Watch:
     """`run` until `stop`."""
 
-    options: Options
+    options: EstimatorOptions
     held: dict[int, Watched] = field(default_factory=dict)  # by UAV
     _stop: threading.Event = field(default_factory=threading.Event)
     _new: NewReports = field(default_factory=NewReports)

@@ -28,7 +28,7 @@ from inspection.network.rules import LinkingRules
 from inspection.network.snapshot_file import CLEARED, NETWORKS
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors import graph as graph_selectors
-from inspection.selectors.graph import KEPT, _Kept, graph_for
+from inspection.selectors.graph import KEPT, _MadeOnce, graph_for
 from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
 from tests.inspection.network.drawn_graphs import drawn_graph
@@ -283,7 +283,7 @@ def test_broken_files_are_made_anew_from_what_is_not_broken(line, settings, monk
         content[-1] ^= 1
         path.unlink()  # what is mapped stays as it is
         path.write_bytes(bytes(content))
-    monkeypatch.setattr(graph_selectors, "_graphs", _Kept())
+    monkeypatch.setattr(graph_selectors, "_graphs", _MadeOnce())
     add_zone(9.1, 47.1, 9.2, 47.2)  # beside everything: another set of zones, the same graph
     for zones in (selectors.zones_in_force(), selectors.zones_in_force().where([])):
         again = graph_for(snapshot.version, zones)
@@ -349,7 +349,7 @@ def test_a_snapshot_of_an_earlier_layout_is_no_graph_until_it_is_made_anew(line,
 
 def test_of_threads_that_want_the_same_graph_one_makes_it():
     """And one that wants another is not held up: it comes back while the first is still being made."""
-    kept, made = _Kept(), []
+    kept, made = _MadeOnce(), []
     is_making, may_end = threading.Event(), threading.Event()
 
     def slowly():
@@ -370,7 +370,7 @@ def test_of_threads_that_want_the_same_graph_one_makes_it():
 
 
 def test_a_graph_that_could_not_be_made_is_tried_again():
-    kept = _Kept()
+    kept = _MadeOnce()
     with pytest.raises(selectors.NoGraph):
         kept.get("key", fail)
     assert kept.get("key", lambda: GRAPH) is GRAPH
@@ -381,7 +381,7 @@ def fail() -> None:
 
 
 def test_the_graphs_used_last_are_kept_in_memory():
-    kept = _Kept()
+    kept = _MadeOnce()
     for number in range(KEPT):
         kept.get(number, lambda: GRAPH)
     assert kept.get(0, lambda: OTHER) is GRAPH

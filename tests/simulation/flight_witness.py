@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from inspection.models import Asset, NoFlyZone
-from simulation.assessment.flown import FlownRoute
+from simulation.assessment.flown import AssessedRoute
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.plane import east_north
@@ -27,7 +27,7 @@ def _away(at: Any, start: Any, end: Any) -> float:
     return float(np.linalg.norm(at - start - share * by))
 
 
-def waypoints_missed(route: FlownRoute) -> list[str]:
+def waypoints_missed(route: AssessedRoute) -> list[str]:
     """Those that no straight line between two moments comes within PASSED_M of."""
     missed = []
     for flown in route.flights:
@@ -41,7 +41,7 @@ def waypoints_missed(route: FlownRoute) -> list[str]:
     return missed
 
 
-def zones_entered(route: FlownRoute) -> list[str]:
+def zones_entered(route: AssessedRoute) -> list[str]:
     """At whatever height and time: these zones have no limits."""
     found = []
     for zone in NoFlyZone.objects.all():
@@ -57,7 +57,7 @@ def zones_entered(route: FlownRoute) -> list[str]:
     return found
 
 
-def things_hit(route: FlownRoute, hills: Hills) -> list[str]:
+def things_hit(route: AssessedRoute, hills: Hills) -> list[str]:
     """The ground, towers, and wires straight from tower to tower; of the higher part of the flight."""
     found = []
     for track in route.tracks:

@@ -18,10 +18,10 @@ from inspection.geodesy import LonLat
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.signing import FrameWriter, SignatureCheck
 from simulation.flight.faults import Faults
-from simulation.vehicle_endpoint.fleet import Change, InvalidSpeed
+from simulation.vehicle_endpoint.fleet import InvalidSpeed, VehicleChange
 from simulation.vehicle_endpoint.launch import Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of
-from simulation.vehicle_endpoint.radio import Radio, WrongAddress, address_of
+from simulation.vehicle_endpoint.radio import InvalidStationAddress, Radio, address_of
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
@@ -81,7 +81,7 @@ def test_one_that_is_ended_is_silent_and_lets_its_port_go_while_the_others_fly_o
         with flying(launches, speed=10.0) as fleet:
             wait_for(lambda: ear.receives("HEARTBEAT", 1), "the first one")
             port = fleet.uavs[0].radio.port
-            fleet.post(Change(system=1, ends=True))
+            fleet.post(VehicleChange(system=1, ends=True))
             wait_for(lambda: fleet.uavs[0].radio.socket.fileno() < 0, "its end")
             ear.received()
             wait_for(lambda: ear.receives("HEARTBEAT", 2), "the other one")
@@ -123,7 +123,7 @@ def test_weather_faults_and_pace_change_in_flight_for_one_or_all():
         wait_for(lambda: one.now_s - before_s > 5.0)
         assert time.monotonic() - began_s < 4.0
         with pytest.raises(InvalidSpeed):
-            fleet.post(Change(speed=1_000.0))
+            fleet.post(VehicleChange(speed=1_000.0))
 
 
 def test_a_signed_uav_is_told_by_its_key_and_hears_nobody_else():
@@ -184,7 +184,7 @@ def test_orders_that_say_nothing_are_refused(line):
 
 @pytest.mark.parametrize("text", ["", "localhost", ":14550", "localhost:", "localhost:0", "localhost:70000", "no.such.host.invalid:1"])
 def test_addresses_that_are_none(text):
-    with pytest.raises(WrongAddress):
+    with pytest.raises(InvalidStationAddress):
         address_of(text)
 
 

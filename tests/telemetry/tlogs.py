@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import HEADER_V1, HEADER_V2, IS_SIGNED, MARKER_V2, SIGNATURE, frames_of_datagram, message_of
 from mavlink.mission_items import flight_loads
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.mode_numbers import Flavour
@@ -75,7 +75,7 @@ def _reports_of_flight() -> Iterator[tuple[float, Any]]:
     for step in range(round(ENDS_AT_S / STEP_S)):
         at_s = step * STEP_S
         if step == round(ARMS_AT_S / STEP_S):
-            assert uav.set_mode(Mode.MISSION).is_done and uav.arm().is_done
+            assert uav.set_mode(FlightMode.MISSION).is_done and uav.arm().is_done
         uav.step()
         for outgoing in endpoint.tick(at_s):
             message = outgoing.message

@@ -33,7 +33,7 @@ logger = logging.getLogger(__name__)
 _of_process: BaseCache = LocMemCache("sign-in attempts", {"OPTIONS": {"MAX_ENTRIES": 20_000}})  # while Redis is away
 
 
-class HeldBack(Exception):
+class TooManyAttempts(Exception):
     """The try is not looked at. `wait_s` says when the next one is; `name_is_slow`: strangers guess at this name everywhere."""
 
     def __init__(self, wait_s: int, *, name_is_slow: bool = False) -> None:
@@ -96,7 +96,7 @@ def _try(counts: BaseCache, name: str, network: str, trusted_device: str | None)
     _count(counts, of_network, TRIES_OF_A_NETWORK)
     if _add(counts, everybody) > TRIES_BEFORE_A_NAME_IS_SLOW and not counts.add(_key("slow", name), 1, SLOW_S):
         _take_back(counts, own, of_network)  # to wait for a turn is no wrong try
-        raise HeldBack(SLOW_S, name_is_slow=True)
+        raise TooManyAttempts(SLOW_S, name_is_slow=True)
     return Try((own, of_network, everybody), left, counts)
 
 
@@ -136,7 +136,7 @@ def _count(counts: BaseCache, key: str, most: int) -> int:
     """Tries that are left after this one. Raises HeldBack."""
     count = _add(counts, key)
     if count > most:
-        raise HeldBack(WINDOW_S)
+        raise TooManyAttempts(WINDOW_S)
     return most - count
 
 

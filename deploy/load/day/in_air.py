@@ -10,7 +10,7 @@ from missions.services.commands.commands import claim_commands, note_applied, no
 from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.steering import command_uav
 from telemetry.services.links.links import release_leases, take_leases
-from telemetry.services.links.onboard_lists import Carried, Loaded, begin_loading, end_loading
+from telemetry.services.links.onboard_lists import Carried, LoadedLists, begin_loading, end_loading
 from workspace.models import User
 
 HOLDER = "prepare-day/1"
@@ -46,7 +46,7 @@ def _carried(routes: dict[int, object]) -> list[UavCommand]:
 
 
 def _load(carried: Carried, approval: UUID, sha256: str) -> None:
-    if not (begin_loading(carried) and end_loading(carried, Loaded(sha256, approval, 1))):
+    if not (begin_loading(carried) and end_loading(carried, LoadedLists(sha256, approval, 1))):
         raise ValueError("somebody else carries it")
 
 

@@ -35,7 +35,7 @@ class Detours:
 
 
 @dataclass(frozen=True, eq=False)
-class Gap:
+class NetworkBreak:
     """Nodes, (s,), that have lost a way to one another, and which pairs of these nodes, (p, 2) by their places, are to get one round."""
 
     node: IntArray
@@ -43,7 +43,7 @@ class Gap:
     is_one_enough: bool = False  # the shortest of the ways then makes all of them up
 
 
-def gaps(edges: Edges, out: BoolArray, inside: BoolArray, position: FloatArray) -> list[Gap]:
+def gaps(edges: Edges, out: BoolArray, inside: BoolArray, position: FloatArray) -> list[NetworkBreak]:
     """What zones take out of lines and railways: each connected piece is a gap between the nodes that are left at its ends."""
     taken = edges.where(out & np.isin(edges.kind, [kind for kind in EdgeKind if kind.is_on_network])).pair
     if not len(taken):
@@ -56,10 +56,10 @@ def gaps(edges: Edges, out: BoolArray, inside: BoolArray, position: FloatArray) 
     row, side = np.nonzero(~is_in)
     stumps = np.unique(np.column_stack([piece[row], taken[row, side]]), axis=0)
     _, first = np.unique(stumps[:, 0], return_index=True)
-    return [Gap(node, _pairs(position[node])) for node in np.split(stumps[:, 1], first[1:]) if len(node) > 1]
+    return [NetworkBreak(node, _pairs(position[node])) for node in np.split(stumps[:, 1], first[1:]) if len(node) > 1]
 
 
-def detours(wanted: list[Gap], flown: FlownNodes, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights) -> Detours:
+def detours(wanted: list[NetworkBreak], flown: FlownNodes, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights) -> Detours:
     """The shortest ways round, none longer than rules.detour_m. Bends are flown at transit height; ways by the same bend share it."""
     low_m, high_m = (float(limit_m[0]) for limit_m in heights.band_m(np.zeros(1)))
     errands = [
@@ -82,7 +82,7 @@ def detours(wanted: list[Gap], flown: FlownNodes, zones: ZoneIndex, rules: Linki
     return Detours(np.array(pairs, dtype=np.int64).reshape(-1, 2), np.array(list(number), dtype=np.float64).reshape(-1, 2))
 
 
-def _chosen(gap: Gap, ways: list[WayRound | None]) -> list[tuple[tuple[int, int], WayRound]]:
+def _chosen(gap: NetworkBreak, ways: list[WayRound | None]) -> list[tuple[tuple[int, int], WayRound]]:
     there_are = [((int(one), int(other)), way) for (one, other), way in zip(gap.pair, ways, strict=True) if way is not None]
     return [min(there_are, key=lambda found: found[1].length_m)] if gap.is_one_enough and there_are else there_are
 

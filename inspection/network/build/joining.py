@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
+from inspection.network.infrastructure import NO_OSM_NODE, InfrastructurePlaces, InfrastructureWays
 from inspection.network.nearness import chord, nearest_within, on_unit_sphere
 
 TOUCH_M = 1.0  # a vertex that a curator draws so near to another one is meant to be it
@@ -24,7 +24,7 @@ class JoinedVertices:
     way: IntArray  # (n,) the first way at the node, -1 at a place
 
 
-def join_vertices(places: Places, ways: Ways) -> JoinedVertices:
+def join_vertices(places: InfrastructurePlaces, ways: InfrastructureWays) -> JoinedVertices:
     """Give every vertex its node.
 
     Vertices with an OSM node are joined by it, to a place and to each other, wherever their way says that they are: the place's
@@ -63,7 +63,7 @@ def join_vertices(places: Places, ways: Ways) -> JoinedVertices:
     )
 
 
-def _place_of_osm_node(places: Places, osm_node: IntArray) -> IntArray:
+def _place_of_osm_node(places: InfrastructurePlaces, osm_node: IntArray) -> IntArray:
     """Index of the place at each OSM node, -1 where there is none."""
     order = np.argsort(places.osm_node, kind="stable")
     sorted_nodes = places.osm_node[order]

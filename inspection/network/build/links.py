@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.network.build.detours import Gap
+from inspection.network.build.detours import NetworkBreak
 from inspection.network.build.edges import Edges, component_labels, edges_of
 from inspection.network.build.flown_nodes import FlownNodes
-from inspection.network.infrastructure import Ways
+from inspection.network.infrastructure import InfrastructureWays
 from inspection.network.inspection_graph import EdgeKind
 from inspection.network.nearness import nearest_within, pairs_within
 from inspection.network.rules import LinkingRules
@@ -27,7 +27,7 @@ def bridge_links(bridges: IntArray, position: FloatArray, rules: LinkingRules) -
     return edges_of(EdgeKind.BRIDGE_TO_BRIDGE, bridges[pairs[:, 0]], bridges[pairs[:, 1]])
 
 
-def crossing_links(position: FloatArray, lines: Ways, node_of_vertex: IntArray, rules: LinkingRules) -> Edges:
+def crossing_links(position: FloatArray, lines: InfrastructureWays, node_of_vertex: IntArray, rules: LinkingRules) -> Edges:
     """Supports that stand within the radius and have no line in common: where lines cross, run close by, or meet in a substation.
 
     `position` is that of all supports and line vertices: a vertex is mostly a support that nobody has tagged.
@@ -44,7 +44,7 @@ def railway_crossing_links(places: IntArray, railway_points: IntArray, position:
     return edges_of(EdgeKind.CROSSING, places[row], railway_points[other])
 
 
-def _share_a_way(pairs: IntArray, ways: Ways, node_of_vertex: IntArray) -> BoolArray:
+def _share_a_way(pairs: IntArray, ways: InfrastructureWays, node_of_vertex: IntArray) -> BoolArray:
     """Whether some way passes through both nodes of each pair."""
     membership = np.unique(node_of_vertex * len(ways) + ways.way_of_vertex) if len(ways) else np.zeros(0, dtype=np.int64)
     node, way = np.divmod(membership, max(1, len(ways)))
@@ -61,7 +61,7 @@ def _share_a_way(pairs: IntArray, ways: Ways, node_of_vertex: IntArray) -> BoolA
 class NearestLinks:
     edges: Edges
     blocked: int  # nearest legs that a zone is in the way of
-    unlinked: list[Gap]  # what a zone is in every way of, for a way round
+    unlinked: list[NetworkBreak]  # what a zone is in every way of, for a way round
 
 
 def bridge_to_tower_links(bridges: IntArray, supports: IntArray, nodes: FlownNodes, zones: ZoneIndex, rules: LinkingRules) -> NearestLinks:
@@ -102,6 +102,6 @@ def _nearest_clear(
     return NearestLinks(edges_of(kind, start[chosen], end[chosen]), int(met.sum()), unlinked)
 
 
-def _way_round(start: IntArray, end: IntArray) -> Gap:
+def _way_round(start: IntArray, end: IntArray) -> NetworkBreak:
     node, place = np.unique(np.concatenate([start, end]), return_inverse=True)
-    return Gap(node, place.reshape(2, -1).T, is_one_enough=True)
+    return NetworkBreak(node, place.reshape(2, -1).T, is_one_enough=True)

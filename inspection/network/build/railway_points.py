@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
 from inspection.network.build.joining import JoinedVertices
-from inspection.network.infrastructure import Ways
+from inspection.network.infrastructure import InfrastructureWays
 
 MAX_STRAY_M = 15.0  # how far a straight leg may pass from a vertex that it skips
 METRES_PER_DEGREE = 111_695.0  # the most on WGS84 (of latitude, at a pole): what counts as short enough here is so on the ground
@@ -26,7 +26,7 @@ class RailwayPoints:
     way_of_leg: IntArray  # (m,)
 
 
-def railway_points(ways: Ways, joined: JoinedVertices, spacing_m: float) -> RailwayPoints:
+def railway_points(ways: InfrastructureWays, joined: JoinedVertices, spacing_m: float) -> RailwayPoints:
     """Thin the vertices, then divide the legs that are longer than the spacing into equal pieces."""
     kept = np.flatnonzero(thin(ways, joined.node_of_vertex, spacing_m))
     nodes, point = np.unique(joined.node_of_vertex[kept], return_inverse=True)
@@ -55,7 +55,7 @@ def railway_points(ways: Ways, joined: JoinedVertices, spacing_m: float) -> Rail
     )
 
 
-def thin(ways: Ways, node_of_vertex: IntArray, spacing_m: float) -> BoolArray:
+def thin(ways: InfrastructureWays, node_of_vertex: IntArray, spacing_m: float) -> BoolArray:
     """Which vertices stay: the ends of each way, nodes that several vertices share (junctions), and of the others as few as it takes.
 
     Between two that stay the track is at most spacing_m long, unless the way itself has no vertex for longer,

@@ -19,7 +19,7 @@ from inspection.network.route_index import OncePerGraph, RouteIndex, route_index
 
 
 @dataclass(frozen=True, eq=False)
-class Steps:
+class PathSteps:
     """Each place of a chain and the step to it from the place before; the first place of a chain has none. p places, e label entries.
 
     length_m     float64 (p,)  metres of the step
@@ -51,14 +51,14 @@ class Sums:
         return self.place.nbytes + self.label.nbytes
 
 
-def _steps(graph: InspectionGraph) -> Steps:
+def _steps(graph: InspectionGraph) -> PathSteps:
     index = route_index(graph)
     condensed, labels = index.condensed, index.labels
     next_entry, turn = _entries_in_turn(
         condensed.chain_tail, condensed.chain_head, labels.label_first, labels.label_hub, labels.label_chain
     )
     length_m, east, north = _directions(condensed.chain_first, condensed.place_node, condensed.place_m, graph.position)
-    return Steps(length_m, east, north, next_entry, turn)
+    return PathSteps(length_m, east, north, next_entry, turn)
 
 
 steps_of_graph = OncePerGraph(_steps)

@@ -14,7 +14,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 
-from inspection.auto_apply_hooks import HeldBack, further_reasons, ground_mark
+from inspection.auto_apply_hooks import AutoApplyRefusal, further_reasons, ground_mark
 from inspection.models import (
     MAX_REMOVED_PERCENT,
     DataImport,
@@ -181,7 +181,7 @@ def _go_on_by_itself(proposal: ImportProposal, job: Job) -> Job | None:
     return held.job
 
 
-def _hold_back(proposal: ImportProposal, reasons: list[HeldBack]) -> None:
+def _hold_back(proposal: ImportProposal, reasons: list[AutoApplyRefusal]) -> None:
     ImportProposal.objects.filter(pk=proposal.pk, state__in=(ProposalState.READY, ProposalState.APPLYING)).update(
         state=ProposalState.READY, decided_by=None, decided_at=None,
         held_back=[{"code": reason.code, "message": reason.message} for reason in reasons],
@@ -245,7 +245,7 @@ def settle_proposal_of(*, job: Job) -> None:
     if proposal.state == ProposalState.APPLYING:
         if job.parameters.get("by_itself"):
             message = (job.error or {}).get("message") or job.message
-            _hold_back(proposal, [HeldBack("not_applied", message)])
+            _hold_back(proposal, [AutoApplyRefusal("not_applied", message)])
             return
         ImportProposal.objects.filter(pk=proposal.pk, state=ProposalState.APPLYING).update(
             state=ProposalState.READY, decided_by=None, decided_at=None
@@ -288,7 +288,7 @@ def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: P
 class _TakenBack(Exception):
     """What was written does not keep to the bounds; the transaction that wrote it is rolled back."""
 
-    def __init__(self, reasons: list[HeldBack]) -> None:
+    def __init__(self, reasons: list[AutoApplyRefusal]) -> None:
         super().__init__(f"{len(reasons)} reasons")
         self.reasons = reasons
 

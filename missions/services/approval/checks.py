@@ -13,7 +13,7 @@ from missions.models import Mission, MissionState, Route
 from missions.selectors.missions import mission_of_organisation
 from missions.selectors.stale_plans import causes_on_the_routes
 from missions.selectors.uav_changes import uav_changes
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.missions import MissionChanged
 from missions.services.stored_routes import stored_routes
@@ -22,14 +22,14 @@ from planning.checks.wires import spans_in_the_way
 TOO_NEAR = {"too_near", "hovers_in_the_way"}
 
 
-def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[Reason]:
+def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[RefusalReason]:
     """All of them, of a mission with routes as loaded by selectors.mission_of_organisation; empty where it may be flown.
 
     One that is under way has departed, and other missions have been kept apart from it.
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     if not flown:
-        return [Reason("no_routes", _("The plan reaches no target, so no UAV flies."))]
+        return [RefusalReason("no_routes", _("The plan reaches no target, so no UAV flies."))]
     return [
         *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
         *_twins(mission),
@@ -38,13 +38,13 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
     ]
 
 
-def _twins(mission: Mission) -> list[Reason]:
+def _twins(mission: Mission) -> list[RefusalReason]:
     """Separation leaves simulated twins out, so they fly the copies that were made for them and nothing else."""
     if mission.simulates_id is not None:
         return []
     twins = mission.mission_uavs.filter(uav__twin_of__isnull=False).values_list("sequence", "name")
     words = _("%(uav)s is a simulated twin, which flies simulated copies of missions alone. Choose another UAV.")
-    return [Reason("simulated_twin", words % {"uav": name}, sequence) for sequence, name in twins]
+    return [RefusalReason("simulated_twin", words % {"uav": name}, sequence) for sequence, name in twins]
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class ApprovalCheck:
     mission_revision: int
     ground: int
     is_under_way: bool
-    reasons: tuple[Reason, ...]
+    reasons: tuple[RefusalReason, ...]
 
     def still_counts(self, held: Mission) -> bool:
         """Whether neither the mission nor the ground was changed since. The caller holds the mission's row."""
@@ -81,38 +81,38 @@ def valid_check(check: ApprovalCheck | None, held: Mission, *, now: datetime) ->
     return current
 
 
-def _departure(mission: Mission, now: datetime) -> Iterator[Reason]:
+def _departure(mission: Mission, now: datetime) -> Iterator[RefusalReason]:
     """Zones and other missions were looked at for its time, with a margin."""
     margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
     if mission.departs_at is not None and mission.departs_at + margin < now:
-        yield Reason("departure_past", _("Its departure is over. Plan it for another time."))
+        yield RefusalReason("departure_past", _("Its departure is over. Plan it for another time."))
 
 
-def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Reason]:
+def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[RefusalReason]:
     """A height over an assumed ground is none for a real aircraft."""
     for route in routes:
         uav = route.mission_uav
         is_real = uav.uav is None or not uav.uav.is_simulated
         if is_real and (mission.flat_ground_assumed is not False or any(row.altitude_amsl_m is None for row in route.waypoints.all())):
             words = _("%(uav)s would fly as over flat ground: there is no terrain data here. Only a simulated UAV may.")
-            yield Reason("flat_ground", words % {"uav": uav.name}, uav.sequence)
+            yield RefusalReason("flat_ground", words % {"uav": uav.name}, uav.sequence)
 
 
-def _ground(mission: Mission) -> Iterator[Reason]:
+def _ground(mission: Mission) -> Iterator[RefusalReason]:
     """Zones, bases, assets and terrain as they are now, and what stands and hangs beside the routes."""
     for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
-        yield Reason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
+        yield RefusalReason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
     routes = stored_routes(mission)
     if routes is None:
-        yield Reason("times_not_known", _("The times of a route are not known. Plan it again."))
+        yield RefusalReason("times_not_known", _("The times of a route are not known. Plan it again."))
         return
     names = [row.name for row in mission.mission_uavs.all()]
     for number in sorted(spans_in_the_way(routes, planning_read().ground().network(), ground_heights_m, settings.FLIGHT_RULES)):
         words = _("The route of %(uav)s passes a mast or wires too near.") % {"uav": names[number]}
-        yield Reason("wires", words, number)
+        yield RefusalReason("wires", words, number)
 
 
-def _separation(mission: Mission) -> Iterator[Reason]:
+def _separation(mission: Mission) -> Iterator[RefusalReason]:
     found = separation_of_stored(mission)
     for encounter in [] if found is None else found["unresolved"]:
         if encounter["code"] not in TOO_NEAR:
@@ -123,4 +123,4 @@ def _separation(mission: Mission) -> Iterator[Reason]:
         if others:
             names = Mission.objects.filter(pk__in=others).order_by("name").values_list("name", flat=True)
             words = f"{words} {_('The other one flies %(missions)s.') % {'missions': ', '.join(names)}}"
-        yield Reason("separation", words)
+        yield RefusalReason("separation", words)

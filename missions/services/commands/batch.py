@@ -13,7 +13,7 @@ from missions.hooks.in_air import uavs_never_connected, uavs_on_the_ground
 from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
 from missions.selectors.commands import places_in_flight
 from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.refused import Reason, Refused, refuse
+from missions.services.commands.refused import RefusalReason, Refused, refuse
 from missions.services.commands.steering import command_uav
 from workspace.models import User
 
@@ -41,7 +41,7 @@ class UavAnswer:
     name: str = ""
     place: int | None = None
     command: UavCommand | None = None
-    reasons: tuple[Reason, ...] = ()
+    reasons: tuple[RefusalReason, ...] = ()
 
     @property
     def is_accepted(self) -> bool:
@@ -88,16 +88,16 @@ def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, way
     for uav_id in wanted:
         uav, place = uavs.get(uav_id), places.get(uav_id)
         if uav is None:
-            reason = Reason("not_in_mission", _("This UAV has no route of this mission sent or in flight."))
+            reason = RefusalReason("not_in_mission", _("This UAV has no route of this mission sent or in flight."))
             answers.append(UavAnswer(mission.pk, uav_id, reasons=(reason,)))
         elif place is None:
-            reason = Reason("not_in_mission", _("%(uav)s has no route of this mission sent or in flight.") % {"uav": uav.name})
+            reason = RefusalReason("not_in_mission", _("%(uav)s has no route of this mission sent or in flight.") % {"uav": uav.name})
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, reasons=(reason,)))
         elif uav_id in never_connected:
-            reason = Reason("never_connected", _("%(uav)s never connected.") % {"uav": uav.name}, place)
+            reason = RefusalReason("never_connected", _("%(uav)s never connected.") % {"uav": uav.name}, place)
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, place, reasons=(reason,)))
         elif uav_id in on_the_ground:
-            reason = Reason("on_the_ground", _("%(uav)s is on the ground.") % {"uav": uav.name}, place)
+            reason = RefusalReason("on_the_ground", _("%(uav)s is on the ground.") % {"uav": uav.name}, place)
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, place, reasons=(reason,)))
         else:
             answers.append(_command(mission, uav, place, kind, actor, why, dict(ways.get(uav_id, {}))))

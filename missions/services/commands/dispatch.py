@@ -31,7 +31,7 @@ from missions.services.approval.checks import check_approval, valid_check
 from missions.services.approval.document import content_sha256
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
-from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, refuse, refuse_for
 from workspace.models import User
 
 TO_SEND = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
@@ -88,7 +88,7 @@ def dispatch_mission(
         against = valid_check(check, held, now=timezone.now()).reasons
         refuse_for([*_uav_reasons(held, wanted), *_link_reasons(wanted), *against])
         to_send = [route for route in wanted if place is not None or not _is_on_its_way(approval, route["uav"])]
-        refuse_for([] if to_send else [Reason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])
+        refuse_for([] if to_send else [RefusalReason("nothing_to_send", _("Every UAV has its route already, or it is on its way."))])
         if place is not None:
             refuse_for(_flight_reasons(held, approval, to_send[0], flight))
         commands = [
@@ -180,17 +180,17 @@ def _sound_document(approval: Approval) -> dict[str, Any]:
     return document
 
 
-def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]:
+def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[RefusalReason]:
     """Whether each is a UAV of the fleet that does nothing else."""
     reasons = []
     named = [route["uav"] for route in routes]
     for route in routes:
         values = {"uav": route["name"]}
         if route["uav"] is not None and named.count(route["uav"]) > 1:
-            reasons.append(Reason("uav_twice", _("%(uav)s has two routes in this mission.") % values, route["place"]))
+            reasons.append(RefusalReason("uav_twice", _("%(uav)s has two routes in this mission.") % values, route["place"]))
         if route["uav"] is None:
             reasons.append(
-                Reason("not_in_fleet", _("%(uav)s is not a UAV of the fleet: it cannot be sent anything.") % values, route["place"])
+                RefusalReason("not_in_fleet", _("%(uav)s is not a UAV of the fleet: it cannot be sent anything.") % values, route["place"])
             )
             continue
         others = MissionUav.objects.filter(
@@ -200,16 +200,16 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Reason]
         other = others.exclude(mission=mission).select_related("mission").first()
         if other is not None:
             words = _("%(uav)s is busy with %(mission)s.") % {**values, "mission": other.mission.name}
-            reasons.append(Reason("uav_busy", words, route["place"]))
+            reasons.append(RefusalReason("uav_busy", words, route["place"]))
     return reasons
 
 
-def _link_reasons(routes: list[dict[str, Any]]) -> list[Reason]:
+def _link_reasons(routes: list[dict[str, Any]]) -> list[RefusalReason]:
     """Items are made for autopilots, routes for companion computers: who changed since must be approved anew."""
     links = dict(Uav.objects.filter(pk__in=[route["uav"] for route in routes]).values_list("pk", "link"))
     words = _("%(uav)s is connected otherwise than when it was approved. Revoke, and approve it again.")
     return [
-        Reason("link_changed", words % {"uav": route["name"]}, route["place"])
+        RefusalReason("link_changed", words % {"uav": route["name"]}, route["place"])
         for route in routes
         if route["uav"] is not None
         and (route["flights"][0]["items"] is None) == (links.get(route["uav"], LinkKind.MAVLINK) == LinkKind.MAVLINK)
@@ -222,17 +222,17 @@ def _is_on_its_way(approval: Approval, uav_id: int) -> bool:
     return upload is not None and (upload.state in OPEN_COMMANDS or upload.state == CommandState.APPLIED)
 
 
-def _flight_reasons(mission: Mission, approval: Approval, route: dict[str, Any], flight: int) -> list[Reason]:
+def _flight_reasons(mission: Mission, approval: Approval, route: dict[str, Any], flight: int) -> list[RefusalReason]:
     """Flights follow each other, and nothing is sent to a UAV that is flying one: a refused upload in flight changes its route."""
     flown, has_failed = mission.routes.filter(mission_uav__sequence=route["place"]).values_list("flights_flown", "has_failed").get()
     started = approval.commands.filter(uav=route["uav"], kind=CommandKind.START, state=CommandState.APPLIED)
     values, place = {"uav": route["name"]}, route["place"]
     if has_failed:
-        return [Reason("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values, place)]
+        return [RefusalReason("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values, place)]
     if flight <= flown:
-        return [Reason("flown_already", _("%(uav)s has flown this flight.") % values, place)]
+        return [RefusalReason("flown_already", _("%(uav)s has flown this flight.") % values, place)]
     if started.filter(parameters__flight=flown + 1).exists():
-        return [Reason("being_flown", _("%(uav)s is flying. Wait until it is down.") % values, place)]
+        return [RefusalReason("being_flown", _("%(uav)s is flying. Wait until it is down.") % values, place)]
     if flight > flown + 1:
-        return [Reason("flight_before", _("%(uav)s has not flown the flight before this one.") % values, place)]
+        return [RefusalReason("flight_before", _("%(uav)s has not flown the flight before this one.") % values, place)]
     return []

@@ -29,7 +29,7 @@ from missions.selectors.missions import approval_in_force
 from missions.services.approval.approval import locked_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import withdraw
-from missions.services.commands.refused import Reason, Refused, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, Refused, refuse, refuse_for
 from missions.services.commands.steering import command_uav, mission_in_hand
 from missions.services.missions import note
 from workspace.models import User
@@ -216,13 +216,13 @@ def _routes_to_start(mission: Mission, approval: Approval) -> list[Route]:
     return list(routes_not_begun(mission, approval).filter(mission_uav__uav__in=places_in_flight(mission)))
 
 
-def _not_loaded(routes: Sequence[Route], approval: Approval) -> list[Reason]:
+def _not_loaded(routes: Sequence[Route], approval: Approval) -> list[RefusalReason]:
     found = []
     for route in routes:
         place = route.mission_uav
         upload = upload_of(approval, place.uav_id)
         if upload is None or upload.state != CommandState.APPLIED:
-            found.append(Reason("not_loaded", _("%(uav)s does not have its mission yet.") % {"uav": place.name}, place.sequence))
+            found.append(RefusalReason("not_loaded", _("%(uav)s does not have its mission yet.") % {"uav": place.name}, place.sequence))
     return found
 
 

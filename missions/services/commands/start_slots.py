@@ -16,7 +16,7 @@ from missions.hooks.in_air import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState
 from missions.selectors.flights import STILL_FLOWN, route_in_time
 from missions.services.commands.flight_progress import ON_ITS_WAY
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts, keep_apart
 from workspace.leases import lock_until_end
@@ -34,7 +34,7 @@ def hold_starts(organisation_id: int) -> None:
     lock_until_end(STARTS_LOCK, organisation_id)
 
 
-def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[Reason]:
+def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[RefusalReason]:
     """Return why this flight cannot start now beside those that are in the air, with how long it has to wait; empty where it may.
 
     given_at: of a start that was given already, so that those given later do not count until they are sent. One that goes on in the air
@@ -54,14 +54,14 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
             words = _(
                 "%(other)s is in the air, not at the times of its plan, and in the area of the route of %(uav)s. Wait until that is down."
             )
-            return [Reason("start_slot", words % {**values, "other": other.uav}, place)]
+            return [RefusalReason("start_slot", words % {**values, "other": other.uav}, place)]
     for name, place_in_air in free:
         if place_in_air is None or _is_near(own, place_in_air, FREE_MARGIN_M):
             words = _(
                 "%(other)s is in the air without a flight of a mission, and perhaps in the area of the route of %(uav)s."
                 " Wait until that is down."
             )
-            return [Reason("start_slot", words % {**values, "other": name}, place)]
+            return [RefusalReason("start_slot", words % {**values, "other": name}, place)]
     rules = SeparationRules(planned.lateral_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
     found = conflicts([own], timely, rules=rules)
     if not found:
@@ -75,7 +75,7 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
         words = _(
             "Started now, %(uav)s would come within %(metres)s m of %(other)s, which is in the air. It can be started in %(seconds)s s."
         )
-    return [Reason("start_slot", words % values, place)]
+    return [RefusalReason("start_slot", words % values, place)]
 
 
 def _in_the_air(
@@ -180,7 +180,7 @@ def _flight_of(timed: TimedRoute, flight: int) -> TimedRoute:
     )  # fmt: skip
 
 
-def reasons_to_carry_later(start: UavCommand) -> list[Reason]:
+def reasons_to_carry_later(start: UavCommand) -> list[RefusalReason]:
     """The same for a start that was given some time ago and is about to be carried out; one that was sent may be in the air."""
     if start.parameters.get(OUT_OF_SLOT) or start.sent_at is not None:
         return []

@@ -30,7 +30,7 @@ from missions.selectors.missions import approval_in_force
 from missions.services.approval.checks import ApprovalCheck, check_approval, valid_check
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.outbox import queue_command
-from missions.services.commands.refused import Reason, refuse, refuse_for
+from missions.services.commands.refused import RefusalReason, refuse, refuse_for
 from missions.services.commands.staggered_returns import return_in_steps
 from missions.services.commands.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
@@ -185,7 +185,7 @@ def _flight_to_start(
     return flight
 
 
-def _reasons_for(place: int, check: ApprovalCheck) -> list[Reason]:
+def _reasons_for(place: int, check: ApprovalCheck) -> list[RefusalReason]:
     """As things are now, for this UAV: zones may have come since the mission was sent. Its own departure is looked at by itself."""
     return [reason for reason in check.reasons if reason.uav in (None, place) and reason.code != "departure_past"]
 

@@ -3,8 +3,7 @@
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 
-from inspection.demo_region import BASES, BasedUav
-from inspection.demo_region import Base as PlannedBase
+from inspection.demo_region import BASES, BasedUav, DemoBase
 from missions.models import Base, Uav, UavType
 from workspace.models import Organisation
 
@@ -16,7 +15,7 @@ def create_demo_uavs(*, organisation: Organisation) -> int:
     return sum(_create_uav(uav, _base(base, organisation), organisation) for base in BASES for uav in base.uavs)
 
 
-def _base(planned: PlannedBase, organisation: Organisation) -> Base:
+def _base(planned: DemoBase, organisation: Organisation) -> Base:
     location = Point(*planned.position, srid=4326)
     return Base.objects.get_or_create(organisation=organisation, name=planned.name, defaults={"location": location})[0]
 

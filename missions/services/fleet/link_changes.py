@@ -7,7 +7,7 @@ from django.utils.translation import gettext as _
 
 from missions.hooks.flights import is_in_flight
 from missions.models import OPEN_COMMANDS, MissionState, MissionUav, Uav, UavState
-from missions.services.commands.refused import Reason, refuse_for
+from missions.services.commands.refused import RefusalReason, refuse_for
 
 REACHED_BY = ("link", "mavlink_system_id", "allows_unsigned")
 COMMANDS_WAITING, MISSION_ON_ITS_WAY, IN_FLIGHT = "commands_waiting", "mission_on_its_way", "in_flight"
@@ -34,7 +34,7 @@ def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
     refuse_for(_reasons(uav, is_flight_one=False)[:1])
 
 
-def removal_reasons(uav: Uav) -> list[Reason]:
+def removal_reasons(uav: Uav) -> list[RefusalReason]:
     """Return why this UAV cannot be deleted now; empty where it can."""
     return _removal_reasons(uav, is_flight_one=not uav.is_simulated)[:1]
 
@@ -44,22 +44,22 @@ def refuse_while_needed(uav: Uav) -> None:
     refuse_for(_reasons(uav, is_flight_one=True))
 
 
-def _reasons(uav: Uav, *, is_flight_one: bool) -> list[Reason]:
+def _reasons(uav: Uav, *, is_flight_one: bool) -> list[RefusalReason]:
     words = {
         COMMANDS_WAITING: _("A command to %(uav)s is not done yet: how it is reached cannot be changed now."),
         MISSION_ON_ITS_WAY: _("%(uav)s has a mission on its way: how it is reached cannot be changed now."),
         IN_FLIGHT: _("%(uav)s flies: a new key or token could cut it off. Wait until it has landed."),
     }
-    return [Reason(code, words[code] % {"uav": uav.name}) for code in _needs(uav, is_flight_one=is_flight_one)]
+    return [RefusalReason(code, words[code] % {"uav": uav.name}) for code in _needs(uav, is_flight_one=is_flight_one)]
 
 
-def _removal_reasons(uav: Uav, *, is_flight_one: bool) -> list[Reason]:
+def _removal_reasons(uav: Uav, *, is_flight_one: bool) -> list[RefusalReason]:
     words = {
         COMMANDS_WAITING: _("A command to %(uav)s is not done yet. It can be retired or deleted once it is."),
         MISSION_ON_ITS_WAY: _("%(uav)s has a mission on its way. It can be retired or deleted once that has ended."),
         IN_FLIGHT: _("%(uav)s is in the air. It can be retired or deleted once it has landed."),
     }
-    return [Reason(code, words[code] % {"uav": uav.name}) for code in _needs(uav, is_flight_one=is_flight_one)]
+    return [RefusalReason(code, words[code] % {"uav": uav.name}) for code in _needs(uav, is_flight_one=is_flight_one)]
 
 
 def _needs(uav: Uav, *, is_flight_one: bool) -> Iterator[str]:

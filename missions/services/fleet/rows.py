@@ -26,7 +26,7 @@ class NameTaken(Exception):
         self.subject = subject
 
 
-class ExternalIdTaken(Exception):
+class UavExternalIdTaken(Exception):
     """Another UAV of the organisation has this external id."""
 
 
@@ -92,7 +92,7 @@ def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] 
         if any(name in str(error) for name in NAMES_TAKEN):
             raise NameTaken(SUBJECTS[type(row)]) from error
         if "uav_external_id_unique" in str(error):
-            raise ExternalIdTaken from error
+            raise UavExternalIdTaken from error
         if "mavlink_system_id" in str(error):
             raise SystemIdTaken from error
         raise

@@ -78,7 +78,7 @@ class Proposal:
 
 
 @dataclass(frozen=True)
-class _Way:
+class _Assignable:
     """Who may be given something: all of these; `free` are those whose remaining order is not kept."""
 
     able: tuple[int, ...]
@@ -119,25 +119,25 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
 
 def proposals(field: Field) -> Iterator[Proposal]:
     """The one that disturbs least first. Raises what make_plan raises."""
-    seen: set[_Way] = set()
+    seen: set[_Assignable] = set()
     for way in _ways(field):
         if way not in seen:
             seen.add(way)
             yield _proposal(field, way, field.recalled)
 
 
-def _ways(field: Field) -> Iterator[_Way]:
+def _ways(field: Field) -> Iterator[_Assignable]:
     able = tuple(sorted(field.leavings))
     forced = frozenset(place for place in able if place in field.forced)
-    yield _Way(able, forced)
+    yield _Assignable(able, forced)
     others = [place for place in able if place not in forced]
     if len(others) > 1:
         for place in others[:MAX_ALONE]:
-            yield _Way(tuple(sorted({place, *forced})), forced)
-    yield _Way(able, frozenset(able))
+            yield _Assignable(tuple(sorted({place, *forced})), forced)
+    yield _Assignable(able, frozenset(able))
 
 
-def _proposal(field: Field, way: _Way, recalled: frozenset[int]) -> Proposal:
+def _proposal(field: Field, way: _Assignable, recalled: frozenset[int]) -> Proposal:
     """recalled: UAVs that are given nothing more and come home."""
     flying = [place for place in way.able if place not in recalled]
     loose = [target for rest in field.rests if rest.is_out or rest.place in recalled for target in rest.ahead]
@@ -178,7 +178,7 @@ def _comes_home(field: Field, place: int) -> bool:
     return bool(ahead) and (place in field.forced or set(field.leavings[place].targets) != set(ahead))
 
 
-def _request(field: Field, way: _Way, flying: Sequence[int], wanted: Sequence[int]) -> PlanRequest:
+def _request(field: Field, way: _Assignable, flying: Sequence[int], wanted: Sequence[int]) -> PlanRequest:
     mission = field.mission
     number = {target: place for place, target in enumerate(wanted)}
     locks = []

@@ -10,7 +10,7 @@ from missions.models import Mission, MissionUav, Route
 from missions.models.missions import MAX_NAME_LENGTH
 from missions.selectors.missions import mission_of_organisation
 from missions.services.approval.checks import reasons_against
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.mission_plans import store_plan
 from missions.services.missions import check_lost_link, create_mission
@@ -22,7 +22,7 @@ from planning.problem import Objective
 from planning.request import PlanRequest, lost_link_from_json
 
 
-def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[Reason]]:
+def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[RefusalReason]]:
     """The planned mission, or what speaks against flying it as it is: then nothing is stored."""
     with transaction.atomic():
         continuation = _store(proposal)
@@ -39,7 +39,7 @@ def given_up_routes(proposal: Proposal) -> list[int]:
     return [rest.route.pk for rest in proposal.field.rests if rest.place in changed]
 
 
-def _reasons_against(proposal: Proposal, continuation: Mission, now: datetime) -> list[Reason]:
+def _reasons_against(proposal: Proposal, continuation: Mission, now: datetime) -> list[RefusalReason]:
     """As if it had been taken over: the rest of the routes that it replaces is in nobody's way."""
     with transaction.atomic():
         Route.objects.filter(pk__in=given_up_routes(proposal)).update(continued_by=continuation)

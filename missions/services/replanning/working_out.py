@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 
 from missions.models import MissionState, OfferState, ReplanOffer
 from missions.selectors.missions import mission_of_organisation
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from missions.services.replanning.difference import difference_of
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.proposals import Field, Proposal, field_of, proposals
@@ -72,7 +72,7 @@ def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str]
     return "\n".join(reported) or _("Nothing would change: the UAVs fly on as they do.")
 
 
-def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:
+def _open(offer: ReplanOffer, proposal: Proposal) -> list[RefusalReason]:
     """What speaks against it; none where it is open now."""
     now = timezone.now()
     with transaction.atomic():

@@ -9,7 +9,7 @@ from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.detector_state import DetectorState, position_of
 from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.route_line import RouteLine
-from telemetry.alerting.surroundings import Order
+from telemetry.alerting.surroundings import IssuedOrder
 
 CODE = "down-off-plan"
 WORDS = (
@@ -93,7 +93,7 @@ def _was_started(inputs: DetectorInput) -> bool:
     return inputs.detector_state.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
 
 
-def _could_land(detector_state: DetectorState, order: Order) -> bool:
+def _could_land(detector_state: DetectorState, order: IssuedOrder) -> bool:
     """Whether its being down can be what the order was for: it did not fall there, nor was it down before it was told to."""
     if detector_state.down_s is None:
         return True

@@ -19,7 +19,7 @@ from telemetry.alerting.advice import (
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.limits import Limits
+from telemetry.alerting.limits import AlertLimits
 from telemetry.alerting.modes import ModeKind
 
 CODE = "link-lost"
@@ -29,11 +29,11 @@ _LAST_RECEIVED: dict[ModeKind | None, str] = {ModeKind.RETURN: WAS_RETURNING, Mo
 LATE_INTERVALS, LOST_INTERVALS = 2.5, 5.0
 
 
-def late_after_s(limits: Limits, report_interval_s: float) -> float:
+def late_after_s(limits: AlertLimits, report_interval_s: float) -> float:
     return max(limits.link_late_s, LATE_INTERVALS * report_interval_s)
 
 
-def lost_after_s(limits: Limits, report_interval_s: float) -> float:
+def lost_after_s(limits: AlertLimits, report_interval_s: float) -> float:
     return max(limits.link_lost_s, LOST_INTERVALS * report_interval_s)
 
 

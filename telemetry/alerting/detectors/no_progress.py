@@ -2,7 +2,7 @@
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
-from telemetry.alerting.detector_state import Progress
+from telemetry.alerting.detector_state import RouteProgress
 from telemetry.alerting.finding import WARNING, Finding
 
 CODE = "no-progress"
@@ -20,7 +20,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
         return []
     if place is None or model is None or fresh is None or inputs.has_just_jumped:
         return None
-    here = Progress(fresh.received_s, place.along_m, fresh.measurement.altitude_relative_m)
+    here = RouteProgress(fresh.received_s, place.along_m, fresh.measurement.altitude_relative_m)
     if not detector_state.progress or detector_state.progress[-1].at_s < here.at_s:
         detector_state.progress.append(here)
     longest_s = (inputs.limits.no_progress_s + SLACK * model.line.planned_hold_s(place.along_m)) / inputs.link.clock_rate

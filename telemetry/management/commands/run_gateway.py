@@ -11,7 +11,7 @@ from django.core.management.base import BaseCommand, CommandError
 
 from operation.program import program_begins
 from telemetry.gateway.figures import figures_of
-from telemetry.gateway.options import WrongAddress, options_of_settings
+from telemetry.gateway.options import InvalidUdpAddress, options_of_settings
 from telemetry.gateway.process import Gateway
 
 logger = logging.getLogger(__name__)
@@ -35,7 +35,7 @@ class Command(BaseCommand):
     def handle(self, *_: Any, udp: str | None, tcp: str | None, name: str | None, **__: Any) -> None:
         try:
             options = options_of_settings(udp=udp, tcp=tcp, name=name)
-        except WrongAddress as error:
+        except InvalidUdpAddress as error:
             raise CommandError(str(error)) from error
         while True:
             try:

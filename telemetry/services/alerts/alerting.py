@@ -11,12 +11,12 @@ from telemetry.alerting.conflicts import conflicts, elsewhere, ways_of
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState, position_of
 from telemetry.alerting.detectors import down
-from telemetry.alerting.limits import Limits, sound_limits
+from telemetry.alerting.limits import AlertLimits, sound_limits
 from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.state_machine import Closed, Opened, changes
 from telemetry.alerting.surroundings import LinkFacts, NearZone, OnboardState
 from telemetry.selectors.alert_facts import (
-    Loaded,
+    LoadedFacts,
     closed_by_users,
     estimated_by_other_watches,
     links_of,
@@ -119,7 +119,7 @@ def _situations(
     for uav in watched:
         detector_state, model = detector_states.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
         detector_state.take(uav.newest, None if model is None else model.line)
-        link, loaded = links.get(uav.uav_id, (LinkFacts(), Loaded()))
+        link, loaded = links.get(uav.uav_id, (LinkFacts(), LoadedFacts()))
         order, is_changing = orders.get(uav.uav_id, (None, False))
         limits = sound_limits(stated[uav.uav_id])
         inputs = DetectorInput(
@@ -156,12 +156,12 @@ def _with_conflicts(situations: list[DetectorInput]) -> list[DetectorInput]:
     return [replace(inputs, conflicts=tuple(met[inputs.uav.uav_id])) if inputs.uav.uav_id in met else inputs for inputs in situations]
 
 
-def _zones(uav: WatchedUav, limits: Limits, zones: ZonesAbout) -> tuple[NearZone, ...]:
+def _zones(uav: WatchedUav, limits: AlertLimits, zones: ZonesAbout) -> tuple[NearZone, ...]:
     position = None if uav.newest is None else position_of(uav.newest)
     return () if position is None else zones.within(position, max(MIN_REACH_M, MAX_SPEED_MPS * limits.zone_ahead_s))
 
 
-def _held(uav: WatchedUav, loaded: Loaded, *, is_changing: bool) -> OnboardState:
+def _held(uav: WatchedUav, loaded: LoadedFacts, *, is_changing: bool) -> OnboardState:
     if loaded.approval_id is None or loaded.flight is None:
         return OnboardState(doubt=loaded.doubt, is_changing=is_changing)
     content = approved_content(loaded.approval_id, uav.uav_id, loaded.flight)

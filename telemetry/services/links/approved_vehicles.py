@@ -13,7 +13,7 @@ from mavlink.rtl import fence_off_by
 from mavlink.vehicle_class import VehicleClass, class_of
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval.document import frozen_route
-from missions.services.commands.refused import Reason
+from missions.services.commands.refused import RefusalReason
 from telemetry.models import UavLink
 
 KINDS = {
@@ -26,7 +26,7 @@ KINDS = {
 }
 
 
-def reasons_of_vehicles(mission: Mission) -> list[Reason]:
+def reasons_of_vehicles(mission: Mission) -> list[RefusalReason]:
     """Of UAVs that were heard by MAVLink; of others nothing is known yet, and the upload tells."""
     routes = [route for route in mission.routes.all() if route.geometry is not None]
     routes = [route for route in routes if route.mission_uav.uav is not None and route.mission_uav.uav.link == LinkKind.MAVLINK]
@@ -51,10 +51,10 @@ def connection_warnings(uav: Uav, link: UavLink) -> list[str]:
     return [words for words in (kind_refusal(uav.name, link), fence) if words]
 
 
-def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[Reason]:
+def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[RefusalReason]:
     name, place = route.mission_uav.name, route.mission_uav.sequence
     if refused := kind_refusal(name, link):
-        yield Reason("vehicle_class", refused, place)
+        yield RefusalReason("vehicle_class", refused, place)
         return
     if link.autopilot not in COMMANDED:
         return
@@ -73,4 +73,4 @@ def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[Reason]:
         words = _(
             "%(autopilot)s of %(uav)s does not know %(command)s, at waypoint %(waypoint)s. Choose another task, or update its firmware."
         )
-        yield Reason("unknown_items", words % values, place)
+        yield RefusalReason("unknown_items", words % values, place)

@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
-from mavlink.decoding.companion_reports import FaultyReport, Report, read_report
+from mavlink.decoding.companion_reports import CompanionReport, FaultyReport, read_report
 from mavlink.decoding.measurement import Measurement
 from missions.models import LinkKind, MissionUav
 from telemetry.models import TelemetryRecord
@@ -35,7 +35,7 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
 
     `place` is where the UAV was last: longitude, latitude [deg]. `sent` is decoded JSON.
     """
-    read: dict[int, Report] = {}
+    read: dict[int, CompanionReport] = {}
     refused: list[RefusedReport] = []
     for index, record in enumerate(sent):
         try:
@@ -70,7 +70,7 @@ def _own_missions(uav_id: int, named: set[UUID]) -> set[UUID]:
     return set(MissionUav.objects.filter(uav_id=uav_id, mission_id__in=named).values_list("mission_id", flat=True))
 
 
-def _new_record(report: Report, uav_id: int, stream: str, received_at: datetime) -> NewRecord:
+def _new_record(report: CompanionReport, uav_id: int, stream: str, received_at: datetime) -> NewRecord:
     longitude_deg, latitude_deg = report.position or (None, None)
     values: dict[str, Any] = dict(report.values)
     return NewRecord(

@@ -26,7 +26,7 @@ class ReceivedText:
 
 
 @dataclass(frozen=True)
-class Received:
+class ReceivedBatch:
     records: Sequence[NewRecord] = ()
     links: Sequence[LinkState] = ()
     texts: Sequence[ReceivedText] = ()
@@ -37,7 +37,7 @@ class Received:
 
 
 @transaction.atomic
-def store_received(*, received: Received, holder: str) -> StoredCount:
+def store_received(*, received: ReceivedBatch, holder: str) -> StoredCount:
     stored = store_records(received.records) if received.records else StoredCount()
     save_links(states=received.links, holder=holder)
     if received.texts:

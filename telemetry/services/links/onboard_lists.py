@@ -15,7 +15,7 @@ from telemetry.models import UavLink
 
 
 @dataclass(frozen=True)
-class Loaded:
+class LoadedLists:
     """`sha256` is a FlightLoad's. `beside` names lists of the vehicle's own that were left beside it, by kind: fence or rally."""
 
     sha256: str
@@ -39,11 +39,11 @@ class Carried:
         return cls(command.pk, command.uav_id, command.attempts, command.holder)
 
 
-def loaded_on(uav_id: int) -> Loaded | None:
+def loaded_on(uav_id: int) -> LoadedLists | None:
     link = UavLink.objects.filter(uav=uav_id).exclude(loaded_sha256="").first()
     if link is None or link.loaded_approval is None or link.loaded_flight is None:
         return None
-    return Loaded(link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_beside, link.loaded_doubt)
+    return LoadedLists(link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_beside, link.loaded_doubt)
 
 
 class Doubt(StrEnum):
@@ -61,7 +61,7 @@ def doubt_loaded(*, uav_id: int, doubt: Doubt, ago_s: float) -> None:
     doubted.filter(loaded_doubt__in=weaker).update(loaded_doubt=doubt)
 
 
-def confirm_loaded(carried: Carried, loaded: Loaded) -> None:
+def confirm_loaded(carried: Carried, loaded: LoadedLists) -> None:
     """It was read back once more, and is still there."""
     UavLink.objects.filter(uav=carried.uav_id, loaded_sha256=loaded.sha256).update(loaded_read_at=Now(), loaded_doubt="")
 
@@ -75,7 +75,7 @@ def begin_loading(carried: Carried) -> bool:
     return True
 
 
-def end_loading(carried: Carried, loaded: Loaded | None, *, note: str = "", warnings: str = "") -> bool:
+def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: str = "", warnings: str = "") -> bool:
     """The vehicle holds what it was to hold: `loaded`, or nothing."""
     with transaction.atomic():
         if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note, warnings=warnings):
@@ -84,7 +84,7 @@ def end_loading(carried: Carried, loaded: Loaded | None, *, note: str = "", warn
     return True
 
 
-def fail_loading(carried: Carried, before: Loaded | None, code: str, words: str) -> bool:
+def fail_loading(carried: Carried, before: LoadedLists | None, code: str, words: str) -> bool:
     """before: what it held and holds still; None where that is not known, or nothing that was approved."""
     with transaction.atomic():
         if not note_failed(carried.command_id, code, words, attempt=carried.attempt, holder=carried.holder):
@@ -93,7 +93,7 @@ def fail_loading(carried: Carried, before: Loaded | None, code: str, words: str)
     return True
 
 
-def _write(uav_id: int, loaded: Loaded | None) -> None:
+def _write(uav_id: int, loaded: LoadedLists | None) -> None:
     link = UavLink.objects.filter(uav=uav_id)
     if loaded is None:
         link.update(loaded_sha256="", loaded_approval=None, loaded_flight=None, loaded_read_at=None, loaded_doubt="", loaded_beside={})

@@ -19,7 +19,7 @@ from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, a
 from missions.services.commands.rtl_check import zones_applying
 from missions.services.commands.steering import mission_in_hand
 from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
-from telemetry.services.links.onboard_lists import Loaded, loaded_on
+from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 
 FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
 
@@ -64,7 +64,7 @@ def on_board(uav: Uav) -> OnBoard | None:
     return held_flight(approval, uav.pk, loaded_on(uav.pk))
 
 
-def held_flight(approval: Approval, uav_id: int, loaded: Loaded | None) -> OnBoard | None:
+def held_flight(approval: Approval, uav_id: int, loaded: LoadedLists | None) -> OnBoard | None:
     """None where the UAV was not seen to hold a flight of this approval, or may hold another list since."""
     if loaded is None or loaded.doubt or loaded.approval != approval.pk:
         return None

@@ -14,7 +14,7 @@ from inspection.selectors import asset_label, assets_near, ground_heights_m
 from inspection.selectors.zone_table import zone_table
 from missions.models import Uav
 from missions.services.commands.rtl_check import zones_applying
-from telemetry.selectors.present import Present, Received, last_received
+from telemetry.selectors.present import LastReceived, PresentPosition, last_received
 
 BESIDE_M = 30.0  # from where it comes down: what wind and position errors may carry it into
 BELOW_M = 3.0
@@ -39,7 +39,7 @@ class LandingHere:
     """`warnings` are sentences about what is in the way of a landing; `facts` about the rest. None: not known."""
 
     uav: Uav
-    present: Present | None
+    present: PresentPosition | None
     altitude_agl_m: float | None = None
     slope_deg: float | None = None
     assets: tuple[NearAsset, ...] = ()
@@ -72,7 +72,7 @@ def landing_here(*, uav: Uav, now: datetime) -> LandingHere:
     return LandingHere(uav, present, agl_m, slope_deg, assets, zones, tuple(warnings), tuple(facts))
 
 
-def _height_m(received: Received, present: Present) -> float | None:
+def _height_m(received: LastReceived, present: PresentPosition) -> float | None:
     """Above the ground below, as it measures, else by the terrain model."""
     if received.altitude_agl_m is not None and present.is_measured:
         return round(received.altitude_agl_m, 1)
@@ -83,7 +83,7 @@ def _height_m(received: Received, present: Present) -> float | None:
     return None if math.isnan(height_m) else round(height_m, 1)
 
 
-def _slope_deg(present: Present) -> float | None:
+def _slope_deg(present: PresentPosition) -> float | None:
     """The steepest fall or rise of the terrain model from straight below to any side."""
     position, about_m = present.position, max(SLOPE_ABOUT_M, present.uncertainty_m)
     bearing = np.radians(np.arange(0.0, 360.0, 45.0))
@@ -95,7 +95,7 @@ def _slope_deg(present: Present) -> float | None:
     return round(math.degrees(math.atan(float(np.abs(heights_m[1:] - heights_m[0]).max()) / about_m)), 1)
 
 
-def _zones(present: Present, agl_m: float | None, now: datetime) -> tuple[str, ...]:
+def _zones(present: PresentPosition, agl_m: float | None, now: datetime) -> tuple[str, ...]:
     """Zones in force that it touches on its way down, by their names."""
     begin_s = now.timestamp()
     near, _facts = zones_applying(zone_table(), present.places(), (begin_s, begin_s + LASTS_S))
@@ -109,7 +109,7 @@ def _zones(present: Present, agl_m: float | None, now: datetime) -> tuple[str, .
     return tuple(name for name, is_touched in zip(below.names, touched, strict=True) if is_touched)
 
 
-def _asset_words(asset: Asset, away_m: float, present: Present) -> str:
+def _asset_words(asset: Asset, away_m: float, present: PresentPosition) -> str:
     values = {"kind": asset.get_kind_display(), "name": asset_label(asset), "metres": f"{away_m:.0f}"}
     if away_m <= BELOW_M + present.uncertainty_m:
         return _("%(kind)s %(name)s is below it.") % values

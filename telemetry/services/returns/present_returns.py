@@ -25,11 +25,11 @@ from planning.separation.separation import TimedRoute, conflicts
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying
 from telemetry.selectors.in_the_air import reported_in_the_air
-from telemetry.selectors.present import Present, Received, last_received
+from telemetry.selectors.present import LastReceived, PresentPosition, last_received
 from telemetry.services.returns.along_route import FURTHER, AlongRoute, along_route, on_board
 from telemetry.services.returns.safe_returns import (
     BatteryAtLanding,
-    Flown,
+    ReturningUav,
     SafeReturn,
     along_landing_percent,
     battery_at_landing,
@@ -63,7 +63,7 @@ class PresentReturn:
 
     check: ReturnCheck
     mission: UUID | None
-    present: Present | None
+    present: PresentPosition | None
     distance_m: float | None
     duration_s: float | None
     level_m: float | None
@@ -79,18 +79,18 @@ class PresentReturn:
 
 
 @dataclass
-class _Air:
+class _AirTraffic:
     """The straight returns of those that are told, in their order, and what all others in the air do meanwhile."""
 
-    returning: list[Flown]
-    others: list[tuple[Flown, TimedRoute]] = field(default_factory=list)
+    returning: list[ReturningUav]
+    others: list[tuple[ReturningUav, TimedRoute]] = field(default_factory=list)
 
 
 def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn]:
     """For each of these UAVs of one organisation, as if all of them were told to return at this moment. Raises NoGraph."""
     refused = {command.uav_id for command in stuck_returns() if command.kind == CommandKind.SET_RETURN_HEIGHT}
     flown = [_checked(replace(_flown(received), keeps_height=received.uav.pk in refused), now) for received in last_received(uavs, now)]
-    air = _Air([one for one in flown if one.straight is not None])
+    air = _AirTraffic([one for one in flown if one.straight is not None])
     air.others = _others(uavs, now)
     met, safest = _met(air), safest_returns(air.returning, [way for _other, way in air.others])
     found = []
@@ -139,14 +139,16 @@ def _met_words(met: MetOnReturn) -> str:
 # one UAV
 
 
-def _flown(received: Received) -> Flown:
+def _flown(received: LastReceived) -> ReturningUav:
     """Where it is and how it would return, its way home not yet looked at."""
     uav, present = received.uav, received.present
     mission = mission_in_hand(uav)
     place = None if mission is None else mission.mission_uavs.filter(uav=uav).first()
     rally = [] if mission is None or place is None else rally_points(mission, place.sequence)
     reported = reported_return(uav, uav.name, has_rally=bool(rally))
-    one = Flown(received, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally)
+    one = ReturningUav(
+        received, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally
+    )
     home = received.home or (None if place is None else LonLat(*(place.home or place.start).coords[:2]))
     if present is None or present.altitude_relative_m is None or present.uncertainty_m > MAX_UNCERTAINTY_M or home is None:
         return one
@@ -158,7 +160,7 @@ def _flown(received: Received) -> Flown:
     return replace(one, home=home, straight=straight, base_m=base_m, goal_m=goal_m)
 
 
-def _checked(one: Flown, now: datetime) -> Flown:
+def _checked(one: ReturningUav, now: datetime) -> ReturningUav:
     """With what is in its way home. One on the ground has none."""
     received, present, own = one.received, one.received.present, one.own
     if received.is_in_air is False:
@@ -178,7 +180,7 @@ def _checked(one: Flown, now: datetime) -> Flown:
     return replace(one, check=ways.checked(one.check, own), ways=ways)
 
 
-def _along(one: Flown, present: Present, now: datetime) -> AlongRoute | None:
+def _along(one: ReturningUav, present: PresentPosition, now: datetime) -> AlongRoute | None:
     """Only of one that was measured: the way from an uncertain place to its route is looked at by nobody."""
     held = on_board(one.received.uav) if present.is_measured and present.uncertainty_m <= MAX_ALONG_UNCERTAINTY_M else None
     if held is None or present.altitude_relative_m is None:
@@ -187,7 +189,7 @@ def _along(one: Flown, present: Present, now: datetime) -> AlongRoute | None:
     return along_route(held, position=present.position, height_m=present.altitude_relative_m, waypoint=waypoint, now=now)
 
 
-def _from_route(one: Flown) -> ReturnCheck:
+def _from_route(one: ReturningUav) -> ReturnCheck:
     """Nobody knows where it is: from all along its route."""
     if one.check.state != ReturnState.CLEAR:
         return one.check
@@ -207,7 +209,7 @@ def _goal(
     return min(goals, key=lambda goal: length_m(position, goal[0]))
 
 
-def _base_m(received: Received, home: LonLat) -> float:
+def _base_m(received: LastReceived, home: LonLat) -> float:
     """Above the sea: of the ground where it took off, else as it reports; NaN where nobody knows."""
     ground_m = float(ground_heights_m(np.array([home]))[0])
     if not math.isnan(ground_m):
@@ -220,7 +222,7 @@ def _ground_m(goal: LonLat, base_m: float) -> float:
     return base_m if math.isnan(ground_m) else ground_m
 
 
-def _level_m(one: Flown) -> float | None:
+def _level_m(one: ReturningUav) -> float | None:
     """At which it flies home, above its take-off."""
     if one.straight is None or one.received.present is None or math.isnan(one.straight.level_m):
         return None
@@ -230,7 +232,7 @@ def _level_m(one: Flown) -> float | None:
 # others
 
 
-def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[Flown, TimedRoute]]:
+def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[ReturningUav, TimedRoute]]:
     """UAVs of the organisation in the air that are not told, with what they do from now on; not simulated ones beside real ones."""
     returning_ids = {uav.pk for uav in uavs}
     organisations = {uav.organisation_id for uav in uavs}
@@ -247,7 +249,7 @@ def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[Flown, TimedRoute]
     return found
 
 
-def _going_on(one: Flown) -> TimedRoute:
+def _going_on(one: ReturningUav) -> TimedRoute:
     """As it is now: on its way home, along its route, or where it is."""
     received, present = one.received, one.received.present
     assert present is not None  # noqa: S101 - asked by the caller
@@ -262,7 +264,7 @@ def _going_on(one: Flown) -> TimedRoute:
     return flying_on(received.uav.name, [(present.position, height_m, 0.0), *ahead], one.place.cruise_speed_mps, lands=lands)
 
 
-def _ahead(one: Flown) -> list[tuple[LonLat, float, float]]:
+def _ahead(one: ReturningUav) -> list[tuple[LonLat, float, float]]:
     """Points of its route from the waypoint on to which it flies: position, height above the sea, seconds there."""
     route = Route.objects.filter(mission=one.mission, mission_uav=one.place, geometry__isnull=False).first()
     if route is None or one.received.waypoint_sequence is None:
@@ -278,13 +280,13 @@ def _ahead(one: Flown) -> list[tuple[LonLat, float, float]]:
 # all of them
 
 
-def _rules(one: Flown, other: Flown) -> SeparationRules:
+def _rules(one: ReturningUav, other: ReturningUav) -> SeparationRules:
     planned = settings.SEPARATION_RULES
     lateral_m = planned.lateral_m + one.uncertainty_m + other.uncertainty_m
     return SeparationRules(lateral_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
 
 
-def _met(air: _Air) -> Mapping[int, list[MetOnReturn]]:
+def _met(air: _AirTraffic) -> Mapping[int, list[MetOnReturn]]:
     """By UAV: whom it meets if all that are told return at once, the nearest in time first."""
     found: dict[int, list[MetOnReturn]] = {one.received.uav.pk: [] for one in air.returning}
     at_once = [(one, one.straight.after(0.0)) for one in air.returning if one.straight is not None]

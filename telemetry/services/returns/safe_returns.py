@@ -16,7 +16,7 @@ from missions.services.commands.start_slots import KEPT_SHARE
 from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute
 from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on
-from telemetry.selectors.present import Received
+from telemetry.selectors.present import LastReceived
 from telemetry.services.returns.along_route import AlongRoute
 
 MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
@@ -56,10 +56,10 @@ class SafeReturn:
 
 
 @dataclass(frozen=True)
-class Flown:
+class ReturningUav:
     """What is known of a UAV in the air, and its straight return; None where nobody knows from or to where that leads."""
 
-    received: Received
+    received: LastReceived
     mission: Mission | None
     place: MissionUav | None
     check: ReturnCheck
@@ -78,7 +78,7 @@ class Flown:
         return 0.0 if self.received.present is None else min(self.received.present.uncertainty_m, MAX_WIDENING_M)
 
 
-def battery_at_landing(received: Received) -> BatteryAtLanding:
+def battery_at_landing(received: LastReceived) -> BatteryAtLanding:
     """By what the watch has made of its reports; with the reason where that is not known."""
     values, forecast = {"uav": received.uav.name}, received.battery
     if received.is_in_air is False:
@@ -95,7 +95,7 @@ def battery_at_landing(received: Received) -> BatteryAtLanding:
     return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
 
 
-def along_landing_percent(one: Flown, battery: BatteryAtLanding) -> float | None:
+def along_landing_percent(one: ReturningUav, battery: BatteryAtLanding) -> float | None:
     """Left at the landing after a return along the route, by what the straight way home takes for each of its seconds."""
     if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
         return None
@@ -103,7 +103,7 @@ def along_landing_percent(one: Flown, battery: BatteryAtLanding) -> float | None
     return round(battery.left_percent - per_s * one.along.path.duration_s, 1)
 
 
-def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:
+def safest_returns(returning: Sequence[ReturningUav], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:
     """By UAV: a return in which none comes near another; those with the least battery to spare choose first.
 
     others: what all others in the air do. Straight at once where that is clear; else at a height of its own, along its route, or after
@@ -113,7 +113,7 @@ def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> 
         return {}
     batteries = {one.received.uav.pk: battery_at_landing(one.received) for one in returning}
 
-    def spare(one: Flown) -> float:
+    def spare(one: ReturningUav) -> float:
         battery = batteries[one.received.uav.pk]
         return math.inf if battery.landing_percent is None else battery.landing_percent - (battery.reserve_percent or 0.0)
 
@@ -131,7 +131,7 @@ def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> 
     }
 
 
-def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, TimedRoute]]:
+def _choices(one: ReturningUav, battery: BatteryAtLanding) -> list[tuple[SafeReturn, TimedRoute]]:
     """Ways home with nothing in the way, as far as its battery allows, the best first."""
     if one.straight is None:
         return []
@@ -156,14 +156,14 @@ def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, Ti
     return [*found, *last]
 
 
-def _along(one: Flown, straight: StraightReturn, uav: str) -> list[tuple[SafeReturn, TimedRoute]]:
+def _along(one: ReturningUav, straight: StraightReturn, uav: str) -> list[tuple[SafeReturn, TimedRoute]]:
     if one.along is None or one.place is None:
         return []
     points = [(place, one.base_m + height_m, hold_s) for place, height_m, hold_s in one.along.points]
     return [(SafeReturn(along_route=True), flying_on(uav, points, straight.speed_mps, lands=True))]
 
 
-def _heights(one: Flown) -> list[tuple[float, StraightReturn]]:
+def _heights(one: ReturningUav) -> list[tuple[float, StraightReturn]]:
     """Return heights that can be set on it, at which nothing is in the way, with the return: at least the separation apart."""
     own, present, straight = one.own, one.received.present, one.straight
     if one.keeps_height or own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:

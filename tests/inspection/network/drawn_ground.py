@@ -7,7 +7,7 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy.wgs84 import WGS84
-from inspection.network.infrastructure import NO_OSM_NODE, GroundData, Places, Ways, Zones
+from inspection.network.infrastructure import NO_OSM_NODE, GroundData, InfrastructurePlaces, InfrastructureWays, Zones
 
 LAT, LON = 47.0, 9.0
 
@@ -22,8 +22,8 @@ def lonlat(spot: Spot) -> Spot:
     return lon, lat
 
 
-def places(spots: Sequence[Spot], *, first_asset: int, osm: Sequence[int] = (), heights: Sequence[float] = ()) -> Places:
-    return Places(
+def places(spots: Sequence[Spot], *, first_asset: int, osm: Sequence[int] = (), heights: Sequence[float] = ()) -> InfrastructurePlaces:
+    return InfrastructurePlaces(
         asset=first_asset + np.arange(len(spots), dtype=np.int64),
         osm_node=np.array(osm if len(osm) else [NO_OSM_NODE] * len(spots), dtype=np.int64),
         position=np.array([lonlat(spot) for spot in spots], dtype=np.float64).reshape(-1, 2),
@@ -31,9 +31,9 @@ def places(spots: Sequence[Spot], *, first_asset: int, osm: Sequence[int] = (), 
     )
 
 
-def ways(*vertices: Sequence[Spot], first_asset: int, osm: Sequence[Sequence[int]] = ()) -> Ways:
+def ways(*vertices: Sequence[Spot], first_asset: int, osm: Sequence[Sequence[int]] = ()) -> InfrastructureWays:
     nodes = [list(row) for row in osm] if len(osm) else [[NO_OSM_NODE] * len(way) for way in vertices]
-    return Ways(
+    return InfrastructureWays(
         asset=first_asset + np.arange(len(vertices), dtype=np.int64),
         height_m=np.full(len(vertices), np.nan),
         first=np.concatenate([[0], np.cumsum([len(way) for way in vertices])]).astype(np.int64),
@@ -52,7 +52,12 @@ def square(middle: Spot, half_m: float) -> BaseGeometry:
 
 
 def ground(
-    *, supports: Places | None = None, bridges: Places | None = None, lines: Ways | None = None, railways: Ways | None = None, zones=()
+    *,
+    supports: InfrastructurePlaces | None = None,
+    bridges: InfrastructurePlaces | None = None,
+    lines: InfrastructureWays | None = None,
+    railways: InfrastructureWays | None = None,
+    zones=(),
 ) -> GroundData:
     return GroundData(
         revision=1,

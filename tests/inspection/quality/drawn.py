@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
+from inspection.network.infrastructure import NO_OSM_NODE, InfrastructurePlaces, InfrastructureWays
 from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts
 
 FRAME = LocalFrame.around(10.0, 56.0)
@@ -39,7 +39,7 @@ def ground(
         line_facts=_facts(len(lines), voltages_v or [()] * len(lines), voltage_text or no_text, subtypes or ["line"] * len(lines)),
         railways=_ways([[(0.0, 9_000.0), (100.0, 9_000.0)]] * len(railway_volts)),
         railway_facts=_facts(len(railway_volts), railway_volts, [""] * len(railway_volts), ["rail"] * len(railway_volts)),
-        supports=Places(
+        supports=InfrastructurePlaces(
             asset=np.arange(101, 101 + len(towers)),
             osm_node=np.full(len(towers), NO_OSM_NODE),
             position=at(*towers),
@@ -55,10 +55,10 @@ def ground(
     )
 
 
-def _ways(lines: Sequence[Sequence[Metres]]) -> Ways:
+def _ways(lines: Sequence[Sequence[Metres]]) -> InfrastructureWays:
     positions = [at(*line) for line in lines]
     count = [len(line) for line in lines]
-    return Ways(
+    return InfrastructureWays(
         asset=np.arange(1, 1 + len(lines)),
         height_m=np.full(len(lines), np.nan),
         first=np.concatenate([[0], np.cumsum(count)]).astype(np.int64),

@@ -6,9 +6,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.decoding.measurement import LinkQuality, Measurement
-from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_vehicle
+from mavlink.decoding.report import FlownState, MeasurementDecoder, StatusText, TextCollector, is_vehicle
 
-NOT_REPORTED = Flown()
+NOT_REPORTED = FlownState()
 
 
 def position(**changed):
@@ -26,14 +26,14 @@ def position(**changed):
 
 
 def measured(*messages, at_s=0.0, flown=NOT_REPORTED, **changed) -> Measurement:
-    reporter = Reporter()
+    reporter = MeasurementDecoder()
     for message in messages:
         reporter.receive(message, 0.0)
     return reporter.measurement(position(**changed), flown, at_s)
 
 
 def test_a_position_alone():
-    assert measured(flown=Flown("AUTO", True, False, 3, 98.5)) == Measurement(
+    assert measured(flown=FlownState("AUTO", True, False, 3, 98.5)) == Measurement(
         longitude_deg=10.1, latitude_deg=55.3, altitude_amsl_m=30.5, altitude_relative_m=20.25, velocity_north_mps=1.0,
         velocity_east_mps=-2.5, velocity_down_mps=0.05, heading_deg=275.12, mode="AUTO", is_armed=True, is_in_air=False, mission_item=3,
         link_quality_percent=98.5,

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.compare import Found, are_identical, differences, found, mix_in_words
+from mavlink.mission_sync.compare import ReadbackMatch, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.wire import OnboardItem, OnboardList, onboard_item
 from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot
@@ -167,18 +167,18 @@ NEW, OLD = load(9).mission, load(7, east=500).mission
 @pytest.mark.parametrize(
     ("held", "reported"),
     [
-        (NEW, Found.APPROVED),
-        ((), Found.NOTHING),
-        (OLD, Found.KNOWN),
-        (NEW[:3] + OLD[3:], Found.MIXED),
-        (NEW[:5], Found.MIXED),
-        (OLD[:5], Found.MIXED),
-        (load(7, east=9_000).mission, Found.FOREIGN),
-        (NEW[:3] + load(7, east=9_000).mission[3:], Found.FOREIGN),
+        (NEW, ReadbackMatch.APPROVED),
+        ((), ReadbackMatch.NOTHING),
+        (OLD, ReadbackMatch.KNOWN),
+        (NEW[:3] + OLD[3:], ReadbackMatch.MIXED),
+        (NEW[:5], ReadbackMatch.MIXED),
+        (OLD[:5], ReadbackMatch.MIXED),
+        (load(7, east=9_000).mission, ReadbackMatch.FOREIGN),
+        (NEW[:3] + load(7, east=9_000).mission[3:], ReadbackMatch.FOREIGN),
     ],
 )
 @pytest.mark.parametrize("autopilot_type", [PX4, ARDUPILOT])
-def test_list_is_told_from_what_was_approved(autopilot_type: AutopilotType, held: tuple[MissionItem, ...], reported: Found):
+def test_list_is_told_from_what_was_approved(autopilot_type: AutopilotType, held: tuple[MissionItem, ...], reported: ReadbackMatch):
     assert found(through(autopilot_type, held), NEW, [OLD], autopilot_type) is reported
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.compare import Found, differences
+from mavlink.mission_sync.compare import ReadbackMatch, differences
 from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import onboard_list
@@ -36,14 +36,14 @@ def messages_in_all(autopilot_type: str) -> int:
     return len(channel.to_vehicle)
 
 
-def contents(vehicle: Vehicle, kind: MissionType) -> Found:
+def contents(vehicle: Vehicle, kind: MissionType) -> ReadbackMatch:
     autopilot_type = AutopilotType(type(vehicle).__name__.lower())
     held = onboard_list(tuple(vehicle.held(kind)), kind, autopilot_type)
     if not differences(NEW.of(kind), held, autopilot_type):
-        return Found.APPROVED
+        return ReadbackMatch.APPROVED
     if not differences(OLD.of(kind), held, autopilot_type):
-        return Found.KNOWN
-    return Found.MIXED if held else Found.NOTHING
+        return ReadbackMatch.KNOWN
+    return ReadbackMatch.MIXED if held else ReadbackMatch.NOTHING
 
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
@@ -58,7 +58,7 @@ def test_ground_station_dies_at_each_message(autopilot_type: str):
         found = {kind: contents(vehicle, kind) for kind in MissionType}
         next_one = keeper_for(vehicle)
         outcome = Channel(next_one, vehicle).run()
-        mixed = {kind for kind in MissionType if found[kind] is Found.MIXED}
+        mixed = {kind for kind in MissionType if found[kind] is ReadbackMatch.MIXED}
         assert not mixed or autopilot_type == "ardupilot", sent
         assert {mix.kind for mix in outcome.mixes} == mixed, sent
         assert {kind: next_one.found_before[kind] for kind in (MissionType.MISSION, MissionType.FENCE)} == {
@@ -80,7 +80,7 @@ def test_vehicle_dies_at_each_message(autopilot_type: str):
         if outcome.state is SyncState.READY:
             continue  # only the last acknowledgement, of what was read, was lost
         if autopilot_type == "px4":
-            assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), received
+            assert all(contents(vehicle, kind) in (ReadbackMatch.APPROVED, ReadbackMatch.KNOWN) for kind in MissionType), received
         assert stated_what_is_there(outcome, vehicle, NEW, OLD), (received, outcome)
         vehicle.restart()
         assert Channel(keeper_for(vehicle), vehicle).run().state is SyncState.READY
@@ -97,8 +97,8 @@ def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(autopilot_
     outcome = Channel(keeper, vehicle).run()
     assert outcome.code == "unsupported"
     if autopilot_type == "px4":
-        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.INTACT, Found.KNOWN)
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.INTACT, ReadbackMatch.KNOWN)
     else:
-        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.CLEARED, Found.NOTHING)
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.CLEARED, ReadbackMatch.NOTHING)
         assert "are new" in outcome.mixes[-1].words or "is new" in outcome.mixes[-1].words
-    assert contents(vehicle, MissionType.FENCE) is Found.KNOWN
+    assert contents(vehicle, MissionType.FENCE) is ReadbackMatch.KNOWN

@@ -5,7 +5,7 @@ from itertools import permutations
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.mission_sync.flown_items import FlightWatch, Flown
+from mavlink.mission_sync.flown_items import FlightWatch, FlownMissionItem
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
 from tests.telemetry.vehicles.loads import AUTOPILOT_TYPES, mission
@@ -49,12 +49,12 @@ def test_a_flight_down_after_its_landing_was_flown(autopilot_type):
     uav.goes_to(5)
     uav.reaches(5)
     uav.goes_to(6)
-    assert uav.reported == [Flown(5)]
+    assert uav.reported == [FlownMissionItem(5)]
     uav.is_seen(armed=True, in_air=False)
     uav.is_seen(armed=False, in_air=False)
     uav.is_seen(armed=False, in_air=False)
     down = uav.reported[-1]
-    assert uav.reported == [Flown(5), Flown(6, is_reached=False, is_down=True)] and down.is_whole(LANDING)
+    assert uav.reported == [FlownMissionItem(5), FlownMissionItem(6, is_reached=False, is_down=True)] and down.is_whole(LANDING)
     assert not down.is_whole(HOVERING), "whose last place was not reached"
 
 
@@ -66,7 +66,7 @@ def test_a_flight_that_hovers_was_flown_once_it_is_down(autopilot_type):
     uav.reaches(6)
     uav.is_seen(armed=True, in_air=True, in_mission=False)
     uav.is_seen(armed=False, in_air=False, in_mission=False)
-    assert uav.reported[-1] == Flown(6, is_down=True) and uav.reported[-1].is_whole(HOVERING)
+    assert uav.reported[-1] == FlownMissionItem(6, is_down=True) and uav.reported[-1].is_whole(HOVERING)
 
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
@@ -108,7 +108,7 @@ def test_an_ardupilot_that_has_landed_has_flown_its_list_in_whatever_order_it_te
     for number, what in enumerate(order):
         uav.now_s += 0.9 * bool(number)
         uav.feed(says[what])
-    assert [flown for flown in uav.reported if flown.is_down] == [Flown(6, is_reached=False, is_down=True)]
+    assert [flown for flown in uav.reported if flown.is_down] == [FlownMissionItem(6, is_reached=False, is_down=True)]
     assert uav.reported[-1].is_whole(LANDING)
 
 

@@ -6,7 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import PX4_AUTO, AutopilotType
-from mavlink.mission_sync.compare import Found, differences
+from mavlink.mission_sync.compare import ReadbackMatch, differences
 from mavlink.mission_sync.outcome import SyncOutcome, SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import onboard_list
@@ -187,7 +187,7 @@ def test_list_that_nobody_approved_is_seen_from_the_beginning():
     vehicle = holding("ardupilot", load(9, east=99_999))
     keeper = keeper_for(vehicle)
     Channel(keeper, vehicle).run()
-    assert keeper.found_before[MissionType.MISSION] is Found.FOREIGN
+    assert keeper.found_before[MissionType.MISSION] is ReadbackMatch.FOREIGN
 
 
 def test_mix_of_an_earlier_ground_station_is_named_from_the_beginning():
@@ -195,7 +195,7 @@ def test_mix_of_an_earlier_ground_station_is_named_from_the_beginning():
     vehicle.lists[MissionType.MISSION][1:5] = NEW.mission[:4]
     keeper = keeper_for(vehicle)
     outcome = Channel(keeper, vehicle).run()
-    assert keeper.found_before[MissionType.MISSION] is Found.MIXED
+    assert keeper.found_before[MissionType.MISSION] is ReadbackMatch.MIXED
     assert (outcome.state, len(outcome.mixes)) == (SyncState.READY, 1)
 
 

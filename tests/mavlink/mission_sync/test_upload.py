@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.mission_sync.upload import TransferState, Upload
+from mavlink.mission_sync.upload import ListUpload, TransferState
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.telemetry.vehicles.loads import ADDRESSING, mission
@@ -30,14 +30,14 @@ def ack(result: int, kind: int = MISSION, to: tuple[int, int] = GROUND) -> Any:
     return received(mavlink.MAVLink_mission_ack_message(*to, result, kind))
 
 
-def begun(items: tuple[Any, ...] = ITEMS) -> Upload:
-    upload = Upload(items, MissionType.MISSION, ADDRESSING, RULES)
+def begun(items: tuple[Any, ...] = ITEMS) -> ListUpload:
+    upload = ListUpload(items, MissionType.MISSION, ADDRESSING, RULES)
     (count,) = upload.start(0.0)
     assert (count.get_type(), count.count, count.mission_type) == ("MISSION_COUNT", len(items), MISSION)
     return upload
 
 
-def sent_to(upload: Upload, last: int) -> Upload:
+def sent_to(upload: ListUpload, last: int) -> ListUpload:
     """Asked for items up to this one."""
     for number in range(last + 1):
         upload.receive(request(number), 0.1)

@@ -10,7 +10,7 @@ from mavlink.vehicle_plan import MissionItem
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.events import Event, ItemReached
 from simulation.flight.faults import Weather
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
 
 HOME = LonLat(9.0, 47.0)
@@ -60,7 +60,7 @@ def wind(speed_mps: float, from_deg: float = 270.0, **more: float) -> Weather:
 
 def begin(uav: SimulatedUav) -> None:
     """The mission that was loaded."""
-    for outcome in (uav.set_mode(Mode.MISSION), uav.arm()):
+    for outcome in (uav.set_mode(FlightMode.MISSION), uav.arm()):
         assert outcome.is_done, outcome
 
 

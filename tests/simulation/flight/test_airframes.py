@@ -7,7 +7,7 @@ import pytest
 
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.plant import AXES, MODELS, ROTORS, Plant, flight_model, mixer_of
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, step, wind
 
@@ -78,7 +78,7 @@ def test_stands_still_on_the_ground(airframe: Airframe) -> None:
     assert math.hypot(state.velocity_ned_mps[0], state.velocity_ned_mps[1]) < 0.01
     assert abs(state.altitude_relative_m - uav._body.plant.leg_m) < 0.01
     assert state.heading_deg == pytest.approx(123.0, abs=1.0)
-    assert state.mode is Mode.HOLD
+    assert state.mode is FlightMode.HOLD
 
 
 def test_steps_that_are_too_coarse_for_the_legs_are_refused() -> None:

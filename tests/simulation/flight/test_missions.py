@@ -20,7 +20,7 @@ from simulation.flight.faults import Faults
 from simulation.flight.flown import Ending, fly_mission
 from simulation.flight.manoeuvres import around
 from simulation.flight.orders import CannotFly, orders
-from simulation.flight.states import Landed, MissionState, Mode
+from simulation.flight.states import FlightMode, Landed, MissionItemState
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, at, begin, land, off_m, place, plain, reached, speed, step, take_off, waypoint
 
@@ -73,9 +73,9 @@ def test_approved_flight_is_flown_item_by_item_with_its_tasks(is_home_first: boo
 def test_flight_that_ends_hovering_hovers() -> None:
     flown = fly_mission(uav_with(list(flight_loads(approved(HOVER))[0].mission)))
     assert flown.ending is Ending.HOVERING
-    assert flown.end.mission_state is MissionState.COMPLETE
+    assert flown.end.mission_state is MissionItemState.COMPLETE
     assert flown.end.is_in_air
-    assert flown.end.mode is Mode.HOLD
+    assert flown.end.mode is FlightMode.HOLD
     assert off_m(flown.end.position, place(45.0, 20.0)) < 0.3
 
 
@@ -98,7 +98,7 @@ def test_look_turns_the_uav_to_its_target_before_it_holds(command: int, none: Mi
         if state.current_item == 3 and state.ground_speed_mps < 0.1:
             facing.append(state.heading_deg)
         assert uav.now_s < 60.0
-    while uav.state.mission_state is not MissionState.COMPLETE:
+    while uav.state.mission_state is not MissionItemState.COMPLETE:
         uav.step()
         courses.append(uav.state.heading_deg)
         assert uav.now_s < 90.0
@@ -111,7 +111,7 @@ def test_speed_item_holds_from_its_place_on() -> None:
     uav = uav_with([take_off(), speed(6.0), waypoint(60.0, 0.0), speed(2.0), waypoint(100.0, 0.0)])
     begin(uav)
     fastest: dict[int, float] = {}
-    while uav.state.mission_state is not MissionState.COMPLETE:
+    while uav.state.mission_state is not MissionItemState.COMPLETE:
         uav.step()
         state = uav.state
         fastest[state.current_item] = max(fastest.get(state.current_item, 0.0), state.ground_speed_mps)
@@ -142,7 +142,7 @@ def test_circle_of_jumps_that_flies_nowhere_harms_nobody() -> None:
     begin(uav)
     step(uav, 10.0)
     assert uav.hold().is_done
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
 
 
 def test_mission_that_begins_with_a_waypoint_takes_off_by_itself() -> None:
@@ -159,13 +159,13 @@ def test_pause_and_resume_miss_nothing() -> None:
     assert uav.hold().is_done
     events += step(uav, 8.0)
     state = uav.state
-    assert (state.mode, state.mission_state, state.current_item) == (Mode.HOLD, MissionState.PAUSED, 2)
+    assert (state.mode, state.mission_state, state.current_item) == (FlightMode.HOLD, MissionItemState.PAUSED, 2)
     assert state.ground_speed_mps < 0.1
-    assert uav.set_mode(Mode.MISSION).is_done
+    assert uav.set_mode(FlightMode.MISSION).is_done
     events += step(uav, 30.0)
-    assert uav.state.mission_state is MissionState.COMPLETE
+    assert uav.state.mission_state is MissionItemState.COMPLETE
     assert reached(events) == [0, 1, 2, 3]
-    assert not uav.set_mode(Mode.MISSION).is_done  # complete, and in the air
+    assert not uav.set_mode(FlightMode.MISSION).is_done  # complete, and in the air
 
 
 def test_look_is_kept_over_a_pause() -> None:
@@ -175,7 +175,7 @@ def test_look_is_kept_over_a_pause() -> None:
     step(uav, 25.0)
     uav.hold()
     step(uav, 2.0)
-    uav.set_mode(Mode.MISSION)
+    uav.set_mode(FlightMode.MISSION)
     step(uav, 3.0)
     assert off_m(uav.state.position, place(30.0, 0.0)) < 0.5
     assert uav.state.heading_deg > 350.0 or uav.state.heading_deg < 5.0
@@ -199,7 +199,7 @@ def test_new_mission_in_flight_is_flown_from_there() -> None:
     assert reached(step(uav, 25.0)) == [0, 1]
     assert off_m(uav.state.position, place(20.0, 20.0)) < 0.5
     assert uav.clear().is_done
-    assert uav.state.mission_state is MissionState.NONE
+    assert uav.state.mission_state is MissionItemState.NONE
 
 
 def test_mission_cleared_in_flight_leaves_the_uav_hovering() -> None:
@@ -208,7 +208,7 @@ def test_mission_cleared_in_flight_leaves_the_uav_hovering() -> None:
     step(uav, 15.0)
     assert uav.clear().is_done
     step(uav, 5.0)
-    assert (uav.state.mode, uav.state.is_in_air) == (Mode.HOLD, True)
+    assert (uav.state.mode, uav.state.is_in_air) == (FlightMode.HOLD, True)
     assert uav.state.ground_speed_mps < 0.1
 
 
@@ -243,8 +243,8 @@ def test_mode_changes_tell_who_made_them() -> None:
     uav = uav_with([take_off(), land()])
     flown = fly_mission(uav)
     assert [(event.mode, event.is_own) for event in flown.events if isinstance(event, ModeChanged)] == [
-        (Mode.MISSION, False),
-        (Mode.HOLD, True),
+        (FlightMode.MISSION, False),
+        (FlightMode.HOLD, True),
     ]
 
 

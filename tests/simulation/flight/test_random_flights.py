@@ -11,7 +11,7 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Faults, Weather
-from simulation.flight.states import Gps, Mode, UavState
+from simulation.flight.states import FlightMode, Gps, SimulatedState
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, NAN, place, wind
 
@@ -69,7 +69,7 @@ def order(uav: SimulatedUav, draw: Random) -> None:
         case 4:
             uav.take_off(number)
         case 5:
-            uav.set_mode(draw.choice(list(Mode)))
+            uav.set_mode(draw.choice(list(FlightMode)))
         case 6:
             uav.go_to(LonLat(draw.choice((number, HOME.lon)), draw.choice((number, HOME.lat))), draw.choice((number, 10.0)), number)
         case 7:
@@ -81,10 +81,10 @@ def order(uav: SimulatedUav, draw: Random) -> None:
         case 10:
             uav.faults = faults_of(draw, uav.now_s)
         case _:
-            uav.set_mode(Mode.MISSION)
+            uav.set_mode(FlightMode.MISSION)
 
 
-def numbers(state: UavState) -> list[float]:
+def numbers(state: SimulatedState) -> list[float]:
     found: list[float] = []
     for field in fields(state):
         value = getattr(state, field.name)
@@ -103,7 +103,7 @@ def test_random_flight_never_raises_and_never_tells_what_is_no_number(seed: int)
     airframe = draw.choice(list(AIRFRAMES.values()))
     uav = SimulatedUav(airframe, HOME, weather=weather_of(draw), seed=seed, battery_percent=draw.choice((100.0, 20.0)))
     uav.load([likely_item(draw) for _ in range(5)])
-    uav.set_mode(Mode.MISSION)
+    uav.set_mode(FlightMode.MISSION)
     uav.arm()
     for _ in range(SECONDS):
         if draw.random() < 0.35:
@@ -123,7 +123,7 @@ def test_two_uavs_step_by_step_fly_as_each_would_alone() -> None:
     def fresh(seed: int) -> SimulatedUav:
         uav = SimulatedUav(AIRFRAMES["iris"], HOME, weather=wind(6.0, 200.0, gusts_mps=2.0, turbulence_mps_at_20ft=8.0), seed=seed)
         uav.load([likely_item(Random(number)) for number in range(4)])
-        uav.set_mode(Mode.MISSION)
+        uav.set_mode(FlightMode.MISSION)
         uav.arm()
         return uav
 

@@ -13,7 +13,7 @@ import pytest
 
 from mavlink.vehicle_plan import MissionType
 from simulation.flight.plant import FlatGround
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.mode_numbers import GUIDED, Flavour
 from tests.simulation.fleets import AT, flying, free_port, wait_for
@@ -162,7 +162,7 @@ def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
             wait_for(lambda: uav.state.altitude_relative_m > 5.0, "the take-off")
             station.type_line("long DO_SET_MODE 209 4 3 0 0 0 0")
             station.reported("DO_SET_MODE: ACCEPTED")
-            assert uav.state.mode is Mode.HOLD
+            assert uav.state.mode is FlightMode.HOLD
             station.type_line("long DO_SET_MODE 209 4 4 0 0 0 0")
         station.reported("DISARMED")
         assert not uav.state.is_in_air and uav.state.position.lat == pytest.approx(55.4004, abs=2e-5)

@@ -19,7 +19,7 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind,
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Weather
 from simulation.flight.flown import Ending, fly_mission
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
 from tests.telemetry.estimation.routes import drawn_route, route_on_line
 
@@ -86,7 +86,9 @@ def compared(route: FrozenRoute, code: str, weather: Weather, seed: int, *, phys
     assert uav.load(flight_loads(route)[0].mission).is_done
     flown = fly_mission(uav, sample_steps=25)
     assert flown.ending in {Ending.LANDED, Ending.HOVERING}, flown.ending
-    assert all(getattr(event, "mode", Mode.MISSION) in {Mode.MISSION, Mode.HOLD} for event in flown.events), "it returned by itself"
+    assert all(getattr(event, "mode", FlightMode.MISSION) in {FlightMode.MISSION, FlightMode.HOLD} for event in flown.events), (
+        "it returned by itself"
+    )
     began_s = flown.samples[0].at_s
     return Compared(planned.total_s, planned.total_wh or 0.0, flown.end.at_s - began_s, flown.end.battery_used_wh)
 

@@ -11,11 +11,11 @@ import shapely
 
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.limits import Limits
-from telemetry.alerting.surroundings import NearZone, OnboardState, Order
+from telemetry.alerting.limits import AlertLimits
+from telemetry.alerting.surroundings import IssuedOrder, NearZone, OnboardState
 from tests.telemetry.alerting.truth import START_S, State, TrueFlight
 
-LIMITS = Limits()
+LIMITS = AlertLimits()
 ANY_LEVEL = (WARNING, CRITICAL)
 
 
@@ -190,7 +190,7 @@ def mode_changed(flight: TrueFlight, random: np.random.Generator) -> Fault:
         return replace(here, seconds=state.seconds, east=here.east * (1 - gone), north=here.north * (1 - gone), height_m=here.height_m + 10)
 
     levels = (CRITICAL,) if mode in ("RTL", "LAND") else (WARNING,)
-    order = Order("start", START_S + 5) if random.random() < 0.5 else None
+    order = IssuedOrder("start", START_S + 5) if random.random() < 0.5 else None
     return Fault(
         f"mode {mode}", begins, [("mode-changed", levels, begins)], truth=truth, around=lambda _state, _uav: {"order": order},
         reported=lambda state, values: values | ({"mode": mode} if state.seconds >= begins else {}), lasts_s=60,

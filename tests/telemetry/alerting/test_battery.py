@@ -12,7 +12,7 @@ from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detector_input import WatchedUav
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding, acts_of
-from telemetry.alerting.surroundings import LinkFacts, Order
+from telemetry.alerting.surroundings import IssuedOrder, LinkFacts
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch
@@ -162,7 +162,7 @@ def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone_and_the_alert_s
     assert (finding.level, proposed(finding)) == (CRITICAL, [])
     since = datetime.fromtimestamp(START_S + 3.0, UTC).isoformat()
     assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": False}
-    finding = found(flight, reported(flight, second, 15.0, mode), watch, 9.0, link=link, order=Order("return", START_S))
+    finding = found(flight, reported(flight, second, 15.0, mode), watch, 9.0, link=link, order=IssuedOrder("return", START_S))
     assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": True}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from telemetry.alerting.detectors.link import lost_after_s
-from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_limits, limits_of
+from telemetry.alerting.limits import BOUNDS, AlertLimits, InvalidLimits, checked_limits, limits_of
 from telemetry.alerting.order import CODES, DETECTORS
 
 PAGE = (Path(__file__).resolve().parents[3] / "docs" / "alerts.md").read_text()
@@ -16,17 +16,17 @@ PAGE = (Path(__file__).resolve().parents[3] / "docs" / "alerts.md").read_text()
 @pytest.mark.parametrize("detector", DETECTORS, ids=CODES)
 def test_the_page_states_the_delay_of_each_detector(detector):
     row = next(line for line in PAGE.splitlines() if line.startswith(f"| `{detector.code}` |"))
-    assert f"| {detector.delay_s(Limits(), 1):g} s / {detector.delay_s(Limits(), 10):g} s" in row
+    assert f"| {detector.delay_s(AlertLimits(), 1):g} s / {detector.delay_s(AlertLimits(), 10):g} s" in row
 
 
 def test_the_page_states_when_a_link_counts_as_lost():
-    assert f"lost: {lost_after_s(Limits(), 1) + 1:g} s / {lost_after_s(Limits(), 10) + 1:g} s" in PAGE
+    assert f"lost: {lost_after_s(AlertLimits(), 1) + 1:g} s / {lost_after_s(AlertLimits(), 10) + 1:g} s" in PAGE
 
 
 def test_the_page_states_all_limits():
     stated = re.findall(r"^\| `(\w+)` \| ([\d.]+) \| \(([\d.]+) to ([\d.]+)\) \|$", PAGE, re.MULTILINE)
     assert {name: (float(usual), float(low), float(high)) for name, usual, low, high in stated} == {
-        name: (usual, *BOUNDS[name]) for name, usual in asdict(Limits()).items()
+        name: (usual, *BOUNDS[name]) for name, usual in asdict(AlertLimits()).items()
     }
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from telemetry.alerting.detector_input import DetectorInput, WatchedUav
 from telemetry.alerting.detector_state import DetectorState
-from telemetry.alerting.limits import Limits
+from telemetry.alerting.limits import AlertLimits
 from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.state_machine import RANK, Closed, changes
 from telemetry.alerting.surroundings import OnboardState
@@ -26,7 +26,7 @@ class Event:
 class Watch:
     """Of one UAV."""
 
-    limits: Limits = field(default_factory=Limits)
+    limits: AlertLimits = field(default_factory=AlertLimits)
     detector_state: DetectorState = field(default_factory=DetectorState)
     open_levels: dict[tuple[str, str], str] = field(default_factory=dict)
     events: list[Event] = field(default_factory=list)

@@ -17,7 +17,7 @@ from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import AutopilotType
 from mavlink.commands.actions import Order
 from mavlink.frames import frames_of_datagram
-from mavlink.mission_sync.flown_items import Flown
+from mavlink.mission_sync.flown_items import FlownMissionItem
 from mavlink.signing import FrameWriter
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem
@@ -28,7 +28,7 @@ from telemetry.gateway.database import DatabaseAway
 from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.dispatcher import MAX_UPLOADS, Dispatcher
 from telemetry.gateway.fleet import KnownUav
-from telemetry.gateway.preparation import Task, reason_not_to
+from telemetry.gateway.preparation import DeliveryTask, reason_not_to
 from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
 from telemetry.gateway.store import Store
@@ -93,7 +93,7 @@ def test_nothing_is_sent_on_a_lease_that_may_be_over(settings):
         send=lambda messages: sent.extend(time.monotonic() for _ in messages), unsettled_until_s=lambda _: None,
     )  # fmt: skip
     command = a_command(CommandKind.ARM)
-    database = Database(task_of=Task(order=Order.ARM), renew_claims=lambda: {command.pk: 1}, claim_commands=list)
+    database = Database(task_of=DeliveryTask(order=Order.ARM), renew_claims=lambda: {command.pk: 1}, claim_commands=list)
     desk = a_desk(database, lease_s=0.5)
     began_s = time.monotonic()
     carried = desk._deliveries[command.pk] = Delivery(command, session, database, began_s + 0.4)
@@ -172,7 +172,7 @@ def test_a_list_is_flown_only_from_the_home_it_was_planned_for(order, landed, po
         altitude_amsl_m=100.0, altitude_relative_m=30.0, position_at_s=0.0,
         home=home, home_amsl_m=home_m, home_at_s=0.0, mission_item=1, mission_item_at_s=0.0,
     )  # fmt: skip
-    found = reason_not_to(Task(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
+    found = reason_not_to(DeliveryTask(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
     assert (found and found.code) == code
 
 
@@ -205,7 +205,7 @@ def test_a_uav_in_the_air_goes_on_only_from_the_leg_that_was_approved(order, fac
         "home_at_s": 0.0, "mission_item": 1, "mission_item_at_s": 0.0,
     }  # fmt: skip
     state = VehicleState(7, **usual | facts)
-    found = reason_not_to(Task(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
+    found = reason_not_to(DeliveryTask(order=order, onboard=TO_FAR, take_off=TakeOff(HERE, 100.0)), state, 1.0)
     assert (found and found.code) == code
 
 
@@ -299,7 +299,7 @@ def test_a_clock_that_was_set_back_makes_nobody_wait_for_it():
 
 @pytest.mark.django_db
 @pytest.mark.parametrize(
-    ("facts", "reported"), [({"is_in_air": True}, [Flown(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])]
+    ("facts", "reported"), [({"is_in_air": True}, [FlownMissionItem(6, is_reached=False, is_down=True)]), ({"is_in_air": False}, [])]
 )
 def test_a_flight_ends_though_the_gateway_that_saw_it_was_killed_before(facts, reported):
     uav = unsigned_uav(7)

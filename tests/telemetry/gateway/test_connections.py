@@ -9,7 +9,7 @@ import pytest
 from mavlink.frames import Frame
 from mavlink.signing import FrameWriter
 from telemetry.gateway import peers
-from telemetry.gateway.options import Address
+from telemetry.gateway.options import UdpAddress
 from telemetry.gateway.peers import Listeners
 from tests.telemetry.gateway.station import heartbeat
 
@@ -34,7 +34,7 @@ def listeners(received) -> Listeners:
 
 
 async def connected(listeners: Listeners) -> tuple[int, socket.socket]:
-    (name,) = await listeners.open([], [Address("127.0.0.1", 0)])
+    (name,) = await listeners.open([], [UdpAddress("127.0.0.1", 0)])
     port = int(name.rsplit(":", 1)[1])
     return port, another(port)
 

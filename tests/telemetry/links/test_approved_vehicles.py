@@ -5,7 +5,7 @@ import pytest
 from missions.models import Mission, MissionState, Uav
 from missions.services import TargetRequest
 from missions.services.approval.approval import approve_mission
-from missions.services.commands.refused import Reason, Refused
+from missions.services.commands.refused import RefusalReason, Refused
 from planning.problem import Task, TaskKind
 from telemetry.models import UavLink
 from tests.missions.flights import an_operator, fleet, planned
@@ -26,7 +26,7 @@ def mission(uav) -> Mission:
     return planned(an_operator(), [uav], [TargetRequest(towers[0].pk, task=photo), TargetRequest(towers[1].pk, task=look)])
 
 
-def reasons(mission: Mission) -> list[Reason]:
+def reasons(mission: Mission) -> list[RefusalReason]:
     try:
         approve_mission(mission=mission, actor=mission.author)
     except Refused as refused:

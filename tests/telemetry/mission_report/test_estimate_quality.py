@@ -7,7 +7,7 @@ import pytest
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from telemetry.estimation.estimate import Ellipse
-from telemetry.mission_report.estimate_quality import Estimated, Measured, compare, estimate_quality, quality_of
+from telemetry.mission_report.estimate_quality import Estimated, MeasuredError, compare, estimate_quality, quality_of
 
 FRAME = LocalFrame.around(10.0, 56.0)
 
@@ -21,7 +21,7 @@ def estimated(at_s: float, east_m: float, north_m: float, *, bound: Ellipse | No
 
 
 def test_an_error_is_the_distance_to_the_place_between_two_measurements():
-    measured = [Measured(10.0, place(0, 0), 60.0), Measured(12.0, place(20, 0), 70.0)]
+    measured = [MeasuredError(10.0, place(0, 0), 60.0), MeasuredError(12.0, place(20, 0), 70.0)]
     found = estimate_quality([estimated(11.0, 13, 4)], measured).whole
     assert found.count == 1
     assert found.rms_m == pytest.approx(5.0, abs=0.01)
@@ -30,7 +30,7 @@ def test_an_error_is_the_distance_to_the_place_between_two_measurements():
 
 
 def test_the_bound_is_an_ellipse_along_its_bearing():
-    measured = [Measured(10.0, place(0, 0)), Measured(12.0, place(0, 0))]
+    measured = [MeasuredError(10.0, place(0, 0)), MeasuredError(12.0, place(0, 0))]
     quality = estimate_quality([estimated(11.0, 9, 0), estimated(11.0, 0, 9), estimated(11.0, 8, 4)], measured)
     assert quality.whole.inside_share == pytest.approx(1 / 3)
     turned = [estimated(11.0, 9, 0, bound=Ellipse(10.0, 5.0, 0.0)), estimated(11.0, 0, 9, bound=Ellipse(10.0, 5.0, 0.0))]
@@ -38,14 +38,14 @@ def test_the_bound_is_an_ellipse_along_its_bearing():
 
 
 def test_one_measurement_tells_of_its_own_second_by_its_speed():
-    measured = [Measured(10.0, place(0, 0), None, 10.0, 0.0), Measured(60.0, place(0, 0))]
+    measured = [MeasuredError(10.0, place(0, 0), None, 10.0, 0.0), MeasuredError(60.0, place(0, 0))]
     quality = estimate_quality([estimated(10.4, 4, 3), estimated(30.0, 0, 0)], measured)
     assert quality.whole.rms_m == pytest.approx(3.0, abs=0.01)
     assert quality.untold == 1
 
 
 def test_estimates_are_told_apart_by_the_age_of_the_last_report():
-    measured = [Measured(float(second), place(0, 0)) for second in range(60)]
+    measured = [MeasuredError(float(second), place(0, 0)) for second in range(60)]
     compared, untold = compare([estimated(1.0, 1, 0), estimated(8.0, 2, 0), estimated(9.0, 4, 0), estimated(50.0, 100, 0)], measured)
     quality = quality_of(compared, untold)
     assert [(group.up_to_s, group.count) for group in quality.by_age] == [(2.0, 1), (5.0, 0), (10.0, 2), (30.0, 0), (math.inf, 1)]

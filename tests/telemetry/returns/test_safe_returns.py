@@ -9,22 +9,22 @@ from missions.models import MissionUav, Uav
 from missions.services.commands.rtl_check import ReturnCheck, ReturnState
 from telemetry.alerting.return_path import ReturnPath
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on
-from telemetry.selectors.present import Received
+from telemetry.selectors.present import LastReceived
 from telemetry.services.returns.along_route import AlongRoute
-from telemetry.services.returns.safe_returns import Flown, SafeReturn, safest_returns
+from telemetry.services.returns.safe_returns import ReturningUav, SafeReturn, safest_returns
 
 HERE, NORTH, HOME = LonLat(10.01, 56.0), LonLat(10.01, 56.01), LonLat(10.0, 56.0)
 
 
-def in_the_air(left_percent: float | None, state: ReturnState = ReturnState.IN_THE_WAY) -> Flown:
+def in_the_air(left_percent: float | None, state: ReturnState = ReturnState.IN_THE_WAY) -> ReturningUav:
     """Straight home takes 5 % of the battery, and along the route about four times as much; the reserve is 20 %."""
     battery: dict[str, Any] = {"left_percent": left_percent, "home_percent": 5.0, "reserve_percent": 20.0, "hold_s": 60.0}
-    received = Received(Uav(pk=1, name="Tern"), is_in_air=True, battery_percent=left_percent, battery=battery, battery_age_s=1.0)
+    received = LastReceived(Uav(pk=1, name="Tern"), is_in_air=True, battery_percent=left_percent, battery=battery, battery_age_s=1.0)
     straight = StraightReturn("Tern", HERE, 60.0, HOME, 60.0, 0.0, 10.0)
     path = ReturnPath(1, 1, 10.0, 4_000.0, 4.0 * straight.duration_s(), ())
     along = AlongRoute(path, 1, ((HERE, 60.0, 0.0), (NORTH, 60.0, 0.0), (HOME, 60.0, 0.0)))
     check = ReturnCheck(place=0, name="Tern", uav=1, state=state)
-    return Flown(received, None, MissionUav(), check, None, straight=straight, along=along, base_m=0.0)
+    return ReturningUav(received, None, MissionUav(), check, None, straight=straight, along=along, base_m=0.0)
 
 
 @pytest.mark.parametrize("left_percent", [None, 60.0, 30.0])

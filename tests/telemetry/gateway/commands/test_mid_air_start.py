@@ -11,7 +11,7 @@ from mavlink.autopilot_type import RESTARTS, AutopilotType
 from mavlink.commands.actions import ITEM, Order, plan_of
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
-from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to
+from telemetry.gateway.preparation import CannotCarry, DeliveryTask, as_begun, reason_not_to
 
 HOME = LonLat(10.0, 56.0)
 HELD = {AutopilotType.PX4: 4 << 16 | 3 << 24, AutopilotType.ARDUPILOT: 17}
@@ -40,8 +40,8 @@ def held(autopilot_type: AutopilotType, place: LonLat, height_m: float = 60.0, *
     return state
 
 
-def task(**facts) -> Task:
-    return Task(order=Order.START, onboard=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2, **facts)
+def task(**facts) -> DeliveryTask:
+    return DeliveryTask(order=Order.START, onboard=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2, **facts)
 
 
 @pytest.mark.parametrize("autopilot_type", HELD)
@@ -50,7 +50,7 @@ def test_it_begins_with_the_end_of_the_leg_on_which_it_is_held(autopilot_type, l
     state = held(autopilot_type, LonLat(lon, 56.01))
     assert reason_not_to(task(), state, time.monotonic()) is None
     begun = as_begun(task(), state)
-    assert isinstance(begun, Task) and begun.parameters == {ITEM: float(begins_with)}
+    assert isinstance(begun, DeliveryTask) and begun.parameters == {ITEM: float(begins_with)}
     (steps,) = plan_of(Order.START, state, begun.parameters).ways
     assert [step.command for step in steps] == [mavlink.MAV_CMD_DO_SET_MISSION_CURRENT, mavlink.MAV_CMD_DO_SET_MODE]
     assert steps[0].parameters[0] == begins_with + (autopilot_type is AutopilotType.ARDUPILOT)
@@ -70,7 +70,7 @@ def test_beside_below_and_beyond_its_way_it_is_not_begun(autopilot_type, lon, la
 
 def test_on_the_ground_it_is_neither_loaded_nor_begun():
     state = held(AutopilotType.PX4, HOME, 0.0, landed_state=mavlink.MAV_LANDED_STATE_ON_GROUND)
-    for one in (task(), Task(load=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2)):
+    for one in (task(), DeliveryTask(load=LOAD, take_off=TakeOff(HOME, 100.0), begun_by=2)):
         reason = reason_not_to(one, state, time.monotonic())
         assert reason is not None and reason.code == "on-ground"
 

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
-from missions.command_rules import CommandRules
+from missions.command_rules import CommandLifetimes
 from missions.models import CommandState, Mission, Uav
 from missions.serializers.commands import command_json
 from missions.services.commands.dispatch import dispatch_mission
@@ -104,7 +104,7 @@ class SlowRadio(Px4):
 
 @pytest.mark.parametrize(("read_back_s", "state"), [(30.0, CommandState.APPLIED), (0.5, CommandState.EXPIRED)])
 def test_a_start_waits_for_the_reading_as_long_as_that_goes_on_and_is_allowed(read_back_s, state, uav, mission, settings, tmp_path):
-    settings.COMMAND_RULES = CommandRules(motion_s=MOTION_S, read_back_s=read_back_s)
+    settings.COMMAND_RULES = CommandLifetimes(motion_s=MOTION_S, read_back_s=read_back_s)
     vehicle = SlowRadio()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(mission))
@@ -126,7 +126,7 @@ class Homeless(Flyer):
 
 
 def test_a_start_that_waited_for_home_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
-    settings.COMMAND_RULES = CommandRules(motion_s=1.5)
+    settings.COMMAND_RULES = CommandLifetimes(motion_s=1.5)
     with gateway_at_work(tmp_path) as gateway, Homeless(Px4(), port_of(gateway), at=UAV_AT, altitude_amsl_m=101.0):
         upload = ended(dispatch(mission))
         start = ended(begin(uav, mission, upload.approval))
@@ -145,7 +145,7 @@ class Unreadable(Px4):
 
 
 def test_a_start_that_waited_for_the_reading_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
-    settings.COMMAND_RULES = CommandRules(motion_s=5.0)
+    settings.COMMAND_RULES = CommandLifetimes(motion_s=5.0)
     vehicle = Unreadable()
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
         upload = ended(dispatch(mission))
@@ -157,7 +157,7 @@ def test_a_start_that_waited_for_the_reading_in_vain_ends_with_that_reason(uav, 
 
 
 def test_a_start_does_not_wait_for_a_vehicle_that_falls_silent(uav, mission, settings, tmp_path):
-    settings.COMMAND_RULES = CommandRules(motion_s=1.5, read_back_s=60.0)
+    settings.COMMAND_RULES = CommandLifetimes(motion_s=1.5, read_back_s=60.0)
     with gateway_at_work(tmp_path) as gateway, flyer(Px4(), gateway) as flying:
         upload = ended(dispatch(mission))
         flying.is_silent = True
