@@ -41,12 +41,12 @@ from mavlink.mission_items import position_e7  # noqa: E402
 from mavlink.vehicle_plan import MissionItem, MissionType  # noqa: E402
 from missions.models import Uav  # noqa: E402
 from planning.energy.conditions import Conditions  # noqa: E402
-from simulation.flight.states import Mode  # noqa: E402
+from simulation.flight.states import FlightMode  # noqa: E402
 from simulation.management.commands.run_simulator import SWITCH_S  # noqa: E402
 from simulation.models import SimulatedVehicle, Simulation, SimulationState  # noqa: E402
 from simulation.rehearsing.weather_scenario import Named, named_scenario, scenario_to_json  # noqa: E402
-from simulation.simulator.flight import Flight  # noqa: E402
-from simulation.simulator.options import Options  # noqa: E402
+from simulation.simulator.flight import RunningSimulation  # noqa: E402
+from simulation.simulator.options import SimulatorOptions  # noqa: E402
 from simulation.simulator.process import Simulator  # noqa: E402
 from simulation.vehicle_endpoint.fleet import Fleet, FleetReport  # noqa: E402
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row  # noqa: E402
@@ -123,7 +123,7 @@ def square(at: LonLat) -> tuple[MissionItem, ...]:
 def on_their_squares(fleet: Fleet) -> Fleet:
     for flying in fleet.uavs:
         flying.endpoint.missions.put(MissionType.MISSION, square(flying.uav.state.position))
-        flying.uav.set_mode(Mode.MISSION)
+        flying.uav.set_mode(FlightMode.MISSION)
         flying.uav.arm()
     return fleet
 
@@ -146,12 +146,12 @@ def fly(port: int, systems: list[int], places: list[LonLat], speed: float, secon
 def simulate(port: int) -> None:
     """`run_simulator` in a process of its own, whose UAVs set out at once."""
 
-    def under_way(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch]) -> Flight:
-        return Flight(simulation, vehicles, on_their_squares(fleet_of(launches, speed=simulation.speed)), simulation.speed)
+    def under_way(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch]) -> RunningSimulation:
+        return RunningSimulation(simulation, vehicles, on_their_squares(fleet_of(launches, speed=simulation.speed)), simulation.speed)
 
     sys.setswitchinterval(SWITCH_S)
     with mock.patch("simulation.simulator.process.flight_of", under_way):
-        Simulator(Options(name="benchmark", most_load=1e6, gateway=("127.0.0.1", port), host="127.0.0.1")).run()
+        Simulator(SimulatorOptions(name="benchmark", most_load=1e6, gateway=("127.0.0.1", port), host="127.0.0.1")).run()
 
 
 def simulation_of(uavs: list[Uav], speed: float) -> Simulation:

@@ -167,7 +167,7 @@ def voltage_text(voltage_v: int | None) -> str:
     return f"{voltage_v / 1000:g} kV" if voltage_v else ""
 
 
-def _said(values: Mapping[str, str], column: str, otherwise: str) -> str:
+def _stated(values: Mapping[str, str], column: str, otherwise: str) -> str:
     """The word of a column's value in the reader's language, as SQL with parameters of `sql_words`."""
     cases = " ".join(f"WHEN '{value}' THEN %({word})s" for value, word in values.items())
     return f"CASE {column} {cases} ELSE {otherwise} END"
@@ -189,7 +189,7 @@ def sql_words() -> dict[str, str]:
 LINE_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"
 VOLTAGES_SQL = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
 _VOLTAGE = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
-_WORD = _said(WORDS, "subtype", _said({str(kind): word for kind, word in KIND_WORDS.items()}, "kind", "INITCAP(kind)"))
+_WORD = _stated(WORDS, "subtype", _stated({str(kind): word for kind, word in KIND_WORDS.items()}, "kind", "INITCAP(kind)"))
 _GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
 _OPERATOR = f"NULLIF(NULLIF(operator, ''), {_GIVEN})"
 LABEL_SQL = f"""COALESCE(
@@ -204,7 +204,7 @@ DETAIL_SQL = {  # null instead of an empty text
              WHEN CARDINALITY(voltages_v) <> 1 THEN {_sql_voltage_and_owner(VOLTAGES_SQL, "NULL")} END""",
     AssetKind.RAILWAY: f"""CASE WHEN {_GIVEN} IS NOT NULL
              THEN NULLIF(CONCAT_WS(', ', NULLIF(NULLIF(name, ''), {_GIVEN}), {_OPERATOR}), '') END""",
-    AssetKind.BRIDGE: _said(CARRIES, "carries", "NULL"),
+    AssetKind.BRIDGE: _stated(CARRIES, "carries", "NULL"),
     AssetKind.TOWER: f"""CASE WHEN line_id IS NOT NULL
              THEN {_sql_voltage_and_owner(f"trim_scale({LINE_VOLTAGE_V} / 1000.0) || ' kV'", "line_owner")}
              ELSE NULLIF(CONCAT_WS(' ', {_VOLTAGE}, {_OPERATOR}), '') END""",

@@ -45,14 +45,14 @@ ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoo
 SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 
 
-def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> bytes:
+def tile_of_version(zoom: int, column: int, row: int, dataset_version: str | None) -> bytes:
     """The tile of the ground as it is now, in the reader's language. Raises NoSuchTile.
 
-    `edition` is another text after each change of the ground and in each language; with None nothing is kept.
+    `dataset_version` is another text after each change of the ground and in each language; with None nothing is kept.
     """
-    if edition is None or zoom > LAST_KEPT_ZOOM:
+    if dataset_version is None or zoom > LAST_KEPT_ZOOM:
         return vector_tile(zoom, column, row)
-    key = f"tile:{edition}:{zoom}/{column}/{row}"
+    key = f"tile:{dataset_version}:{zoom}/{column}/{row}"
     with contextlib.suppress(*CACHE_UNAVAILABLE):
         if (kept := cache.get(key)) is not None:
             return bytes(kept)

@@ -19,7 +19,7 @@ from rest_framework.views import APIView
 from inspection import selectors
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind
-from inspection.selectors import Box, GroundSummary, NoSuchTile, ground_edition
+from inspection.selectors import Box, GroundSummary, NoSuchTile, ground_dataset_version
 from inspection.selectors.scene import RECIPE, UnfitBox, check_box, scene_in
 from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdictSerializer
 from inspection.serializers.scene import SceneSerializer, scene_json
@@ -61,7 +61,7 @@ class SceneOfBox(APIView):
 
 def _etag(box: Box) -> str:
     """Of the ground, the box and the language of the labels."""
-    revision, changed_at = ground_edition()
+    revision, changed_at = ground_dataset_version()
     said = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{RECIPE}-{box}-{get_language()}"
     return f'"{sha256(said.encode()).hexdigest()[:32]}"'
 
@@ -147,15 +147,15 @@ class Tile(APIView):
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:
-        revision, changed_at = selectors.ground_edition()
-        edition = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}-{get_language()}"
-        etag = f'"{edition}"'
+        revision, changed_at = selectors.ground_dataset_version()
+        dataset_version = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{selectors.TILE_RECIPE}-{get_language()}"
+        etag = f'"{dataset_version}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
             response = not_changed
         else:
             try:
-                tile = selectors.tile_of_edition(zoom, column, row, edition if changed_at else None)
+                tile = selectors.tile_of_version(zoom, column, row, dataset_version if changed_at else None)
                 response = HttpResponse(tile, content_type=TILE_TYPE)
             except NoSuchTile as error:
                 raise Http404 from error

@@ -107,13 +107,13 @@ def take_changes(*, ids: Collection[UUID]) -> list[SimulationChange]:
     return changes
 
 
-def tell(*, simulation_id: UUID, holder: str, pace: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
+def notify(*, simulation_id: UUID, holder: str, pace: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
     """How the clock is kept, and how each vehicle does; nothing once another one holds it."""
     with transaction.atomic():
         if not Simulation.objects.filter(pk=simulation_id, holder=holder).update(pace=dict(pace)):
             return
-        rows = [SimulatedVehicle(pk=pk, told=dict(told), told_at=timezone.now()) for pk, told in vehicles.items()]
-        SimulatedVehicle.objects.bulk_update(rows, ["told", "told_at"])
+        rows = [SimulatedVehicle(pk=pk, reported=dict(reported), reported_at=timezone.now()) for pk, reported in vehicles.items()]
+        SimulatedVehicle.objects.bulk_update(rows, ["reported", "reported_at"])
 
 
 def _why_over(simulation: Simulation) -> str | None:
@@ -158,11 +158,11 @@ def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
             return []
     again = F("restarts") + (1 if simulation.state == SimulationState.FLYING else 0)
     SimulatedVehicle.objects.filter(pk__in=[vehicle.pk for vehicle in vehicles]).update(
-        state=SimulationState.FLYING, restarts=again, told={}
+        state=SimulationState.FLYING, restarts=again, reported={}
     )
     return vehicles
 
 
 def _is_gone(vehicle: SimulatedVehicle) -> bool:
     """What flew, and what had crashed: neither stands on the ground whole."""
-    return bool(vehicle.told.get("is_in_air") or vehicle.told.get("is_crashed"))
+    return bool(vehicle.reported.get("is_in_air") or vehicle.reported.get("is_crashed"))

@@ -9,7 +9,7 @@ from workspace.leases import HolderOptions, holder_name
 
 
 @dataclass(frozen=True, kw_only=True)
-class Options(HolderOptions):
+class SimulatorOptions(HolderOptions):
     """What a simulator takes on, and where its UAVs connect.
 
     `most_load`: simulated seconds a second that it takes on, over all UAVs. `gateway`: where a mission's UAVs connect, None where none
@@ -21,10 +21,10 @@ class Options(HolderOptions):
     host: str
 
 
-def options_of_settings(*, name: str | None = None, most_uavs: int | None = None, gateway: str | None = None) -> Options:
+def options_of_settings(*, name: str | None = None, most_uavs: int | None = None, gateway: str | None = None) -> SimulatorOptions:
     """Without a name, of this process alone. Raises WrongAddress."""
     reached_at = gateway or settings.SIMULATOR_GATEWAY or settings.GATEWAY_UDP.split(",")[0]
-    return Options(
+    return SimulatorOptions(
         name=holder_name(name or settings.SIMULATOR_NAME),
         most_load=float(settings.SIMULATOR_MAX_UAVS if most_uavs is None else most_uavs),
         gateway=gateway_address(reached_at) if reached_at else None,

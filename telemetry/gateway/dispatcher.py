@@ -19,7 +19,7 @@ from missions.services.commands.commands import claim_commands, expire_overdue, 
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.preparation import LOADING
-from telemetry.gateway.session import HEARD_WITHIN_S, Session
+from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from workspace.leases import held_until_s
 from workspace.live.timed_waits import wait_for_event
 
@@ -67,17 +67,17 @@ class Dispatcher:
                 else:
                     delivery.held_until_s = held_until_s(asked_s, self.lease_s)
         now_s = time.time()
-        served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, HEARD_WITHIN_S)}
-        unheard = {session.uav.uav_id: session for session in self.sessions() if session.may_hear(now_s)}
-        unheard = {uav_id: session for uav_id, session in unheard.items() if uav_id not in served}
+        served = {session.uav.uav_id: session for session in self.sessions() if session.is_served(now_s, RECEIVED_WITHIN_S)}
+        unacknowledged = {session.uav.uav_id: session for session in self.sessions() if session.may_receive(now_s)}
+        unacknowledged = {uav_id: session for uav_id, session in unacknowledged.items() if uav_id not in served}
         await self.database.run(expire_overdue)
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MAX_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
             for axis in (CommandAxis.SPEED, CommandAxis.PARAMETER):
                 await self._claim(served, axis, settings.GATEWAY_MAX_COMMANDS - len(self._deliveries))
-        if unheard:
-            await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
+        if unacknowledged:
+            await self._claim(unacknowledged, CommandAxis.FLIGHT, len(unacknowledged), is_unacknowledged=True)
         self._begin()
 
     async def _claim(
@@ -86,7 +86,7 @@ class Dispatcher:
         axis: CommandAxis,
         room: int,
         *,
-        is_blind: bool = False,
+        is_unacknowledged: bool = False,
     ) -> None:
         """Uploads no more than may begin; what stops a UAV never waits for room."""
         if room <= 0:
@@ -94,11 +94,11 @@ class Dispatcher:
         asked_s = time.monotonic()
         claimed = await self.database.run(
             claim_commands, uav_ids=list(sessions), holder=self.holder, lease_s=self.lease_s, limit=room, link=LinkKind.MAVLINK,
-            axes=[axis], to_unheard=is_blind,
+            axes=[axis], to_unreachable=is_unacknowledged,
         )  # fmt: skip
         for command in claimed:
             session, until_s = sessions[command.uav_id], held_until_s(asked_s, self.lease_s)
-            self._deliveries[command.pk] = Delivery(command, session, self.notes, until_s, is_blind=is_blind)
+            self._deliveries[command.pk] = Delivery(command, session, self.notes, until_s, is_unacknowledged=is_unacknowledged)
 
     async def close(self) -> None:
         """Ends what goes on, and gives back what has not ended by then."""

@@ -11,7 +11,7 @@ from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
-from telemetry.services.links.links import UNHEARD_S, renew_leases, take_leases
+from telemetry.services.links.links import UNREACHABLE_S, renew_leases, take_leases
 from workspace.leases import held_until_s
 from workspace.live.timed_waits import wait_for_event
 
@@ -24,7 +24,7 @@ WAITED_TOO_LONG_S = 15.0
 
 def served_until_s(asked_s: float, lease_s: float) -> float:
     """The same for a vehicle, which another gateway may also take once nobody has stored for a while that it was heard."""
-    return held_until_s(asked_s, min(lease_s, UNHEARD_S))
+    return held_until_s(asked_s, min(lease_s, UNREACHABLE_S))
 
 
 @dataclass

@@ -12,12 +12,12 @@ from workspace.leases import HolderOptions, holder_name
 OWN_SYSTEM, OWN_COMPONENT = 255, 190  # those of ground stations; MAV_COMP_ID_MISSIONPLANNER
 
 
-class WrongAddress(ValueError):
+class InvalidUdpAddress(ValueError):
     """Not HOST:PORT."""
 
 
 @dataclass(frozen=True)
-class Address:
+class UdpAddress:
     host: str
     port: int
 
@@ -25,36 +25,36 @@ class Address:
         return f"{self.host}:{self.port}"
 
 
-def addresses(text: str) -> list[Address]:
+def addresses(text: str) -> list[UdpAddress]:
     """Of "HOST:PORT, …"; an IPv6 host stands in brackets. Raises WrongAddress."""
     return [_address(entry.strip()) for entry in text.split(",") if entry.strip()]
 
 
-def _address(entry: str) -> Address:
+def _address(entry: str) -> UdpAddress:
     found = re.fullmatch(r"\[([0-9a-fA-F:.%]+)\]:(\d{1,5})|([^:\[\]]+):(\d{1,5})", entry)
     if not found or int(found[2] or found[4]) > 65_535:
-        raise WrongAddress(f"{entry!r} is no address: HOST:PORT is, or [IPv6]:PORT")
-    return Address(found[1] or found[3], int(found[2] or found[4]))
+        raise InvalidUdpAddress(f"{entry!r} is no address: HOST:PORT is, or [IPv6]:PORT")
+    return UdpAddress(found[1] or found[3], int(found[2] or found[4]))
 
 
 @dataclass(frozen=True, kw_only=True)
-class Options(HolderOptions):
+class GatewayOptions(HolderOptions):
     """What a gateway listens on, and how much of what it hears it keeps until it is stored."""
 
-    udp: list[Address]
-    tcp: list[Address]
+    udp: list[UdpAddress]
+    tcp: list[UdpAddress]
     log_dir: Path
     flush_s: float = 0.2
     most_records: int = 100_000
     log_mib: float = 256.0
 
 
-def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name: str | None = None) -> Options:
+def options_of_settings(*, udp: str | None = None, tcp: str | None = None, name: str | None = None) -> GatewayOptions:
     udp_addresses = addresses(settings.GATEWAY_UDP if udp is None else udp)
     tcp_addresses = addresses(settings.GATEWAY_TCP if tcp is None else tcp)
     ports = [str(address.port) for address in [*udp_addresses, *tcp_addresses]]
     usual = "-".join([socket.gethostname(), *ports])
-    return Options(
+    return GatewayOptions(
         udp=udp_addresses,
         tcp=tcp_addresses,
         name=holder_name(name or settings.GATEWAY_NAME or usual),

@@ -10,15 +10,15 @@ LEASE_S = 3.0  # a killed watch's UAVs are taken over within this and one round
 
 
 @dataclass(frozen=True, kw_only=True)
-class Options(HolderOptions):
+class EstimatorOptions(HolderOptions):
     """It holds `most_uavs` at most."""
 
     most_uavs: int
     lease_s: float = LEASE_S
 
 
-def options_of_settings(*, name: str | None = None, most_uavs: int | None = None) -> Options:
+def options_of_settings(*, name: str | None = None, most_uavs: int | None = None) -> EstimatorOptions:
     """Without a name, of this process alone: two watches on a machine are two."""
-    return Options(
+    return EstimatorOptions(
         name=holder_name(name or settings.ESTIMATOR_NAME), most_uavs=settings.ESTIMATOR_MAX_UAVS if most_uavs is None else most_uavs
     )

@@ -10,9 +10,9 @@ from django.test import Client
 from django.utils import timezone, translation
 
 from inspection.models import Asset, Ground, NoFlyZone
-from inspection.selectors import asset_detail, asset_label, tile_of_edition, vector_tile
+from inspection.selectors import asset_detail, asset_label, tile_of_version, vector_tile
 from inspection.services import mark_ground_changed
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import bridge, line, railway, tower, zone
 from tests.inspection.vector_tile import Feature, read_tile
 from workspace.models import Role
@@ -214,7 +214,7 @@ def test_a_zone_says_when_it_applies_unless_that_is_very_long() -> None:
 
 
 def test_a_far_tile_is_kept_until_the_ground_changes_and_a_near_one_is_not() -> None:
-    viewer = client_of(somebody(Role.VIEWER))
+    viewer = client_of(a_user(Role.VIEWER))
     addresses = ["/".join(map(str, tile_at(zoom))) for zoom in (10, 14)]
     mark_ground_changed()
     assert [get(viewer, address).content for address in addresses] == [b"", b""]
@@ -230,7 +230,7 @@ def test_tiles_are_made_without_the_cache_while_it_is_away(settings: Any) -> Non
     settings.CACHES = {"default": nowhere}
     line()
     mark_ground_changed()
-    assert tile_of_edition(*tile_at(10), "no-cache") == vector_tile(*tile_at(10))
+    assert tile_of_version(*tile_at(10), "no-cache") == vector_tile(*tile_at(10))
 
 
 def get(client: Client, address: str, **headers: str) -> Any:
@@ -242,20 +242,20 @@ def test_a_tile_needs_somebody_who_is_signed_in() -> None:
 
 
 def test_an_empty_tile_is_an_empty_body() -> None:
-    answer = get(client_of(somebody(Role.VIEWER)), "14/0/0")
+    answer = get(client_of(a_user(Role.VIEWER)), "14/0/0")
     assert (answer.status_code, answer.content) == (200, b"")
     assert answer["Content-Type"] == "application/vnd.mapbox-vector-tile"
 
 
 @pytest.mark.parametrize("address", ["0/1/0", "0/0/1", "23/0/0", "4/16/0", "99999999999999999999/0/0", "-1/0/0", "a/b/c"])
 def test_a_tile_outside_the_pyramid_is_not_found(address: str) -> None:
-    answer = get(client_of(somebody()), address)
+    answer = get(client_of(a_user()), address)
     assert answer.status_code == 404
     assert answer.json()["error"]["code"] == "not_found"
 
 
 def test_a_tile_is_kept_until_the_ground_changes() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     tower()
     address = "/".join(map(str, tile_at(14)))
     first = get(client, address)
@@ -267,7 +267,7 @@ def test_a_tile_is_kept_until_the_ground_changes() -> None:
 
 
 def test_a_tile_of_another_database_with_as_many_changes_is_not_taken_for_this_ones() -> None:
-    client = client_of(somebody())
+    client = client_of(a_user())
     revision = mark_ground_changed()
     first = get(client, "0/0/0")
     Ground.objects.all().delete()

@@ -11,7 +11,7 @@ from simulation.models import SimulationChange, SimulationState
 from simulation.serializers.simulations import simulation_json
 from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle
 from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
-from simulation.simulator.options import Options, options_of_settings
+from simulation.simulator.options import SimulatorOptions, options_of_settings
 from simulation.simulator.process import Simulator
 from tests.accounts.users import a_user
 from tests.missions.flights import approved, dispatched, fleet, planned
@@ -138,7 +138,7 @@ def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
         port = other.getsockname()[1]
         settings.SIMULATOR_PORTS = f"{port}-{port}"
         simulation = pool(person, 1)
-        simulator = Simulator(Options(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1"))
+        simulator = Simulator(SimulatorOptions(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1"))
         simulator.round()
     reported = simulation_json(fresh(simulation))
     assert (reported["state"], reported["reason"]) == ("failed", "port-taken"), reported
@@ -229,7 +229,7 @@ def test_what_a_simulator_had_to_give_up_it_takes_again(person):
 
 def test_nothing_flies_beyond_its_lease_while_the_database_neither_answers_nor_refuses(person):
     simulation = pool(person, 1)
-    simulator = Simulator(Options(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1", lease_s=1.0))
+    simulator = Simulator(SimulatorOptions(name="one", most_load=10.0, gateway=("127.0.0.1", 1), host="127.0.0.1", lease_s=1.0))
     simulator.round()
     flight = simulator.flights[simulation.pk]
     wait_for(lambda: flight.is_given_up, "the end of the lease, which nobody renews")

@@ -96,8 +96,8 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
     """
     held = _held(job)
     values: dict[str, Any] = {"lease_expires_at": from_now(LEASE_S)}
-    told = values | {"progress": min(max(progress, 0.0), 1.0), "message": message[:300]} | ({} if best is None else {"best": best})
-    if not held.filter(cancel_requested_at=None).update(**told):
+    reported = values | {"progress": min(max(progress, 0.0), 1.0), "message": message[:300]} | ({} if best is None else {"best": best})
+    if not held.filter(cancel_requested_at=None).update(**reported):
         raise JobCancelled if held.update(**values) else JobLost
     publish_job(job.pk)
 
@@ -113,8 +113,8 @@ def pause_job(*, job: Job, progress: float, message: str, pause_s: float) -> Non
     Attempts until now count no longer as lost. A job that is to be cancelled ends. Nothing happens if another worker has taken it over.
     """
     parameters = job.parameters | {_ATTEMPTS_BEFORE: job.attempts}
-    told = {"progress": progress, "message": message[:300], "parameters": parameters}
-    if release(_held(job).filter(cancel_requested_at=None), after_s=pause_s, state=JobState.QUEUED, **told):
+    reported = {"progress": progress, "message": message[:300], "parameters": parameters}
+    if release(_held(job).filter(cancel_requested_at=None), after_s=pause_s, state=JobState.QUEUED, **reported):
         publish_job(job.pk)
     else:
         confirm_cancelled(job=job)
@@ -155,9 +155,9 @@ def _has_used_its_time(job: Job) -> bool:
     """Whether its worker was stopped at the time limit: the same again would end the same way, and hold a worker as long."""
     if job.started_at is None or job.lease_expires_at is None:
         return False
-    heard_s = (job.lease_expires_at - job.started_at).total_seconds() - LEASE_S
+    last_message_s = (job.lease_expires_at - job.started_at).total_seconds() - LEASE_S
     limit_s = getattr(current_app.tasks.get(job.task), "soft_time_limit", None) or settings.CELERY_TASK_SOFT_TIME_LIMIT
-    return heard_s >= limit_s
+    return last_message_s >= limit_s
 
 
 def _give_up(job: Job) -> None:

@@ -192,7 +192,7 @@ class Merge:
         self._cursor.execute(self._source.samples, self._values | {"fate": action.value, "most": most})
         return [Sample(*row) for row in self._cursor.fetchall()]
 
-    def write(self, data_import: int, actor: User | None, tell: Callable[[float], None] = lambda share: None) -> None:
+    def write(self, data_import: int, actor: User | None, notify: Callable[[float], None] = lambda share: None) -> None:
         """Make the assets what the file says. tell: how much of it is done, 0 to 1."""
         self._values |= {
             "data_import": data_import, "actor": actor and actor.pk,
@@ -201,9 +201,9 @@ class Merge:
         for statement in self._source.changes:
             self._cursor.execute(statement, self._values)
         self.keep_beside()
-        tell(0.25)
+        notify(0.25)
         self._cursor.execute(_INSERT, self._values)
-        tell(0.75)
+        notify(0.75)
         columns = "" if self.numbers[ChangeAction.NEW] > MANY_NEW else "(id, kind, osm_type, osm_id, line_id, vanished_at)"
         self._cursor.execute(f"ANALYZE inspection_asset {columns}")  # the supports are numbered next, and tiles are asked for soon
 

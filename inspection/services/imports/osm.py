@@ -88,7 +88,7 @@ def import_osm(
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
-            _tell(progress, "writing", 0.0)
+            _notify(progress, "writing", 0.0)
             hold_ground()
             data_import = DataImport.objects.create(
                 kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
@@ -98,8 +98,8 @@ def import_osm(
             values = _values(content, path, is_synthetic, replace_region, but=data_import)
             merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
             numbers = _numbers(merge)
-            _tell(progress, "writing", 0.2)
-            merge.write(data_import.pk, imported_by, lambda share: _tell(progress, "writing", 0.2 + 0.8 * share))
+            _notify(progress, "writing", 0.2)
+            merge.write(data_import.pk, imported_by, lambda share: _notify(progress, "writing", 0.2 + 0.8 * share))
         counts = content.counts | numbers | {"extent": content.extent}
         if number_supports() or merge.changes_something:
             mark_ground_changed()
@@ -119,10 +119,10 @@ def difference_of_osm(
     """What import_osm would do with the file; nothing is written. Raises OsmFileError."""
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
-            _tell(progress, "comparing", 0.0)
+            _notify(progress, "comparing", 0.0)
             values = _values(content, path, False, replace_region)
             merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
-            _tell(progress, "comparing", 0.6)
+            _notify(progress, "comparing", 0.6)
             samples = {action: merge.samples(action, most) for action in ROW_ACTIONS}
         transaction.set_rollback(True)
     return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, _numbers(merge), samples)
@@ -178,7 +178,7 @@ def _values(content: OsmContent, path: Path, is_synthetic: bool, replace_region:
     }  # fmt: skip
 
 
-def _tell(progress: Progress | None, stage: str, share: float) -> None:
+def _notify(progress: Progress | None, stage: str, share: float) -> None:
     if progress is not None:
         progress(stage, share)
 

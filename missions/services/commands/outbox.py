@@ -37,7 +37,7 @@ from workspace.live.changes import publish_live
 from workspace.models import User
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
-SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"
+SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNACKNOWLEDGED = "superseded", "not-delivered", "unconfirmed", "unheard"
 WITHDRAWN = "withdrawn"
 
 
@@ -97,8 +97,8 @@ def queue_command(
                 "mission": mission and str(mission.pk), "approval": approval and str(approval.pk),
             },
         )  # fmt: skip
-        _tell(uav.pk)
-        _tell_pages([uav.organisation_id])
+        _notify(uav.pk)
+        _notify_pages([uav.organisation_id])
     return command
 
 
@@ -110,11 +110,11 @@ def claim_commands(
     limit: int,
     link: LinkKind | None = None,
     axes: Collection[CommandAxis] | None = None,
-    to_unheard: bool = False,
+    to_unreachable: bool = False,
 ) -> list[UavCommand]:
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
-    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unheard` only
+    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unreachable`:
     those that are right for a UAV of which nothing is heard: what makes it safe, and is neither a step that others are to follow nor a
     return that depends on where it is.
 
@@ -126,7 +126,7 @@ def claim_commands(
         waiting = waiting.filter(link=link, uav__link=link)
     if axes is not None:
         waiting = waiting.filter(axis__in=axes)
-    if to_unheard:
+    if to_unreachable:
         waiting = waiting.filter(priority=CommandPriority.SAFETY).exclude(parameters__has_any_keys=[HAND_OVER, ALONG_ROUTE])
     urgent = waiting.order_by("priority", "created_at", "sequence")[:limit]
     found = take(urgent, holder=holder, lease_s=lease_s, skip_locked=True, attempts=F("attempts") + 1)
@@ -159,10 +159,10 @@ def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     return _note(command_id, attempt, holder, CommandState.SENT, now, only=_wanted())
 
 
-def note_sent_unheard(command_id: UUID, *, attempt: int, holder: str) -> bool:
+def note_sent_unacknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now and again, to a UAV of which nothing is heard. False also once nobody wants it any more."""
     words = "Sent; nothing is heard from the UAV."
-    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNHEARD, "outcome": words}
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNACKNOWLEDGED, "outcome": words}
     return _note(command_id, attempt, holder, CommandState.SENT, now, words, only=_wanted())
 
 
@@ -185,7 +185,7 @@ def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, tot
     with transaction.atomic():
         if not _held(command_id, attempt, holder).update(progress={"done": done, "total": total}):
             return False
-        _tell_pages([_organisation_of(command_id)])
+        _notify_pages([_organisation_of(command_id)])
     return True
 
 
@@ -241,7 +241,7 @@ def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> in
         ended = list(commands.filter(state__in=OPEN_COMMANDS).values_list("uav_id", flat=True))
         number = _end(commands, code, words)
         for uav_id in set(ended):
-            _tell(uav_id)
+            _notify(uav_id)
     return number
 
 
@@ -268,7 +268,7 @@ def _note(
         if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
-        _tell_pages([_organisation_of(command_id)])
+        _notify_pages([_organisation_of(command_id)])
     return True
 
 
@@ -279,7 +279,7 @@ def withdraw(command_ids: Collection[UUID]) -> int:
         uavs = list(unsent.filter(state__in=OPEN_COMMANDS).values_list("uav", flat=True))
         ended = _end(unsent, WITHDRAWN, "It was withdrawn before it was sent.")
         for uav_id in uavs:
-            _tell(uav_id)
+            _notify(uav_id)
     return ended
 
 
@@ -293,17 +293,17 @@ def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: 
         UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
         for command in found
     )
-    _tell_pages({command.organisation_id for command in found})
+    _notify_pages({command.organisation_id for command in found})
     return len(found)
 
 
-def _tell(uav_id: int) -> None:
+def _notify(uav_id: int) -> None:
     """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])
 
 
-def _tell_pages(organisations: Iterable[int]) -> None:
+def _notify_pages(organisations: Iterable[int]) -> None:
     """Once the transaction is committed."""
     for organisation_id in organisations:
         transaction.on_commit(partial(publish_live, organisation_id))

@@ -19,7 +19,7 @@ from telemetry.services.waypoints import lists_on
 from workspace.leases import from_now, is_free_for, release, renew, take
 
 NAMESAKE_S = 2.5  # a gateway that runs renews its leases more often
-UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
+UNREACHABLE_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ class Lease:
 
 @dataclass(frozen=True)
 class LinkState:
-    """What a gateway knows of a vehicle; the fields are UavLink's, but for `heard_ago_s`: clocks of gateways do not matter.
+    """What a gateway knows of a vehicle; the fields are UavLink's, but for `last_message_ago_s`: clocks of gateways do not matter.
 
     `waypoint_sequence` is worked out when it is saved.
     """
 
     uav_id: int
-    heard_ago_s: float
+    last_message_ago_s: float
     address: str
     autopilot: str
     firmware: str
@@ -83,7 +83,7 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
     """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
     with connection.cursor() as cursor:
         cursor.execute(_ADD, [sorted(uav_ids)])
-    may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(heard_at__lt=from_now(-UNHEARD_S))
+    may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(heard_at__lt=from_now(-UNREACHABLE_S))
     links = take(UavLink.objects.filter(may_take, uav__in=uav_ids), holder=holder, lease_s=lease_s)
     release_claims_of_others(uav_ids=[link.uav_id for link in links], holder=holder)
     return [_lease_of(link) for link in links]
@@ -118,11 +118,11 @@ _TYPES = {
     "address": "text", "autopilot": "text", "firmware": "text", "mode": "text", "battery_state": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}
-_MADE = ("uav_id", "heard_ago_s", "home_longitude_deg", "home_latitude_deg")
+_MADE = ("uav_id", "last_message_ago_s", "home_longitude_deg", "home_latitude_deg")
 _SAVE = f"""
 UPDATE telemetry_uavlink link
 SET {", ".join(f"{name} = heard.{name}" for name in _COLUMNS if name not in _MADE)},
-    heard_at = statement_timestamp() - make_interval(secs => heard_ago_s),
+    heard_at = statement_timestamp() - make_interval(secs => last_message_ago_s),
     home = ST_SetSRID(ST_MakePoint(home_longitude_deg, home_latitude_deg), 4326)
 FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS heard({", ".join(_COLUMNS)})
 WHERE link.uav_id = heard.uav_id AND link.holder = %s

@@ -19,7 +19,7 @@ from mavlink.frames import Message, frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav
 from missions.services.fleet.credentials import make_credential
-from telemetry.gateway.options import Address, Options
+from telemetry.gateway.options import GatewayOptions, UdpAddress
 from telemetry.gateway.process import Gateway
 from workspace.models import User
 
@@ -57,7 +57,9 @@ def gateway_at_work(log_dir: Path, *, name: str = "test", **options: Any) -> Ite
 
     async def serve() -> None:
         gateway = Gateway(
-            Options(udp=[Address("127.0.0.1", 0)], tcp=[Address("127.0.0.1", 0)], name=name, log_dir=log_dir, flush_s=0.05, **options)
+            GatewayOptions(
+                udp=[UdpAddress("127.0.0.1", 0)], tcp=[UdpAddress("127.0.0.1", 0)], name=name, log_dir=log_dir, flush_s=0.05, **options
+            )
         )
         made.extend([gateway, asyncio.get_running_loop()])
         await gateway.run(on_listening=lambda _: started.set())

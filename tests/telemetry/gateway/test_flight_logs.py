@@ -11,7 +11,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.gateway.flights import DISARMED_FOR_S, FlightRecorder, Flights
-from telemetry.gateway.options import Options
+from telemetry.gateway.options import GatewayOptions
 from telemetry.models import FlightLog
 from tests.accounts.users import a_user
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, unsigned_uav, wait_for
@@ -83,7 +83,7 @@ def test_a_log_that_a_dead_gateway_left_open_is_closed_by_the_next(tmp_path):
 
 
 def test_a_vehicle_that_arms_and_disarms_all_the_time_keeps_to_one_file(tmp_path):
-    flights = Flights(Options(udp=[], tcp=[], name="test", log_dir=tmp_path))
+    flights = Flights(GatewayOptions(udp=[], tcp=[], name="test", log_dir=tmp_path))
     uav, state = SimpleNamespace(uav_id=1, system=7, name="Tern"), SimpleNamespace(is_armed=True)
     session = SimpleNamespace(uav=uav, state=state, log=None, last_message_s=1_000.0)
     for number in range(200):

@@ -11,7 +11,7 @@ from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_facts import links_of
 from telemetry.selectors.watched import watched_flights
 from telemetry.services import NewRecord, store_records
-from telemetry.watch.options import Options
+from telemetry.watch.options import EstimatorOptions
 from telemetry.watch.process import Watch
 from tests.accounts.users import a_user
 from tests.missions.flights import carry, dispatched, fleet, ground
@@ -49,7 +49,7 @@ def flying(*, is_simulated: bool) -> list[Uav]:
 
 def alerts_of(uavs: list[Uav]) -> set[str]:
     """They fly at each other at one height."""
-    watch = Watch(Options(name="one", most_uavs=100, run="1"))
+    watch = Watch(EstimatorOptions(name="one", most_uavs=100, run="1"))
     for second in range(12):
         at = NOW + timedelta(seconds=second)
         for uav, side in zip(uavs, (-1.0, 1.0), strict=True):

@@ -12,7 +12,7 @@ from telemetry.estimation.tracker import Tracker
 from telemetry.models import PositionEstimate, UavLink, UavWatch
 from telemetry.services import NewRecord, store_records
 from telemetry.watch import process
-from telemetry.watch.options import Options
+from telemetry.watch.options import EstimatorOptions
 from telemetry.watch.process import Watch
 from tests.accounts.users import a_user
 from tests.missions.flights import carry, dispatched, fleet, ground
@@ -40,7 +40,7 @@ def report(uav: Uav, second: float, **values) -> None:
 
 
 def watch(name: str = "one", run: str = "1", **options) -> Watch:
-    return Watch(Options(name=name, most_uavs=100, run=run, **options))
+    return Watch(EstimatorOptions(name=name, most_uavs=100, run=run, **options))
 
 
 def seconds(**of) -> list[float]:
