@@ -108,7 +108,7 @@ def zones_in_force() -> ZoneIndex:
 
 
 def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
-    """The zones of an edition of the ground that has just been read: they are at least as new as that."""
+    """The zones of a dataset version that has just been read: they are at least as new as that."""
     return zones_of_table(zone_table_of_version(key))
 
 

@@ -57,7 +57,7 @@ def ground_extent() -> Extent_deg | None:
     remembered = _extent
     if (
         remembered is None or remembered[0] != dataset_version or dataset_version[1] is None
-    ):  # a ground without an edition has never been marked as changed
+    ):  # a ground without a version has never been marked as changed
         extent = Asset.objects.filter(vanished_at=None).aggregate(extent=Extent("centre"))["extent"]
         _extent = remembered = dataset_version, extent
     return remembered[1]

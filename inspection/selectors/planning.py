@@ -1,4 +1,4 @@
-"""What a plan stands on, read at once: the newest graph, the edition of the ground, and the assets that it visits."""
+"""What a plan stands on, read at once: the newest graph, the dataset version, and the assets that it visits."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -72,7 +72,7 @@ class PointAsset(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PlanningGround:
-    """The newest network, all zones, and the edition of the ground that they were read with: they are at least as new as it."""
+    """The newest network, all zones, and the dataset version that they were read with: they are at least as new as it."""
 
     snapshot: SnapshotRow | None
     table: ZoneTable
@@ -120,17 +120,17 @@ def current_dataset_version() -> DatasetVersion:
 
 
 def has_terrain_at(dataset_version: DatasetVersion) -> bool:
-    """Whether there is any terrain model. What brings one in, or takes it out, makes a new edition."""
-    return has_terrain() if dataset_version[1] is None else _had_terrain(dataset_version)  # a ground never marked as changed has no edition
+    """Whether there is any terrain model. What brings one in, or takes it out, makes a new dataset version."""
+    return has_terrain() if dataset_version[1] is None else _had_terrain(dataset_version)  # a ground never marked as changed has no version
 
 
 def heights_at(dataset_version: DatasetVersion) -> Callable[[FloatArray], FloatArray] | None:
-    """ground_heights_m over this edition of the ground, without asking for a newer one each time; None where no terrain model is."""
+    """ground_heights_m over this dataset version, without asking for a newer one each time; None where no terrain model is."""
     return partial(ground_heights_m, dataset_version=dataset_version) if has_terrain_at(dataset_version) else None
 
 
 def terrain_at(dataset_version: DatasetVersion) -> tuple[int | None, int]:
-    """The edition of the terrain when this edition of the ground was first asked about, or a later one."""
+    """The edition of the terrain when this dataset version was first asked about, or a later one."""
     return terrain_dataset_version() if dataset_version[1] is None else _terrain_of(dataset_version)
 
 

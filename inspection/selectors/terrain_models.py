@@ -53,7 +53,7 @@ def finest_step_m(box: tuple[float, float, float, float]) -> float:
 
 @lru_cache(maxsize=2)
 def _models(dataset_version: object) -> tuple[TerrainModel, ...]:
-    """The models as they stand at this edition of the ground."""
+    """The models as they stand at this dataset version."""
     rows = (
         DataImport.objects.filter(kind=ImportKind.TERRAIN, terrain_tiles__isnull=False)
         .annotate(

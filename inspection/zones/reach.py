@@ -54,7 +54,7 @@ def _agl_m(limit_m: float | None, reference: str, ground_amsl_m: float, otherwis
 
 @dataclass(frozen=True, eq=False)
 class ZoneTable:
-    """All zones of one edition of the ground, row by row.
+    """All zones of one dataset version, row by row.
 
     ids int64 (z,), primary keys in ascending order; wkb and polygons in lon/lat, box float64 (z, 4) around them; floor_agl_m and
     ceiling_agl_m float64 (z,): as agl_band tells, without margin; limits and schedules as stated. Threads may share a table: GEOS's

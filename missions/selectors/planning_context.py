@@ -32,8 +32,8 @@ def planning_context(
     request: PlanRequest | None, ground: PlanningGround, targets: Sequence[ResolvedTarget] = (), deleted_targets: Sequence[int] = ()
 ) -> PlanningContext:
     """Return what a plan for the request is made from, over this map; without a request nothing of a fleet. Raises NoGraph."""
-    edition = ground.edition
-    terrain_edition, heights_m = terrain_at(edition), heights_at(edition)  # the edition before any height is read
+    dataset_version = ground.dataset_version
+    terrain_dataset_version, heights_m = terrain_at(dataset_version), heights_at(dataset_version)  # the edition before any height is read
     stored = [uav.uav for uav in request.uavs if uav.uav is not None] if request is not None else []
     return PlanningContext(
         rules=planning_rules(),
@@ -41,9 +41,11 @@ def planning_context(
         zones=ground.table,
         cleared=ground.graph,
         zone_index=ground.zones,
-        terrain=None if heights_m is None else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_edition), tiles_around),
+        terrain=None
+        if heights_m is None
+        else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_dataset_version), tiles_around),
         graph_version=0 if ground.snapshot is None else ground.snapshot[0],
-        map_version=edition[0],
+        map_version=dataset_version[0],
         targets=targets,
         deleted_targets=deleted_targets,
         out_of_service={key: state.value for key, state in states_out_of_service(stored).items()} if stored else {},

@@ -14,7 +14,7 @@ from missions.services.approval.approval import approve_mission
 from missions.services.commands.commands import note_applied, note_sent
 from missions.services.commands.dispatch import dispatch_mission
 from planning.request import EndAction
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
 from tests.missions.commands.outbox import a_uav, claim, fence
@@ -71,4 +71,4 @@ def carry(*uavs: Uav) -> list[UavCommand]:
 
 
 def an_operator() -> User:
-    return somebody()
+    return a_user()

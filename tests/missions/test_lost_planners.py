@@ -26,7 +26,7 @@ from missions.models import Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission
 from planning.problem import Objective
 from planning.request import EndAction
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.worlds import UAV_AT, World, world
 from workspace import tasks
 from workspace.jobs.services import LEASE_S, create_job
@@ -119,7 +119,7 @@ def mission_to_plan(author: User, here: World) -> Job:
 
 
 def test_a_plan_whose_worker_is_killed_is_taken_over(tmp_path: Path) -> None:
-    job = mission_to_plan(somebody(Role.OPERATOR), world())
+    job = mission_to_plan(a_user(Role.OPERATOR), world())
     with own_queue() as queue:
         with worker(queue, tmp_path, SPANWISE_LARGE_PLAN_SEARCH_S="60") as first:
             tasks.send_job(job)
@@ -141,7 +141,7 @@ def test_a_plan_whose_worker_is_killed_is_taken_over(tmp_path: Path) -> None:
 def test_twenty_killed_workers_lose_no_job_and_end_none_twice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], record_property: Any
 ) -> None:
-    author, here, draw = somebody(Role.OPERATOR), world(), random.Random(5)
+    author, here, draw = a_user(Role.OPERATOR), world(), random.Random(5)
     jobs = [mission_to_plan(author, here) for _ in range(JOBS)]
     killed_at_work = 0
     with own_queue() as queue, ExitStack() as stack:

@@ -11,12 +11,12 @@ from django.test import Client
 
 from inspection.models import TerrainTile
 from inspection.selectors import ground_heights_m
-from inspection.selectors.planning import Edition
+from inspection.selectors.planning import DatasetVersion
 from inspection.services import import_terrain
 from inspection.services.imports.terrain import remove_terrain
 from missions.selectors import planning_context
 from missions.services import make_plan
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
 from tests.missions.planning.test_planning import request
@@ -33,7 +33,7 @@ def here() -> World:
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def ground(path: Path, height_m: float, *, origin: tuple[float, float] = (9.9, 56.15)) -> Any:
@@ -70,7 +70,7 @@ def test_terrain_elsewhere_touches_no_route(here: World, client: Client, tmp_pat
 def test_terrain_that_was_taken_away_leaves_a_route_over_unknown_ground(here: World, client: Client, tmp_path: Path) -> None:
     model = ground(tmp_path / "hills.tif", 100)
     mission = created(client, here)
-    remove_terrain(data_import=model, actor=somebody(Role.CURATOR))
+    remove_terrain(data_import=model, actor=a_user(Role.CURATOR))
     assert reason(client, mission) == "The terrain changed since this was planned. Under a route it is no longer known."
 
 
@@ -84,15 +84,15 @@ def test_heights_are_worked_out_again_where_the_terrain_changes_meanwhile(here: 
     ground(tmp_path / "hills.tif", 100)
     looked = []
 
-    def changing(positions: np.ndarray, edition: Edition) -> np.ndarray:
-        heights = ground_heights_m(positions, edition)
+    def changing(positions: np.ndarray, dataset_version: DatasetVersion) -> np.ndarray:
+        heights = ground_heights_m(positions, dataset_version)
         if not looked:
             ground(tmp_path / "hills.tif", 300)
         looked.append(len(positions))
         return heights
 
-    def changing_at(edition: Edition) -> Any:
-        return partial(changing, edition=edition)
+    def changing_at(dataset_version: DatasetVersion) -> Any:
+        return partial(changing, dataset_version=dataset_version)
 
     with mock.patch.object(planning_context, "heights_at", changing_at):
         plan = make_plan(request=request(here.towers[5]))

@@ -53,7 +53,7 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
     ],
 )
 def test_every_step_of_a_job_has_a_word_in_german(path: str) -> None:
-    steps = re.findall(r'[pP]rogress\((?:[\d.]+(?: \+ [\w./ ]+)?, )?"([^"]+)"|_tell\(progress, "([^"]+)"', (ROOT / path).read_text())
+    steps = re.findall(r'[pP]rogress\((?:[\d.]+(?: \+ [\w./ ]+)?, )?"([^"]+)"|_notify\(progress, "([^"]+)"', (ROOT / path).read_text())
     assert steps
     with override("de"):
         assert [step for pair in steps for step in pair if step and in_words(step) == step] == []

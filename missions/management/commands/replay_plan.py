@@ -30,7 +30,7 @@ class Command(BaseCommand):
         try:
             context, request = read_context(options["file"])
             began_s = perf_counter()
-            made = plan(context, request, seed=options["seed"], search_s=options["search_s"], on_progress=self._tell)
+            made = plan(context, request, seed=options["seed"], search_s=options["search_s"], on_progress=self._notify)
         except (NotAContextFile, OSError, InvalidRequest, ZonesNotSettled) as error:
             raise CommandError(str(error)) from error
         found = plan_to_json(made)
@@ -43,5 +43,5 @@ class Command(BaseCommand):
         for item in found["unassigned"]:
             self.stdout.write(f"target {item['target']}: {item['reason']}. {item['message']}")
 
-    def _tell(self, progress: PlanProgress) -> None:
+    def _notify(self, progress: PlanProgress) -> None:
         self.stderr.write(f"{100 * progress.share:3.0f} % {progress.message}")

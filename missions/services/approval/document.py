@@ -25,7 +25,7 @@ from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
 from missions.models import LinkKind, Mission, Route, Waypoint
 from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.fence import rally_points, zones_beside
-from missions.services.commands.refused import Reason, Refused
+from missions.services.commands.refused import RefusalReason, Refused
 from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
@@ -161,7 +161,7 @@ def _routes(routes: list[Route], mission: Mission, longest_leg_m: float | None) 
             flights = _flights(frozen, _loads(frozen, fence.items, rally, longest_leg_m) if by_mavlink else None)
         except (CannotBeFlown, NotARoute) as error:
             values = {"uav": uav.name, "why": str(error)}
-            reasons.append(Reason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
+            reasons.append(RefusalReason("cannot_be_flown", _("%(uav)s cannot be given its route: %(why)s") % values, uav.sequence))
             continue
         found.append(
             {

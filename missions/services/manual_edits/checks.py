@@ -10,7 +10,7 @@ from django.utils.translation import gettext as _
 from inspection.models import AssetKind
 from inspection.network.build.network import Network
 from inspection.network.spans import spans_of
-from inspection.selectors.planning import Edition, heights_at, planning_read
+from inspection.selectors.planning import DatasetVersion, heights_at, planning_read
 from missions.models import Mission
 from missions.reason_texts import fault_texts
 from missions.selectors.legs import LegFlyer, speed_words, too_low_text
@@ -42,13 +42,13 @@ class HandGround:
 
     network: Network
     heights: GroundHeights | None
-    edition: Edition
+    dataset_version: DatasetVersion
 
 
 def hand_ground() -> HandGround:
     """Of now. Raises NoGraph."""
     ground = planning_read().ground()
-    return HandGround(ground.network(), heights_at(ground.edition), ground.edition)
+    return HandGround(ground.network(), heights_at(ground.dataset_version), ground.dataset_version)
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class HandPointFlown:
 
 
 @dataclass(frozen=True)
-class HandLook:
+class ManualEditCheck:
     """A route as it is wished. faults: what is wrong, by its place, all of it; without `flown` it cannot be drawn or flown at all.
 
     points: for each wished point.
@@ -72,24 +72,24 @@ class HandLook:
     points: tuple[HandPointFlown, ...] = field(default=())
 
 
-def look_by_hand(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> HandLook:
+def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> ManualEditCheck:
     """What would be refused of these points, and what flying them would take. Nothing is kept. Raises InvalidRequest where nobody flies."""
     ground = hand_ground()
-    route = kept_route(mission, uav, ground.edition)
+    route = kept_route(mission, uav, ground.dataset_version)
     if route is None:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
     faults = list_faults(points, route.waypoints)
     if faults:
-        return HandLook(faults)
+        return ManualEditCheck(faults)
     wished = route_points(points, route.waypoints)
     faults = obstacle_faults(wished, ground) | point_faults(points, route.waypoints, ground)
     try:
         flown = flown_by_hand(route.request, uav, wished, route.departs_s, ground)
     except InvalidRequest as error:
-        return HandLook(fault_texts(error) | faults)
+        return ManualEditCheck(fault_texts(error) | faults)
     for found in faults_as_flown(flown, wished, mission, route.request, uav, ground):
         faults = found | faults
-    return HandLook(faults, flown, _points_flown(flown, wished, route.request, uav))
+    return ManualEditCheck(faults, flown, _points_flown(flown, wished, route.request, uav))
 
 
 def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[HandPointFlown, ...]:

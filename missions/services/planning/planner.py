@@ -9,7 +9,7 @@ from uuid import uuid4
 
 from django.conf import settings
 
-from inspection.selectors.planning import edition_now, planning_read, terrain_at
+from inspection.selectors.planning import current_dataset_version, planning_read, terrain_at
 from missions.selectors.planning_context import planning_context, read_targets
 from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
 from planning.checks.constraints import ZoneNotAvoided
@@ -20,7 +20,7 @@ from planning.planner import ZonesNotSettled, plan, plan_on_map
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
 from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
-from workspace.jobs.planning_lock import end_turn, in_turn
+from workspace.jobs.planning_lock import hold_planning_lock, release_planning_lock
 
 SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
 ABOVE_ALL_SIZES = "201-"
@@ -101,8 +101,8 @@ def make_plan(
     ground, targets, deleted = read_targets(request)
     for _ in range(MAX_CONTEXTS):
         context = planning_context(request, ground, targets, deleted)
-        terrain = terrain_at(ground.edition)
-        with in_turn():
+        terrain = terrain_at(ground.dataset_version)
+        with hold_planning_lock():
             try:
                 found = plan(context, request, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
             except ZonesNotSettled as error:
@@ -111,13 +111,13 @@ def make_plan(
                 _keep_context(context, request)
                 raise
             answer = plan_to_json(found, as_text=as_text)
-        end_turn()  # which is the caller's, if it had one already: nobody waits for another turn after the last check
-        if edition_now() == ground.edition:
+        release_planning_lock()  # which is the caller's, if it had one already: nobody waits for another turn after the last check
+        if current_dataset_version() == ground.dataset_version:
             return answer
         # Only what was checked against the zones of this moment, over the terrain that its heights belong to, leaves.
         ground = planning_read().ground()
         context = planning_context(request, ground, targets, deleted)
-        still_clear = plan_on_map(found, context) if terrain_at(ground.edition) == terrain else None
+        still_clear = plan_on_map(found, context) if terrain_at(ground.dataset_version) == terrain else None
         if still_clear is not None:
             return plan_to_json(still_clear, as_text=as_text)
     raise GraphOutdated

@@ -18,7 +18,7 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Objective
 from planning.request import EndAction, LostLinkRequest
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.inspection import ground
 from tests.missions.oracles.flight_oracle import Judge
 from tests.missions.oracles.manual_edit_oracle import HandJudge
@@ -242,7 +242,7 @@ def test_uavs_that_pass_one_place_together_are_seen() -> None:
 def test_an_approved_mission_in_the_way_is_seen() -> None:
     here = world()
     elsewhere()
-    author = somebody()
+    author = a_user()
     asked = request(here.towers[5], uavs=(uav(**HOME),), departs_at=NOON)
     plan = make_plan(request=asked)
     other = stored(asked, plan, author)
@@ -341,7 +341,7 @@ def test_why_a_change_by_hand_is_refused_is_judged() -> None:
     asked = request(here.towers[5], uavs=(uav(performance=Performance(battery_wh=IRIS_BATTERY_WH)),))
     plan = make_plan(request=asked)
     route = plan["routes"][0]
-    by_hand = HandJudge(Judge(), somebody())
+    by_hand = HandJudge(Judge(), a_user())
     wished = [point | {"was": number, "from": point["position"], "put_in": False} for number, point in enumerate(route["waypoints"])]
     aside = wished[0] | {"kind": "pass", "position": [10.003, 55.9935], "was": None, "from": [10.003, 55.9935], "put_in": True}
     through = [wished[0], aside, *wished[1:]]

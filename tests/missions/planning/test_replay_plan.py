@@ -20,7 +20,7 @@ from planning.checks.constraints import ZoneNotAvoided
 from planning.context_file import NotAContextFile, read_context, write_context
 from planning.plan_json import plan_to_json
 from planning.planner import MAX_SOLVER_CALLS, plan
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.property_tests.random_flights import airs, approve_some, bring_in, departures, flight, put_zones
 from tests.missions.property_tests.random_missions import Region
 from tests.missions.worlds import request, world
@@ -56,7 +56,7 @@ def test_random_plans_are_made_again_as_they_were(region_file: Any, tmp_path: Pa
     bring_in(region_file("quillmoor.osm.pbf"), tmp_path, random.Random(3), is_hilly=True)
     draw = random.Random(3)
     put_zones(300, draw)
-    region, author, every_air, times = Region(), somebody(), airs(draw), departures(draw, 2)
+    region, author, every_air, times = Region(), a_user(), airs(draw), departures(draw, 2)
     for departs_at in times[1:]:
         approve_some(region, draw, draw.choice(every_air), departs_at, author)
     calls = []
@@ -82,13 +82,13 @@ def test_a_plan_is_made_again_with_django_absent(tmp_path: Path) -> None:
 
 
 def test_the_commands_write_and_replay_a_mission(tmp_path: Path) -> None:
-    here, author = world(), somebody()
+    here, author = world(), a_user()
     mission = create_mission(organisation=author.organisation, author=author, name="Line", request=request(here.towers[2], here.bridge))
-    told = io.StringIO()
-    call_command("write_plan_context", str(mission.pk), str(tmp_path / "plan.zip"), stdout=told)
-    call_command("replay_plan", str(tmp_path / "plan.zip"), "--json", str(tmp_path / "plan.json"), stdout=told, stderr=io.StringIO())
-    assert "2 targets, 1 UAVs" in told.getvalue()
-    assert "2 of 2 targets" in told.getvalue()
+    reported = io.StringIO()
+    call_command("write_plan_context", str(mission.pk), str(tmp_path / "plan.zip"), stdout=reported)
+    call_command("replay_plan", str(tmp_path / "plan.zip"), "--json", str(tmp_path / "plan.json"), stdout=reported, stderr=io.StringIO())
+    assert "2 targets, 1 UAVs" in reported.getvalue()
+    assert "2 of 2 targets" in reported.getvalue()
     assert json.loads((tmp_path / "plan.json").read_text())["total_length_m"] > 0
 
 

@@ -18,7 +18,7 @@ from missions.services.commands.refused import Refused
 from missions.services.replanning import accept_offer
 from planning.problem import Objective
 from planning.request import EndAction
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.cases import long
 from tests.inspection import ground as ground_rows
 from tests.missions.flights import fleet
@@ -41,7 +41,7 @@ def test_continued_routes_cross_no_zone_and_lose_no_target(
     hills = bring_in(region_file(file_name), tmp_path, random.Random(5), is_hilly=True)
     assert hills is not None
     build_graph()
-    author, seen = somebody(), Counter()
+    author, seen = a_user(), Counter()
     for number in seeds:
         draw = random.Random(number)
         NoFlyZone.objects.all().delete()

@@ -17,7 +17,7 @@ from missions.services.commands.refused import Refused
 from planning.energy.performance import Performance
 from planning.problem import Objective, Task, TaskKind
 from planning.request import EndAction
-from simulation.assessment.judging import Verdict, judge
+from simulation.assessment.judging import Assessment, judge
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings, vehicle_maker
@@ -36,7 +36,7 @@ TURNAROUND_S = 600.0  # from a landing to the next take-off, which planned times
 class Rehearsed:
     """A mission's verdict, and for each UAV that flew what was planned for what was flown, in time and energy."""
 
-    verdict: Verdict
+    verdict: Assessment
     time: tuple[float, ...]
     energy: tuple[float, ...]
 

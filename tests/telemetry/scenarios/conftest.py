@@ -14,7 +14,7 @@ from missions.services import TargetRequest
 from planning.clearance.lost_link import LostLink
 from planning.problem import Task, TaskKind
 from planning.request import LostLinkRequest
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import unsigned_uav
@@ -53,7 +53,7 @@ def region(settings, tmp_path: Path) -> Any:
 def mission(uav: Uav, region: Any) -> Mission:
     """Every task, at a tower each, a fence and a rally point."""
     tasks = [TargetRequest(tower.pk, task=Task(kind, 5.0)) for tower, kind in zip(region.towers, TaskKind, strict=False)]
-    return approved(somebody(), [uav], tasks, lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))[0]
+    return approved(a_user(), [uav], tasks, lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))[0]
 
 
 @pytest.fixture(params=["firmware" if os.environ.get(BINARY) else "emulated"])
