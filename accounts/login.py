@@ -42,8 +42,8 @@ def forget_old_sign_ins() -> int:
 
 
 BACKEND = "workspace.api.authentication.RoleBackend"
-HALF_IN = "workspace.half_in"  # in the session: who has shown the password, when, and where they wanted to go
-HALF_IN_S = 10 * 60
+MFA_PENDING = "workspace.mfa_pending"  # in the session: who has shown the password, when, and where they wanted to go
+MFA_PENDING_S = 10 * 60
 
 
 @dataclass(frozen=True)
@@ -62,14 +62,14 @@ def let_in(request: HttpRequest, user: User, wanted: str) -> HttpResponse:
         sign_in(request, response, user)
         return response
     request.session.cycle_key()
-    request.session[HALF_IN] = {"user": user.pk, "of": user.get_session_auth_hash(), "at": time.time(), "wanted": wanted}
+    request.session[MFA_PENDING] = {"user": user.pk, "of": user.get_session_auth_hash(), "at": time.time(), "wanted": wanted}
     return HttpResponseRedirect(resolve_url("sign-in-code" if has_one else "second-factor"))
 
 
-def who_is_half_in(request: HttpRequest) -> HalfIn | None:
+def user_with_mfa_pending(request: HttpRequest) -> HalfIn | None:
     """None after ten minutes, and once the password is another one or they may not sign in any more."""
-    kept = request.session.get(HALF_IN)
-    if kept is None or not 0 <= time.time() - kept["at"] <= HALF_IN_S:
+    kept = request.session.get(MFA_PENDING)
+    if kept is None or not 0 <= time.time() - kept["at"] <= MFA_PENDING_S:
         return None
     user = User.objects.select_related("organisation").filter(pk=kept["user"], is_active=True).first()
     if user is None or not constant_time_compare(kept["of"], user.get_session_auth_hash()):
@@ -79,7 +79,7 @@ def who_is_half_in(request: HttpRequest) -> HalfIn | None:
 
 def sign_in(request: HttpRequest, response: HttpResponse, user: User) -> None:
     """The session begins: the log has it, and the browser is known from now on."""
-    request.session.pop(HALF_IN, None)
+    request.session.pop(MFA_PENDING, None)
     login(request, user, backend=BACKEND)
     note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
     record_sign_in(request, SignInOutcome.SIGNED_IN, user=user)

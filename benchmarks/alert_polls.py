@@ -31,7 +31,7 @@ from tests.missions.worlds import world  # noqa: E402
 
 SECONDS, WARM = 30, 5
 ZONES = 500
-EACH_BY_HAND = 20  # flown by others: an alert each
+EACH_MANUALLY = 20  # flown by others: an alert each
 
 
 def main(count: int) -> None:
@@ -76,7 +76,7 @@ def _watched(uav, number, mission, approval, waypoints, second, now) -> WatchedU
         longitude_deg=lon, latitude_deg=lat,
         altitude_relative_m=first["altitude_relative_m"], altitude_amsl_m=200.0 + 100.0 * number, velocity_north_mps=8.0,
         velocity_east_mps=8.0, velocity_down_mps=0.0, battery_percent=90.0,
-        mode="POSCTL" if number % EACH_BY_HAND == 0 else "MISSION", is_armed=True, is_in_air=True, gps_fix=3,
+        mode="POSCTL" if number % EACH_MANUALLY == 0 else "MISSION", is_armed=True, is_in_air=True, gps_fix=3,
         satellites=14, hdop=0.8, waypoint_sequence=1, mission_item=2, wind_north_mps=2.0, wind_east_mps=1.0,
     )  # fmt: skip
     return WatchedUav(

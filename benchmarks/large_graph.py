@@ -25,11 +25,11 @@ def planner(folder: Path) -> None:
     from inspection.geodesy import LonLat  # noqa: PLC0415
     from inspection.network.paths.access import clear_legs  # noqa: PLC0415
     from inspection.network.paths.paths import travel_between  # noqa: PLC0415
-    from inspection.network.snapshot_file import read_cleared  # noqa: PLC0415
+    from inspection.network.snapshot_file import read_masked  # noqa: PLC0415
     from inspection.network.zones.zone_index import ZoneIndex  # noqa: PLC0415
 
     zones = ZoneIndex([], [], [])
-    graph = read_cleared(folder / "graphs", key=KEY, zones=zones, version=1, ground_revision=1, tallest_m=math.inf)
+    graph = read_masked(folder / "graphs", key=KEY, zones=zones, version=1, ground_revision=1, tallest_m=math.inf)
     if graph is None:
         raise SystemExit("the stored graph cannot be read")
     for mission in json.loads((folder / "missions.json").read_bytes()):
@@ -49,7 +49,7 @@ def store(folder: Path) -> None:
 
     django.setup()
     from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
-    from inspection.network.snapshot_file import write_cleared  # noqa: PLC0415
+    from inspection.network.snapshot_file import write_masked  # noqa: PLC0415
 
     stored = np.load(folder / "large.npz")
     nodes, edges = len(stored["lat"]), len(stored["u"])
@@ -69,7 +69,7 @@ def store(folder: Path) -> None:
         zone_id=np.zeros(0, dtype=np.int64),
         zone_name=(),
     )
-    write_cleared(folder / "graphs", graph, key=KEY, tallest_m=math.inf)
+    write_masked(folder / "graphs", graph, key=KEY, tallest_m=math.inf)
 
 
 def main() -> None:

@@ -55,7 +55,7 @@ SETTLES_S = 6.0
 CURVE = ((20, 10), (50, 50), (100, 50), (200, 10), (200, 100), (250, 50))
 CURVE_S = 20.0
 IN_MISSION, BY_HAND = 4 << 16 | 4 << 24, 3 << 16  # PX4's custom modes: automatic, mission; position
-EACH_BY_HAND = 20  # an alert each
+EACH_MANUALLY = 20  # an alert each
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ def running(command: list[str], **environment: str) -> Iterator[subprocess.Popen
 
 
 @contextmanager
-def front_door() -> Iterator[tuple[int, dict[str, int]]]:
+def front_endpoint() -> Iterator[tuple[int, dict[str, int]]]:
     """The port, and the processes behind it by name. Its Redis is that of whoever runs inside."""
     folder = Path(tempfile.mkdtemp(prefix="sw-", dir="/tmp"))  # short enough for sockets
     places = Places(folder)
@@ -137,7 +137,7 @@ def play(port: int, lines: list[Line], seconds: float, began_s: float, reported:
     for number in range(int(seconds * len(lines))):
         time.sleep(max(first_s + number * every_s - time.monotonic(), 0.0))
         line = lines[number % len(lines)]
-        mode = IN_MISSION if line.system % EACH_BY_HAND else BY_HAND
+        mode = IN_MISSION if line.system % EACH_MANUALLY else BY_HAND
         ms = int((time.monotonic() - began_s) * 1000)
         lat, lon = round(line.lat * PER_DEGREE), round(line.lon * PER_DEGREE) + ms
         height_mm = round(1_000 * float(np.interp(lon / PER_DEGREE, *line.heights_m)))
@@ -171,7 +171,11 @@ def cookie_of(user: User) -> str:
 def run(user: User, lines: list[Line], pages: int, seconds: float) -> Run:
     put_under_way(lines)
     udp = free_port()
-    with front_door() as (port, programs), gateway(udp) as program, running([sys.executable, "manage.py", "run_estimator"]) as estimator:
+    with (
+        front_endpoint() as (port, programs),
+        gateway(udp) as program,
+        running([sys.executable, "manage.py", "run_estimator"]) as estimator,
+    ):
         programs |= {"gateway": program.pid, "estimator": estimator.pid}
         time.sleep(WARM_UP_S)
         began_s = time.monotonic()

@@ -51,7 +51,7 @@ def flown(seed: int, lines: Sequence[Sequence[LonLat]]) -> list[Found]:
     return found
 
 
-def spread(ratios: Sequence[float]) -> str:
+def search_from(ratios: Sequence[float]) -> str:
     low, high = np.quantile(ratios, [0.05, 0.95])
     return f"{np.mean(ratios):.3f} ({low:.2f} to {high:.2f})"
 
@@ -70,7 +70,7 @@ def main() -> None:
         for air in (CALM, WINDY, ROUGH):
             own = [one for one in each if one.code == code and one.air == air]
             columns = [[getattr(one, name) for one in own] for name in ("time", "energy", "time_before", "energy_before")]
-            rows.append([f"{AIRFRAMES[code].name}, {air}", str(len(own)), *map(spread, columns)])
+            rows.append([f"{AIRFRAMES[code].name}, {air}", str(len(own)), *map(search_from, columns)])
             for ratios in columns[:2]:
                 if abs(float(np.mean(ratios)) - 1.0) > MAX_MEAN_ERROR or float(np.quantile(ratios, 0.05)) < MIN_SHARE:
                     missed.append(rows[-1][0])

@@ -62,6 +62,6 @@ def type_name(mav_type: int) -> str:
     return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {mav_type}"
 
 
-def refusal_words(vehicle_class: VehicleClass) -> str:
+def refusal_message(vehicle_class: VehicleClass) -> str:
     """Why it is given no mission."""
     return f"The vehicle is a {vehicle_class.value}: Spanwise plans for and commands multicopters only."

@@ -143,7 +143,7 @@ def _patterns() -> list[tuple[str, re.Pattern[str]]]:
 _AS_IT_IS = re.compile(r".+?(?:[.;](?=\s)|$)", re.S)
 
 
-def outcome_in_words(stored: str) -> str:
+def render_outcome(stored: str) -> str:
     """The same in the reader's language; sentences that nobody has foreseen are as they are."""
     found, rest = [], stored
     while rest := rest.lstrip():
@@ -165,9 +165,9 @@ _BY_OUTBOX = {
 }
 
 
-def command_outcome_in_words(code: str, stored: str) -> str:
+def render_command_outcome(code: str, stored: str) -> str:
     """What became of a command, by its code where the outbox itself ended it."""
-    return _(_BY_OUTBOX[code]) if code in _BY_OUTBOX else outcome_in_words(stored)
+    return _(_BY_OUTBOX[code]) if code in _BY_OUTBOX else render_outcome(stored)
 
 
 def is_foreseen(stored: str) -> bool:

@@ -19,7 +19,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from inspection.network.nearness import EARTH_RADIUS_M
-from inspection.network.paths.contracted_graph import condense_columns
+from inspection.network.paths.contracted_graph import contract_columns
 from inspection.network.paths.hub_labels import label
 from inspection.network.paths.node_tree import NodeTree, tree_of
 from inspection.network.paths.paths import travel_of_legs
@@ -69,9 +69,9 @@ def read_graph(file: BinaryIO) -> FileGraph:
                 raise InvalidFile("not a graph: each edge needs two ends and a length of 0 m or more")
             if len(u) and not (min(u.min(), v.min()) >= 0 and max(u.max(), v.max()) < node_count):
                 raise InvalidFile("not a graph: an edge leads to a node that is not there")
-            condensed = condense_columns(node_count, u, v, w, w)
+            contracted = contract_columns(node_count, u, v, w, w)
             del u, v, w
-            labels = label(condensed)
+            labels = label(contracted)
             lon, lat = _column(stored["lon"], np.float64), _column(stored["lat"], np.float64)
     except (KeyError, ValueError, OSError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise error if isinstance(error, InvalidFile) else InvalidFile(f"not a graph: {error}") from error
@@ -79,7 +79,7 @@ def read_graph(file: BinaryIO) -> FileGraph:
         raise InvalidFile("not a graph: it needs nodes, each with a place")
     tree = tree_of(lon, lat)
     del lon, lat
-    return FileGraph(RouteIndex(condensed, labels), tree, _fragments(node_count).view(np.uint64))
+    return FileGraph(RouteIndex(contracted, labels), tree, _fragments(node_count).view(np.uint64))
 
 
 def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:

@@ -130,8 +130,8 @@ class CodeBase:
 
     def longest_planner_chain(self) -> int:
         """Number of modules on the longest chain of imports among the planner's modules; a cycle counts as one."""
-        condensed = nx.condensation(self.imports.subgraph(self._planner_names()))
-        return len(nx.dag_longest_path(condensed)) if condensed else 0
+        contracted = nx.condensation(self.imports.subgraph(self._planner_names()))
+        return len(nx.dag_longest_path(contracted)) if contracted else 0
 
     def entered_by_a_plan(self) -> int:
         """Number of the planner's modules that the entry of a plan request can reach."""

@@ -25,7 +25,7 @@ from django.db.migrations.executor import MigrationExecutor
 
 from config.private_servers import state_directory
 from scripts.places import DEMO_USER, Places
-from scripts.telling import step
+from scripts.progress import step
 
 
 def migrate() -> None:

@@ -163,10 +163,10 @@ def _pattern(template: str) -> re.Pattern[str]:
     )
 
 
-def in_words(stored: str) -> str:
+def render_message(stored: str) -> str:
     """The same sentence in the reader's language; as it is where nobody has foreseen it. Several stand on lines of their own."""
     if "\n" in stored:
-        return "\n".join(in_words(line) for line in stored.split("\n"))
+        return "\n".join(render_message(line) for line in stored.split("\n"))
     for template in TEMPLATES:
         if match := _pattern(template).fullmatch(stored):
             return _(template) % match.groupdict() if match.groupdict() else _(template)

@@ -11,10 +11,10 @@ from django.db.models.functions import Now
 from django.utils.crypto import salted_hmac
 from django.utils.translation import gettext_lazy as _
 
-from workspace.door_models import BrowserSession as BrowserSession
-from workspace.door_models import RecoveryCode as RecoveryCode
-from workspace.door_models import SecondFactor as SecondFactor
 from workspace.leases import has_run_out
+from workspace.sign_in_models import BrowserSession as BrowserSession
+from workspace.sign_in_models import RecoveryCode as RecoveryCode
+from workspace.sign_in_models import SecondFactor as SecondFactor
 
 
 class Organisation(models.Model):

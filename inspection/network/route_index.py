@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import build_asset_places
-from inspection.network.paths.contracted_graph import ContractedGraph, NumberArray, condense
+from inspection.network.paths.contracted_graph import ContractedGraph, NumberArray, contract
 from inspection.network.paths.hub_labels import HubLabels, label
 from inspection.network.paths.node_tree import build_node_tree
 
@@ -18,7 +18,7 @@ from inspection.network.paths.node_tree import build_node_tree
 class RouteIndex:
     """Read-only arrays that threads and, memory-mapped, processes share."""
 
-    condensed: ContractedGraph
+    contracted: ContractedGraph
     labels: HubLabels
 
     @cached_property
@@ -28,20 +28,20 @@ class RouteIndex:
     @cached_property
     def component_arrays(self) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray]:
         """In the order in which compiled code takes them to look up the components of nodes."""
-        return self.condensed.node_chain, self.condensed.node_place, self.condensed.chain_tail, self.labels.component
+        return self.contracted.node_chain, self.contracted.node_place, self.contracted.chain_tail, self.labels.component
 
     @cached_property
     def query_arrays(self) -> tuple[Any, ...]:
         """In the order in which the compiled query takes them."""
-        condensed, labels = self.condensed, self.labels
+        contracted, labels = self.contracted, self.labels
         return (
-            condensed.node_chain,
-            condensed.node_place,
-            condensed.chain_first,
-            condensed.chain_tail,
-            condensed.chain_head,
-            condensed.place_cost,
-            condensed.place_m,
+            contracted.node_chain,
+            contracted.node_place,
+            contracted.chain_first,
+            contracted.chain_tail,
+            contracted.chain_head,
+            contracted.place_cost,
+            contracted.place_m,
             labels.label_first,
             labels.label_hub,
             labels.label_cost,
@@ -51,14 +51,14 @@ class RouteIndex:
     @cached_property
     def path_arrays(self) -> tuple[Any, ...]:
         """In the order in which the compiled expansion takes them."""
-        condensed, labels = self.condensed, self.labels
+        contracted, labels = self.contracted, self.labels
         return (
-            condensed.node_chain,
-            condensed.node_place,
-            condensed.chain_first,
-            condensed.chain_tail,
-            condensed.chain_head,
-            condensed.place_node,
+            contracted.node_chain,
+            contracted.node_place,
+            contracted.chain_first,
+            contracted.chain_tail,
+            contracted.chain_head,
+            contracted.place_node,
             labels.label_first,
             labels.label_hub,
             labels.label_chain,
@@ -69,8 +69,8 @@ Part = TypeVar("Part")
 
 
 def build_route_index(graph: InspectionGraph) -> RouteIndex:
-    condensed = condense(graph.node_count, graph.edge, graph.cost, graph.length_m)
-    return RouteIndex(condensed, label(condensed))
+    contracted = contract(graph.node_count, graph.edge, graph.cost, graph.length_m)
+    return RouteIndex(contracted, label(contracted))
 
 
 class OncePerGraph(Generic[Part]):

@@ -102,7 +102,7 @@ def _used_s(path: Path) -> float:
 LAYOUT = 4  # of the stored arrays and of the files; what has another layout is made anew
 FLYABLE = "flyable."  # begins the names of the flyable part's files, where it is not the whole graph
 NETWORKS, CLEARED = "networks", "cleared"
-KEPT_NETWORKS, KEPT_CLEARED = 3, 8
+KEPT_NETWORKS, MAX_MASKED_FILES = 3, 8
 NETWORK_FIELDS = [field.name for field in fields(Network)]  # which are also an inspection graph's
 
 Part = TypeVar("Part", ContractedGraph, HubLabels, NodeTree, AssetPlaces)
@@ -149,13 +149,13 @@ def read_network(folder: Path, *, content_sha256: str) -> Network | None:
     return None if arrays is None else Network(**{name: arrays[name] for name in NETWORK_FIELDS})
 
 
-def key_of_cleared(content_sha256: str, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights, tallest_m: float) -> str:
+def key_of_masked(content_sha256: str, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights, tallest_m: float) -> str:
     """What tells the files of cleared graphs apart: the network, where the zones are, and every figure that the clearing reads."""
     figures = json.dumps([LAYOUT, content_sha256, zones.digest, asdict(rules), asdict(heights), tallest_m], sort_keys=True)
     return sha256(figures.encode()).hexdigest()
 
 
-def write_cleared(folder: Path, graph: InspectionGraph, *, key: str, tallest_m: float) -> None:
+def write_masked(folder: Path, graph: InspectionGraph, *, key: str, tallest_m: float) -> None:
     """A cleared graph without its zones, with the part that can be flown over where nothing is taller, and the index of that."""
     arrays = _arrays(graph)
     flyable = flyable_part(graph, tallest_m)
@@ -163,10 +163,10 @@ def write_cleared(folder: Path, graph: InspectionGraph, *, key: str, tallest_m: 
     if flyable is not graph:
         arrays |= {FLYABLE + name: array for name, array in _arrays(flyable).items()}
         arrays |= _arrays_of("places", asset_places(graph))
-    write_folder(folder / CLEARED, key, arrays, _about(key), kept=KEPT_CLEARED)
+    write_folder(folder / CLEARED, key, arrays, _about(key), kept=MAX_MASKED_FILES)
 
 
-def read_cleared(
+def read_masked(
     folder: Path, *, key: str, zones: ZoneIndex, version: int, ground_revision: int, tallest_m: float
 ) -> InspectionGraph | None:
     """The graph with its index, all memory-mapped and read-only; None when the files are missing, broken or of another layout."""
@@ -197,7 +197,7 @@ def _about(key: str) -> dict[str, object]:
 def _index_arrays(graph: InspectionGraph) -> Arrays:
     index = route_index(graph)
     return (
-        _arrays_of("condensed", index.condensed)
+        _arrays_of("condensed", index.contracted)
         | _arrays_of("labels", index.labels)
         | _arrays_of("tree", node_tree(graph))
         | _arrays_of("flyable_places", asset_places(graph))

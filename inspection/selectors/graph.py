@@ -15,15 +15,15 @@ from django.db.models import QuerySet
 
 from inspection.models import GraphSnapshot
 from inspection.network.build.network import Network
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.snapshot_file import (
     LAYOUT,
     from_bytes,
-    key_of_cleared,
-    read_cleared,
+    key_of_masked,
+    read_masked,
     read_network,
-    write_cleared,
+    write_masked,
     write_network,
 )
 from inspection.network.zones.zone_index import ZoneIndex
@@ -158,8 +158,8 @@ def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneInd
                 if network is None:
                     network = from_bytes(content(), content_sha256=content_sha256)
                     write_network(folder, network, content_sha256=content_sha256)
-                graph = _cleared(network, zones)
-                write_cleared(folder, graph, key=_key_of_files(content_sha256, zones), tallest_m=tallest_m)
+                graph = _masked(network, zones)
+                write_masked(folder, graph, key=_key_of_files(content_sha256, zones), tallest_m=tallest_m)
     except OSError as error:
         logger.warning("graph %d is kept in memory, its cache cannot be written: %s", row[0], error)
 
@@ -175,7 +175,7 @@ def _load(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph:
     if graph is not None:
         return graph
     prepare_graph(row, lambda: _content(row), zones)
-    return _read(row, zones) or _cleared(from_bytes(_content(row), content_sha256=row[2]), zones, version=row[0], ground_revision=row[1])
+    return _read(row, zones) or _masked(from_bytes(_content(row), content_sha256=row[2]), zones, version=row[0], ground_revision=row[1])
 
 
 def _content(row: SnapshotRow) -> bytes:
@@ -185,13 +185,13 @@ def _content(row: SnapshotRow) -> bytes:
     return bytes(content)
 
 
-def _cleared(network: Network, zones: ZoneIndex, **stamps: int) -> InspectionGraph:
-    return cleared(network, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, **stamps).graph
+def _masked(network: Network, zones: ZoneIndex, **stamps: int) -> InspectionGraph:
+    return masked(network, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, **stamps).graph
 
 
 def _read(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph | None:
     version, ground_revision, content_sha256 = row
-    return read_cleared(
+    return read_masked(
         settings.GRAPH_CACHE_DIR,
         key=_key_of_files(content_sha256, zones),
         zones=zones,
@@ -202,7 +202,7 @@ def _read(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph | None:
 
 
 def _key_of_files(content_sha256: str, zones: ZoneIndex) -> str:
-    return key_of_cleared(content_sha256, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
+    return key_of_masked(content_sha256, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS, settings.FLIGHT_RULES.tallest_m)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 from workspace.jobs.serializers import Declared
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 from workspace.models import JobState, User
 
 
@@ -152,9 +152,9 @@ def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = Fa
     whole = proposal.summary if reader.organisation_id == proposal.organisation_id else _without_external_ids(proposal.summary)
     summary = {name: value for name, value in whole.items() if not (is_brief and isinstance(value, dict | list))}
     if "notes" in summary:
-        summary["notes"] = [in_words(note) for note in summary["notes"]]
+        summary["notes"] = [render_message(note) for note in summary["notes"]]
     if "not_read" in summary:
-        summary["not_read"] = [record | {"message": in_words(record["message"])} for record in summary["not_read"]]
+        summary["not_read"] = [record | {"message": render_message(record["message"])} for record in summary["not_read"]]
     return {
         "id": str(proposal.pk),
         "kind": proposal.kind,
@@ -164,13 +164,13 @@ def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = Fa
         "size_bytes": proposal.upload and proposal.upload.size_bytes,
         "parameters": proposal.parameters,
         "provenance": proposal.provenance,
-        "faults": [fault | {"message": in_words(fault["message"])} for fault in proposal.faults],
+        "faults": [fault | {"message": render_message(fault["message"])} for fault in proposal.faults],
         "summary": summary,
         "difference": proposal.difference,
         "auto_apply": proposal.auto_apply,
         "max_removed_percent": proposal.max_removed_percent,
-        "held_back": [reason | {"message": in_words(reason["message"])} for reason in proposal.held_back],
-        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": in_words(job.message)},
+        "held_back": [reason | {"message": render_message(reason["message"])} for reason in proposal.held_back],
+        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": render_message(job.message)},
         "created_by": author_name(proposal.created_by, reader),
         "created_at": proposal.created_at,
         "decided_by": author_name(proposal.decided_by, reader),

@@ -10,7 +10,7 @@ from django.db import transaction
 
 from inspection.models import GraphSnapshot
 from inspection.network.build.network import network
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.snapshot_file import to_bytes
 from inspection.selectors.graph import NoGraph, current_graph, prepare_graph, rules_of_snapshots, zones_in_force
 from inspection.selectors.ground import ground_revision
@@ -60,7 +60,7 @@ def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnap
     content = to_bytes(whole)
     notify("clearing the zones", 0.7)
     zones = zones_in_force()
-    built = cleared(whole, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS)
+    built = masked(whole, zones, settings.GRAPH_RULES, settings.FLOWN_HEIGHTS)
     snapshot = GraphSnapshot.objects.create(
         ground_revision=ground.revision,
         rules=rules_of_snapshots(),

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import Addressing, Message
 from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, AutopilotType, Mode
 from mavlink.commands.command import CommandStep, Effect, Seven
-from mavlink.vehicle_class import VehicleClass, refusal_words
+from mavlink.vehicle_class import VehicleClass, refusal_message
 from mavlink.vehicle_state import VehicleState
 
 FIRST_PAUSE_S, MAX_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
@@ -68,7 +68,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     if state.autopilot_type not in COMMANDED:
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
     if state.vehicle_class is not VehicleClass.COPTER and not (order in STOPS and state.can_be_stopped):
-        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
+        raise CannotOrder("vehicle-class", refusal_message(state.vehicle_class))
     if order in (Order.PAUSE, Order.HOLD):
         return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
     if order is Order.RETURN and ITEM in parameters:
@@ -176,7 +176,7 @@ def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
 def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
     """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
     if state.vehicle_class is not VehicleClass.COPTER:
-        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
+        raise CannotOrder("vehicle-class", refusal_message(state.vehicle_class))
     if not _is_ordered_to_fly(state):
         raise CannotOrder("not-flying", "The UAV is on the ground.")
     place = int(parameters[ITEM])

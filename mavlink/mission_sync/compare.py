@@ -61,7 +61,7 @@ def found(
     return ReadbackMatch.MIXED if all(is_of_some) else ReadbackMatch.FOREIGN
 
 
-def mix_in_words(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> str:
+def mix_message(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> str:
     """Which items are whose: "items 0-2 of 7 are new, 3-6 are of the list before"; `before` is None where it is not known."""
     new = _of_list(held, wanted, autopilot_type)
     whose: list[str] = []

@@ -5,7 +5,7 @@ from typing import Any
 
 from mavlink.addressing import Addressing, Message, Messages
 from mavlink.autopilot_type import AutopilotType, Mode
-from mavlink.mission_sync.compare import ItemDifference, ReadbackMatch, are_identical, differences, found, mix_in_words
+from mavlink.mission_sync.compare import ItemDifference, ReadbackMatch, are_identical, differences, found, mix_message
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
 from mavlink.mission_sync.outcome import Mix, SyncOutcome, SyncProgress, SyncState
@@ -14,7 +14,7 @@ from mavlink.mission_sync.upload import REQUESTS, Clear, ListUpload, TransferOut
 from mavlink.mission_sync.wire import OnboardList, has_home, onboard_list, onboard_sha256, sent_list
 from mavlink.script import Course, Machine, Steps
 from mavlink.timeouts import TransferRules
-from mavlink.vehicle_class import VehicleClass, refusal_words
+from mavlink.vehicle_class import VehicleClass, refusal_message
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
 
@@ -132,7 +132,7 @@ class MissionSync:
             if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
                 return (yield from self._give_up())
         held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
-        words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
+        words, left = f"The vehicle holds {held}.", self._left_alone_message()
         lists = {kind: onboard_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
         sha256, mixes = self.load.content_sha256, tuple(self.mixes)
         return SyncOutcome(SyncState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
@@ -145,7 +145,7 @@ class MissionSync:
         elif state.autopilot_type is AutopilotType.OTHER:
             code, words = "autopilot", "Missions are sent to PX4 and ArduPilot only: how this autopilot keeps them is not known."
         elif state.vehicle_class is not VehicleClass.COPTER:
-            code, words = "vehicle-class", refusal_words(state.vehicle_class)
+            code, words = "vehicle-class", refusal_message(state.vehicle_class)
         elif state.is_armed and not state.is_held:
             code, words = "not-held", f"The vehicle is armed and in mode {state.mode}: it must be disarmed or held first."
         else:
@@ -182,7 +182,7 @@ class MissionSync:
                 return True
             if held is not None:
                 self._note_mix(kind, held)
-                self._why = self._why if state is TransferState.REFUSED else self._difference_in_words(kind)
+                self._why = self._why if state is TransferState.REFUSED else self._difference_message(kind)
             if self._is_cancelled or state is TransferState.REFUSED:
                 return False
             self._reason = self._reason or "differs"
@@ -194,7 +194,7 @@ class MissionSync:
             return False
         return self.found_before[kind] is ReadbackMatch.FOREIGN
 
-    def _left_alone_in_words(self) -> str:
+    def _left_alone_message(self) -> str:
         names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
         left = [kind for kind in ORDER if self._is_left_alone(kind)]
         return " ".join(f"Of its own {names[kind]} {len(self.before[kind])} items were left as they are." for kind in left)
@@ -219,10 +219,10 @@ class MissionSync:
             step = Clear(kind, self._addressing, self._rules)
         yield step
         if isinstance(step, ListUpload) and not self._is_restoring:
-            self._why = self._refusal_in_words(step)
+            self._why = self._refusal_message(step)
         return self._ended(step.outcome)
 
-    def _refusal_in_words(self, upload: ListUpload) -> str:
+    def _refusal_message(self, upload: ListUpload) -> str:
         """Which item, by its command, which firmware would not take; empty where none was refused."""
         ended: TransferOutcome | None = upload.outcome
         if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
@@ -234,7 +234,7 @@ class MissionSync:
         place = ended.item - has_home(upload.kind, self._autopilot_type)
         return f"Refused by {autopilot}: item {place} of the {_name(upload.kind)}, {command} ({ended.code})."
 
-    def _difference_in_words(self, kind: MissionType) -> str:
+    def _difference_message(self, kind: MissionType) -> str:
         found = self._differences(kind)
         if not found:
             return ""
@@ -298,7 +298,7 @@ class MissionSync:
         ]
         reason, mixes = self._reason or "differs", tuple(self.mixes)
         if mixed:
-            words = " ".join(self._left_in_words(kind, self._now[kind] or ()) for kind in mixed)
+            words = " ".join(self._left_message(kind, self._now[kind] or ()) for kind in mixed)
             lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
             shown = self._differences(mixed[0])
             return SyncOutcome(SyncState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
@@ -325,17 +325,17 @@ class MissionSync:
         """Of what was read while the list was being replaced, or found to be mixed before."""
         if not held or not self._differs(kind, held) or (kind in self._touched and are_identical(held, self.before[kind])):
             return
-        mix = Mix(kind, self._mix_words(kind, held))
+        mix = Mix(kind, self._mix_message(kind, held))
         if mix not in self.mixes:
             self.mixes.append(mix)
 
-    def _left_in_words(self, kind: MissionType, held: OnboardList) -> str:
+    def _left_message(self, kind: MissionType, held: OnboardList) -> str:
         if not held:
             return f"Its {_name(kind)} could not be put back: it holds none."
-        return f"Its {_name(kind)} is a mix: {self._mix_words(kind, held)}."
+        return f"Its {_name(kind)} is a mix: {self._mix_message(kind, held)}."
 
-    def _mix_words(self, kind: MissionType, held: OnboardList) -> str:
-        return mix_in_words(held, self.load.of(kind), self.before.get(kind), self._autopilot_type)
+    def _mix_message(self, kind: MissionType, held: OnboardList) -> str:
+        return mix_message(held, self.load.of(kind), self.before.get(kind), self._autopilot_type)
 
 
 def _name(kind: MissionType) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 from drf_spectacular.utils import extend_schema_field
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
-from missions.outcome_messages import command_outcome_in_words
+from missions.outcome_messages import render_command_outcome
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_LEG_M, MIN_LEG_M
 from missions.services.closing import MAX_REASON_LENGTH
@@ -293,7 +293,7 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "finished_at": command.finished_at,
         "progress": command.progress,
         "outcome_code": command.outcome_code,
-        "outcome": command_outcome_in_words(command.outcome_code, command.outcome),
+        "outcome": render_command_outcome(command.outcome_code, command.outcome),
     }
 
 

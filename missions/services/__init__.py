@@ -25,7 +25,7 @@ from missions.services.fleet.types_and_bases import (
 from missions.services.fleet.uavs import change_uav, create_uav, delete_uav, restore_uav
 from missions.services.manual_edits.checks import check_manual_edit
 from missions.services.manual_edits.edits import change_route, take_back_change
-from missions.services.manual_edits.points import HandPoint
+from missions.services.manual_edits.points import EditedPoint
 from missions.services.mission_copies import duplicate_mission
 from missions.services.mission_plans import NothingToPlan, plan_mission, plan_mission_for_job, plannable_request, store_plan, take_plan
 from missions.services.missions import (
@@ -68,10 +68,10 @@ __all__ = [
     "BaseRequest",
     "Charging",
     "Departure",
+    "EditedPoint",
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",
-    "HandPoint",
     "InvalidRequest",
     "LockRequest",
     "MissionChange",

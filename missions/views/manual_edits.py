@@ -12,7 +12,7 @@ from missions import services
 from missions.models import Mission
 from missions.selectors import missions
 from missions.selectors.legs import Leg, LegEnd, LegFlyer, faults_of_legs
-from missions.serializers import by_hand, shapes
+from missions.serializers import manual_edits, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
 from workspace.api.signed_in import SignedInRequest
@@ -30,13 +30,13 @@ class RouteWaypoints(APIView):
         description="Start, end and targets stay, in their order; `was` tells which waypoint until now each one is. Every leg is checked"
         " against zones, heights and the battery before anything is kept.",
         parameters=[IF_MATCH],
-        request=by_hand.HandRouteSerializer,
+        request=manual_edits.HandRouteSerializer,
         responses={200: shapes.MissionSerializer, 400: OpenApiResponse(description="What is wrong, by waypoint or leg."), **CHANGED},
     )
     def put(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
-        body = by_hand.HandRouteSerializer(data=request.data)
+        body = manual_edits.HandRouteSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with api_problems(has_precondition=expected is not None):
             services.change_route(mission=mission, actor=request.user, uav=uav, points=body.points(), expected_revision=expected)
@@ -51,19 +51,19 @@ class RouteWaypointsLook(APIView):
         operation_id="look_at_route_by_hand",
         summary="What flying a route over other waypoints would take, and what is wrong with it",
         description="Nothing is kept. Unlike when it is to be kept, all that is wrong is told, and beside it length, time and battery.",
-        request=by_hand.HandRouteSerializer,
-        responses=by_hand.HandLookSerializer,
+        request=manual_edits.HandRouteSerializer,
+        responses=manual_edits.HandLookSerializer,
     )
     def post(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         try:
             mission = missions.mission_alone(request.user.organisation, mission_id)
         except Mission.DoesNotExist as error:
             raise Http404 from error
-        body = by_hand.HandRouteSerializer(data=request.data)
+        body = manual_edits.HandRouteSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with api_problems():
             check = services.check_manual_edit(mission=mission, uav=uav, points=body.points())
-        return Response(by_hand.manual_edit_check_json(check))
+        return Response(manual_edits.manual_edit_check_json(check))
 
 
 class RouteWaypointsUndo(APIView):
@@ -95,16 +95,16 @@ class LegChecks(APIView):
     @extend_schema(
         operation_id="check_legs",
         summary="Whether legs are clear of zones at their height and time",
-        request=by_hand.LegChecksInputSerializer,
-        responses=by_hand.LegChecksSerializer,
+        request=manual_edits.LegChecksInputSerializer,
+        responses=manual_edits.LegChecksSerializer,
     )
     def post(self, request: SignedInRequest) -> Response:
-        body = by_hand.LegChecksInputSerializer(data=request.data)
+        body = manual_edits.LegChecksInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         departs_at = body.validated_data.get("departs_at")
         legs = [Leg(_end(leg["start"]), _end(leg["end"]), leg.get("speed_mps")) for leg in body.validated_data["legs"]]
         found = faults_of_legs(legs, departs_at, self._flyer(request, body.validated_data, legs))
-        return Response(by_hand.LegChecksSerializer({"legs": found}).data)
+        return Response(manual_edits.LegChecksSerializer({"legs": found}).data)
 
     def _flyer(self, request: SignedInRequest, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
         """Who flies the legs that have a speed."""

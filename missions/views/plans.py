@@ -24,7 +24,7 @@ from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 from workspace.models import Job, JobState, Role, User
 from workspace.tasks import send_job_on_commit
 
@@ -148,7 +148,7 @@ def _awaited(response: Response, wait_s: int) -> Response:
         return response
     if job is not None and job.state == JobState.FAILED:
         error = job.error or {}
-        code, message = str(error.get("code", "")), in_words(str(error.get("message", "")))
+        code, message = str(error.get("code", "")), render_message(str(error.get("message", "")))
         status = STATUS_OF_FAILURE.get(code, 500)
         raise ApiProblem(status, code, message, retry_after_s=JOBS_RETRY_AFTER_S if status == 503 else None)
     headers = {name: response[name] for name in ("Location", "Idempotency-Replayed") if name in response}

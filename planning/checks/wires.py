@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.network import Network
-from inspection.network.build.obstacles import index_of_walls, walls_along
+from inspection.network.build.obstacles import obstacle_index_of, obstacles_along
 from inspection.network.spans import BESIDE_M, spans_of
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.assignment.candidate_plan import CandidatePlan
@@ -53,8 +53,8 @@ def walls_of_spans(network: Network, numbers: Collection[int], closed: Collectio
     is_closed = np.isin(rows, sorted(closed))
     for side, place in enumerate((start, end)):
         cut[is_closed & ~_near_any(place, np.array(terminals)), side] = 0.0
-    walls = walls_along(start + cut[:, :1] * (end - start), end - cut[:, 1:] * (end - start), cut == 0.0)
-    return index_of_walls(walls)
+    obstacles = obstacles_along(start + cut[:, :1] * (end - start), end - cut[:, 1:] * (end - start), cut == 0.0)
+    return obstacle_index_of(obstacles)
 
 
 def _near_any(places: FloatArray, terminals: FloatArray) -> NDArray[np.bool_]:

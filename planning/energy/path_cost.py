@@ -94,9 +94,9 @@ def graph_taken(
             return kept_of_graph[key]
     air = Air.of(flying, conditions, rules)
     passed_m = pass_agl_m(node_heights_m(graph, slice(None)), rules)
-    condensed, steps = route_index(graph).condensed, steps_of_graph(graph)
+    contracted, steps = route_index(graph).contracted, steps_of_graph(graph)
     taken = _steps_taken(
-        condensed.chain_first, condensed.place_node, steps.length_m, steps.east, steps.north, passed_m, ground_m,
+        contracted.chain_first, contracted.place_node, steps.length_m, steps.east, steps.north, passed_m, ground_m,
         air.wind, air.temperature_c, air.own, air.table,
     )  # fmt: skip
     kept = GraphTaken(sums_along(graph, taken), air, passed_m, ground_m)

@@ -22,7 +22,7 @@ from inspection.network.nearness import chord
 from inspection.network.paths.access import band_of_legs
 from inspection.network.paths.contracted_graph import CORE
 from inspection.network.paths.node_tree import points_on_sphere
-from inspection.network.paths.one_to_all import Crossroads, crossroads, spread
+from inspection.network.paths.one_to_all import CoreGraph, core_graph, search_from
 from inspection.network.route_index import node_tree, route_index
 from inspection.network.rules import asset_heights_m
 from inspection.network.zones.zone_index import ZoneIndex
@@ -178,7 +178,7 @@ def _reach_of_nodes(
     landed_at = bases if any(one.end is End.ANY_BASE for one in flights) else []
     base_legs = [access_legs(graph, zones, Terminal(base), rules) for base in landed_at]
     islands = _Islands.of(graph, zones, joined(list(legs.values())), joined(base_legs), rules)
-    scene = _Scene(graph, zones, rules, islands, crossroads(route_index(graph).condensed), conditions, flight_rules)
+    scene = _Scene(graph, zones, rules, islands, core_graph(route_index(graph).contracted), conditions, flight_rules)
     to_base: dict[FlightClass | None, _Ways] = {}
     for (place, flying), alike in _alike(flights).items():
         there = scene.ways([place], [legs[place]], flying)
@@ -344,7 +344,7 @@ class _Scene:
     zones: ZoneIndex
     rules: AccessRules
     islands: _Islands
-    at_core: Crossroads
+    at_core: CoreGraph
     conditions: Conditions
     flight_rules: FlightRules
 
@@ -353,13 +353,13 @@ class _Scene:
         all_legs = joined(list(legs))
         graph, islands = self.graph, self.islands
         if flying is None:
-            found = spread(graph, all_legs, self.at_core)
+            found = search_from(graph, all_legs, self.at_core)
             ways = _Ways(found.cost, found.length_m, None)
         else:
             kept = self._taken(flying)
             start = np.repeat(np.array(places, dtype=np.float64).reshape(-1, 2), [len(some) for some in legs], axis=0)
             leg_taken = self._legs_taken(start, all_legs.node, all_legs.length_m, flying)
-            found = spread(graph, all_legs, self.at_core, place_sum=kept.sums.place, leg_taken=leg_taken)
+            found = search_from(graph, all_legs, self.at_core, place_sum=kept.sums.place, leg_taken=leg_taken)
             ways = _Ways(found.cost, found.length_m, found.taken)
         if len(islands.node):
             over_cost = self.rules.off_network_factor * islands.length_m + ways.cost[islands.other]

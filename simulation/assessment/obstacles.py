@@ -70,7 +70,7 @@ def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float)
     moment, span = shapely.STRtree(lines).query(shapely.points(flat), predicate="dwithin", distance=LOOK_M)
     if not len(moment):
         return None, None
-    away_m = _from_walls(flat[moment], track.amsl_m[rows[moment]], start, end, standing, near[span])
+    away_m = _from_obstacles(flat[moment], track.amsl_m[rows[moment]], start, end, standing, near[span])
     is_column = in_columns(flown, column_m)[rows[moment]]
     found: list[Approach | None] = []
     for mask, column in ((~is_column, False), (is_column, True)):
@@ -95,7 +95,7 @@ def in_columns(flown: FlownFlight, column_m: float) -> BoolArray:
     return inside
 
 
-def _from_walls(
+def _from_obstacles(
     flat: FloatArray, amsl_m: FloatArray, start: FloatArray, end: FloatArray, standing: Standing, span: FloatArray
 ) -> FloatArray:
     along = end[span] - start[span]

@@ -8,7 +8,7 @@ from django.utils.translation import gettext_noop
 
 from missions.models import Mission
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
-from simulation.serializers.words import finding_in_words
+from simulation.serializers.words import render_finding
 from simulation.services.fleet import CHOSEN
 from workspace.jobs.serializers import JobSerializer
 
@@ -74,7 +74,7 @@ def rehearsal_json(rehearsal: Rehearsal, *, content_sha256: str | None, ground_r
         "ground_revision": rehearsal.ground_revision,
         "ground_changed": rehearsal.ground_revision != ground_revision,
         "seed": rehearsal.seed,
-        "uavs": [{**uav, "words": _stand_in_words(uav)} for uav in rehearsal.uavs],
+        "uavs": [{**uav, "words": _render_stand_in(uav)} for uav in rehearsal.uavs],
         "created_at": rehearsal.created_at,
         "created_by": rehearsal.created_by.username if rehearsal.created_by else None,
         "runs": [_run(run, rehearsal) for run in rehearsal.runs.all()],
@@ -128,7 +128,7 @@ def planned_points(mission: Mission) -> dict[int, list[dict[str, Any]]]:
     }
 
 
-def _stand_in_words(uav: Mapping[str, Any]) -> str:
+def _render_stand_in(uav: Mapping[str, Any]) -> str:
     values = {"uav": uav["name"], "airframe": uav["airframe_name"], "battery": f"{uav['battery_wh']:.0f}"}
     if uav["why"] == CHOSEN:
         if uav["has_own_battery"]:
@@ -154,7 +154,7 @@ def _run(run: RehearsalRun, rehearsal: Rehearsal) -> dict[str, Any]:
 def _verdict(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any] | None:
     if run.verdict is None:
         return None
-    findings = [finding_in_words(finding, names, labels) for finding in run.verdict["findings"]]
+    findings = [render_finding(finding, names, labels) for finding in run.verdict["findings"]]
     return {
         **run.verdict,
         "findings": findings,

@@ -7,7 +7,7 @@ from django.utils.formats import get_format
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 
 # Of findings, by their code; the figures are put in as they are written for people.
 SENTENCES = {
@@ -46,7 +46,7 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
     facts["wind"], facts["agl"] = facts.get("wind_mps"), facts.get("agl_m")
     facts["number"] = facts.get("flight")
     facts["other"] = names.get(facts.get("other", -1), "")
-    facts["said"] = in_words(str(facts.get("said") or ""))
+    facts["said"] = render_message(str(facts.get("said") or ""))
     several = (facts.get("flights") or 1) > 1
     facts["flight"] = f" ({_('flight %(number)s') % {'number': facts['number']}})" if several else ""
     facts["waypoint"] = _number_of(facts.get("waypoint"))
@@ -55,7 +55,7 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
     return str(finding["code"]) if sentence is None else (_(sentence) % shown).strip()
 
 
-def finding_in_words(finding: Mapping[str, Any], names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any]:
+def render_finding(finding: Mapping[str, Any], names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any]:
     """With its sentence, after what it is about: the target by its number and name, else the UAV."""
     target = finding["target"]
     about = names.get(finding["uav"], "")

@@ -11,7 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from simulation.flight.states import DONE, FlightMode, OrderRefused, Outcome
-from simulation.vehicle_protocol.command_door import ReceivedCommand
+from simulation.vehicle_protocol.command_endpoint import ReceivedCommand
 from simulation.vehicle_protocol.item_rules import begins_with_take_off
 from simulation.vehicle_protocol.mode_numbers import (
     COPTER_BY_HAND,

@@ -6,7 +6,7 @@ from typing import Any
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
-from missions.outcome_messages import outcome_in_words
+from missions.outcome_messages import render_outcome
 
 # Detectors know no languages: what they may say is named here for the catalogues.
 TEMPLATES = (
@@ -124,7 +124,7 @@ def alert_words(message: str, values: Mapping[str, Any]) -> str:
     if not values:
         return message
     read = {
-        name: outcome_in_words(value) if name == "words" else _(value) if name in TRANSLATED_VALUES else value
+        name: render_outcome(value) if name == "words" else _(value) if name in TRANSLATED_VALUES else value
         for name, value in values.items()
     }
     try:

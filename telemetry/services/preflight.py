@@ -19,7 +19,7 @@ from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
 from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
-from missions.outcome_messages import outcome_in_words
+from missions.outcome_messages import render_outcome
 from missions.selectors.commands import upload_of
 from missions.selectors.fleet import performance_of
 from missions.selectors.missions import approval_in_force, mission_of_organisation
@@ -269,7 +269,7 @@ def _onboard_mission(uav: Uav, approval: Approval, link: UavLink) -> Check:
         return Check(
             "mission",
             CheckState.FAILED,
-            _("Not uploaded: %(why)s") % {"why": outcome_in_words(upload.outcome) or upload.get_state_display()},
+            _("Not uploaded: %(why)s") % {"why": render_outcome(upload.outcome) or upload.get_state_display()},
         )
     if link.loaded_doubt:
         return Check("mission", CheckState.WARNING, _("Uploaded; it may hold something else by now, and is read back before it starts"))

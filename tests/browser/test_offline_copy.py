@@ -190,7 +190,7 @@ def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: V
         page.reload()
         wait_for_map(page)
         expect(page.locator(".copy-banner")).to_contain_text(COPY_FROM)
-        line.mend()
+        line.repair()
         page.close()
 
 

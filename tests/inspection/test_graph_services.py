@@ -252,17 +252,17 @@ def test_an_export_without_a_graph_or_to_no_folder_says_why(line, tmp_path):
     assert not connection.needs_rollback
 
 
-def cleared_files(settings) -> set[str]:
+def masked_files(settings) -> set[str]:
     return {path.name for path in (settings.GRAPH_CACHE_DIR / CLEARED).iterdir()}
 
 
 def test_the_task_leaves_the_index_ready_for_planners(line, settings):
     services.build_graph()
-    (name,) = cleared_files(settings)
+    (name,) = masked_files(settings)
     assert (settings.GRAPH_CACHE_DIR / CLEARED / name / "labels.label_hub.npy").exists()
     index = route_index(selectors.current_graph())
     assert isinstance(index.labels.label_cost.base, np.memmap)
-    assert cleared_files(settings) == {name}
+    assert masked_files(settings) == {name}
 
 
 def test_an_old_snapshot_without_files_gets_them_when_it_is_loaded(line, settings):
@@ -310,7 +310,7 @@ def test_a_snapshot_after_a_change_of_zones_has_the_network_of_before(line, sett
     second = services.build_graph()
     assert second.arrays_sha256 == first.arrays_sha256
     assert len(list((settings.GRAPH_CACHE_DIR / NETWORKS).iterdir())) == 1
-    assert len(cleared_files(settings)) == 2
+    assert len(masked_files(settings)) == 2
 
 
 def test_each_set_of_zones_has_its_graph(line):

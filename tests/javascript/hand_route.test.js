@@ -1,8 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
-import { createHandEditing } from "../../static/js/mission/hand/hand_editing.js";
-import { figuresOfLook, speedWords } from "../../static/js/mission/hand/hand_figures.js";
+import { figuresOfCheck, speedWords } from "../../static/js/mission/hand/hand_figures.js";
 import {
   bodyOf,
   changedLegs,
@@ -16,6 +14,7 @@ import {
   pointsOf,
   raised,
 } from "../../static/js/mission/hand/hand_route.js";
+import { createManualEditing } from "../../static/js/mission/hand/manual_editing.js";
 import { createStore } from "../../static/js/store.js";
 
 const at = (lon, kind, target = null) => ({ position: [lon, 40], altitude_agl_m: 60, kind, target });
@@ -35,7 +34,7 @@ test("start, end and targets stay where they are and on the route", () => {
     assert.equal(dropped(original, index), original);
   }
   assert.deepEqual(moved(original, 1, [10.011, 40.001])[1].position, [10.011, 40.001]);
-  assert.equal(original[3].isByHand, true);
+  assert.equal(original[3].isManual, true);
 });
 
 test("only the legs beside a change are changed", () => {
@@ -108,7 +107,7 @@ async function editing() {
     selection: EMPTY,
     tool: "point",
   });
-  const actions = createHandEditing(
+  const actions = createManualEditing(
     { store, selection: () => EMPTY, problem: () => {}, wordsOf: String },
     { save: async () => {}, keepOpen: () => {} },
   );
@@ -124,7 +123,7 @@ test("each change is a step that can be undone, and each route is asked about on
     asked.map(([method, address]) => [method, address]),
     [["POST", "/api/v1/missions/m/routes/0/waypoints/look"]],
   );
-  actions.moveByHand(1, [10.01, 40.02]);
+  actions.moveManually(1, [10.01, 40.02]);
   assert.deepEqual(
     [...hand().legs],
     [
@@ -132,7 +131,7 @@ test("each change is a step that can be undone, and each route is asked about on
       [1, null],
     ],
   );
-  assert.equal(hand().isLookOld, true);
+  assert.equal(hand().isCheckOld, true);
   await settled();
   assert.deepEqual(
     [...hand().legs].map(([index, known]) => [index, known.is_clear]),
@@ -141,10 +140,10 @@ test("each change is a step that can be undone, and each route is asked about on
       [1, true],
     ],
   );
-  assert.deepEqual([hand().look.length_m, hand().isLookOld, [...hand().faults.legs.keys()]], [3500, false, [0]]);
-  actions.undoByHand();
-  assert.deepEqual([hand().legs.size, hand().isLookOld], [0, false]);
-  actions.redoByHand();
+  assert.deepEqual([hand().look.length_m, hand().isCheckOld, [...hand().faults.legs.keys()]], [3500, false, [0]]);
+  actions.undoManualEdit();
+  assert.deepEqual([hand().legs.size, hand().isCheckOld], [0, false]);
+  actions.redoManualEdit();
   await settled();
   assert.equal(asked.length, 2); // known already
   assert.deepEqual([hand().canUndo, hand().canRedo], [true, false]);
@@ -155,9 +154,9 @@ test("each change is a step that can be undone, and each route is asked about on
 test("while a waypoint is dragged the last answer stands until the next one, and the last place is asked about", async () => {
   const { actions, hand } = await editing();
   const at = (lat) => moved(hand().original, 1, [10.01, lat]);
-  actions.dragByHand(at(40.02), 1);
-  actions.dragByHand(at(40.03), 1);
-  actions.dragByHand(at(40.001), 1);
+  actions.dragManually(at(40.02), 1);
+  actions.dragManually(at(40.03), 1);
+  actions.dragManually(at(40.001), 1);
   assert.equal(asked.length, 2); // one after the other
   await settled();
   assert.equal(asked.length, 3);
@@ -166,8 +165,8 @@ test("while a waypoint is dragged the last answer stands until the next one, and
     [...hand().legs.values()].map(({ is_clear }) => is_clear),
     [true, true],
   );
-  actions.dropByHand(at(40.02), 1);
-  assert.equal(hand().isLookOld, false); // that place was asked about on the way
+  actions.dropManually(at(40.02), 1);
+  assert.equal(hand().isCheckOld, false); // that place was asked about on the way
   assert.equal(hand().legs.get(0).is_clear, false);
 });
 
@@ -177,13 +176,13 @@ test("what could not be asked says so and is asked again with the next change", 
   globalThis.fetch = async () => {
     throw new TypeError("away");
   };
-  actions.moveByHand(1, [10.01, 40.002]);
+  actions.moveManually(1, [10.01, 40.002]);
   await settled();
   assert.match(hand().unknown, /^Not checked: /);
   globalThis.fetch = fetch;
-  actions.moveByHand(1, [10.01, 40.003]);
+  actions.moveManually(1, [10.01, 40.003]);
   await settled();
-  assert.deepEqual([hand().unknown, hand().isLookOld], ["", false]);
+  assert.deepEqual([hand().unknown, hand().isCheckOld], ["", false]);
 });
 
 test("a fault of a waypoint is one of the legs at it", () => {
@@ -197,11 +196,11 @@ test("a fault of a waypoint is one of the legs at it", () => {
 test("length, time and battery are told beside what they were", () => {
   const look = { length_m: 3812, duration_s: 372, battery_percent: 57.8 };
   assert.equal(
-    figuresOfLook(look, route),
+    figuresOfCheck(look, route),
     "3.8\u00a0km (+412\u00a0m) · 6\u00a0min (+1\u00a0min) · 58\u00a0% (−2\u00a0%) at landing",
   );
-  assert.equal(figuresOfLook({ ...look, length_m: null }, route), "");
-  assert.doesNotMatch(figuresOfLook({ length_m: 3400, duration_s: 300, battery_percent: null }, route), /[(%]/);
+  assert.equal(figuresOfCheck({ ...look, length_m: null }, route), "");
+  assert.doesNotMatch(figuresOfCheck({ length_m: 3400, duration_s: 300, battery_percent: null }, route), /[(%]/);
 });
 
 test("the speed on a leg is what the wind leaves", () => {

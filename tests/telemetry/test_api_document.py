@@ -14,12 +14,12 @@ from inspection.tasks import apply_proposal, read_proposal
 from missions.tasks import solve_plan
 from tests.accounts.users import a_user
 from tests.missions.worlds import world
-from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
-from tests.workspace.live.proxied_site import Door
+from tests.telemetry.live.conftest import closed_endpoint, endpoint, here, live_program, without_redis
+from tests.workspace.live.proxied_site import Endpoint
 from workspace.api_tokens import create_api_token
 from workspace.models import Role
 
-__all__ = ["closed_door", "door", "here", "live_program", "without_redis"]
+__all__ = ["closed_endpoint", "endpoint", "here", "live_program", "without_redis"]
 pytestmark = pytest.mark.django_db(transaction=True)
 DOCUMENT = Path(settings.BASE_DIR) / "docs" / "api.md"
 SECTIONS = [
@@ -52,7 +52,7 @@ def run_here(task: str, *, args: list[str], retry: bool) -> None:
     TASKS[task](*args)
 
 
-def test_every_example_of_the_document_runs(live_server: Any, here: Door) -> None:
+def test_every_example_of_the_document_runs(live_server: Any, here: Endpoint) -> None:
     world()
     token = create_api_token(user=a_user(Role.ADMINISTRATOR), name="example", expires_at=timezone.now() + timedelta(hours=1))
     assert list(examples()) == SECTIONS

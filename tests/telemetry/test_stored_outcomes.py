@@ -8,7 +8,7 @@ import pytest
 from django.utils.translation import override
 
 from mavlink.commands.actions import Order
-from missions.outcome_messages import PARTS, SENTENCES, is_foreseen, outcome_in_words
+from missions.outcome_messages import PARTS, SENTENCES, is_foreseen, render_outcome
 
 ROOT = Path(__file__).resolve().parents[2]
 MAKERS = [
@@ -72,7 +72,7 @@ def test_every_sentence_that_a_gateway_makes_is_foreseen(path):
 def test_what_is_put_together_is_foreseen(stored):
     assert is_foreseen(stored)
     with override("en"):
-        assert outcome_in_words(stored) == stored
+        assert render_outcome(stored) == stored
 
 
 def test_each_sentence_is_read_as_itself():
@@ -82,12 +82,10 @@ def test_each_sentence_is_read_as_itself():
 
 def test_it_is_told_in_german_with_its_figures():
     with override("de"):
-        assert outcome_in_words("The UAV stands 120 m from the planned take-off; 100 m are allowed.") == (
+        assert render_outcome("The UAV stands 120 m from the planned take-off; 100 m are allowed.") == (
             "Das UAV steht 120 m vom geplanten Startplatz entfernt; 100 m sind erlaubt."
         )
-        reported = outcome_in_words(
-            "Could not take-off, at leave the ground. The vehicle agreed, and nothing happened. Compass not healthy"
-        )
+        reported = render_outcome("Could not take-off, at leave the ground. The vehicle agreed, and nothing happened. Compass not healthy")
     assert reported.startswith(
         "„Abheben“ ging nicht, beim Schritt „vom Boden abheben“. Das Fahrzeug hat zugestimmt, und nichts ist geschehen."
     )
@@ -96,8 +94,8 @@ def test_it_is_told_in_german_with_its_figures():
 
 def test_what_a_vehicle_says_itself_stays_as_it_is():
     with override("de"):
-        assert outcome_in_words("PreArm: Need 3D Fix. Check it.") == "PreArm: Need 3D Fix. Check it."
-        assert outcome_in_words("") == ""
+        assert render_outcome("PreArm: Need 3D Fix. Check it.") == "PreArm: Need 3D Fix. Check it."
+        assert render_outcome("") == ""
 
 
 def test_every_order_has_a_word():

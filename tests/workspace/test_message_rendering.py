@@ -6,19 +6,19 @@ from pathlib import Path
 import pytest
 from django.utils.translation import override
 
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_a_message_of_a_worker_is_read_in_german() -> None:
     with override("de"):
-        assert in_words("Looking for a first plan") == "Ein erster Plan wird gesucht"
+        assert render_message("Looking for a first plan") == "Ein erster Plan wird gesucht"
 
 
 def test_what_was_put_in_is_put_in_again() -> None:
     with override("de"):
-        assert in_words("12.5 MiB from Overpass") == "12.5 MiB von Overpass"
+        assert render_message("12.5 MiB from Overpass") == "12.5 MiB von Overpass"
 
 
 @pytest.mark.parametrize(
@@ -32,12 +32,12 @@ def test_what_was_put_in_is_put_in_again() -> None:
 )
 def test_what_a_simulated_uav_says_of_trouble_is_read_in_german(stated: str, german: str) -> None:
     with override("de"):
-        assert in_words(stated) == german
+        assert render_message(stated) == german
 
 
 def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
     with override("de"):
-        assert in_words("Something else.") == "Something else."
+        assert render_message("Something else.") == "Something else."
 
 
 @pytest.mark.parametrize(
@@ -56,4 +56,4 @@ def test_every_step_of_a_job_has_a_word_in_german(path: str) -> None:
     steps = re.findall(r'[pP]rogress\((?:[\d.]+(?: \+ [\w./ ]+)?, )?"([^"]+)"|_notify\(progress, "([^"]+)"', (ROOT / path).read_text())
     assert steps
     with override("de"):
-        assert [step for pair in steps for step in pair if step and in_words(step) == step] == []
+        assert [step for pair in steps for step in pair if step and render_message(step) == step] == []

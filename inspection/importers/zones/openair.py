@@ -358,11 +358,11 @@ class _Reader:
         try:
             return MultiPolygon(polygons_of_rings([ring], f"{place}, {record.name!r}"))
         except GeometryFault:
-            mended = area_of_all_loops(ring) if np.abs(np.diff(ring[:, 0])).max() < 180.0 else None
-            if mended is None:
+            repaired = area_of_all_loops(ring) if np.abs(np.diff(ring[:, 0])).max() < 180.0 else None
+            if repaired is None:
                 raise
         self.crossing_names.append(record.name)
-        return MultiPolygon(mended)
+        return MultiPolygon(repaired)
 
     def _name(self, record: _Record, rest: str, place: str) -> None:
         record.name = checked_text(rest, place, MAX_NAME)

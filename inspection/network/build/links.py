@@ -71,10 +71,10 @@ def bridge_to_tower_links(bridges: IntArray, supports: IntArray, nodes: FlownNod
 
 
 def railway_to_tower_links(
-    railway_points: IntArray, supports: IntArray, nodes: FlownNodes, cleared: Edges, zones: ZoneIndex, rules: LinkingRules
+    railway_points: IntArray, supports: IntArray, nodes: FlownNodes, masked: Edges, zones: ZoneIndex, rules: LinkingRules
 ) -> NearestLinks:
     """One link, the shortest clear one, for each component of the cleared graph that has railway points and no support."""
-    _, component = component_labels(len(nodes.position), cleared.pair)
+    _, component = component_labels(len(nodes.position), masked.pair)
     cut_off = railway_points[~np.isin(component[railway_points], component[supports])]
     row, other, metres = nearest_within(nodes.position[cut_off], nodes.position[supports], rules.railway_to_tower_m, count=TRIES)
     order = np.lexsort((other, row, metres, component[cut_off[row]]))

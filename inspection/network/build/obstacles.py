@@ -21,42 +21,42 @@ FloatArray = NDArray[np.float64]
 Geometries = NDArray[np.object_]
 
 _too_tall: WeakKeyDictionary[Network, tuple[FlownHeights, ZoneIndex]] = WeakKeyDictionary()
-_with_walls: WeakKeyDictionary[ZoneIndex, WeakKeyDictionary[ZoneIndex, ZoneIndex]] = WeakKeyDictionary()
+_with_obstacles: WeakKeyDictionary[ZoneIndex, WeakKeyDictionary[ZoneIndex, ZoneIndex]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
 class LowCeilings:
     """Spans that can be flown over, but not where a zone hangs over them: walls, and the nodes at their ends."""
 
-    walls: ZoneIndex
+    obstacles: ZoneIndex
     node: NDArray[np.int64]
 
 
-def too_tall_walls(network: Network, heights: FlownHeights) -> ZoneIndex:
+def too_tall_obstacles(network: Network, heights: FlownHeights) -> ZoneIndex:
     """BESIDE_M around what would have to be passed above the highest flight, at all heights; made once for a network."""
     found = _too_tall.get(network)
     if found is None or found[0] != heights:
-        found = _too_tall[network] = heights, index_of_walls(_walls(network, heights))
+        found = _too_tall[network] = heights, obstacle_index_of(_obstacles(network, heights))
     return found[1]
 
 
-def index_of_walls(polygons: Geometries) -> ZoneIndex:
+def obstacle_index_of(polygons: Geometries) -> ZoneIndex:
     return ZoneIndex(polygons, np.full(len(polygons), NO_ZONE), [WALL] * len(polygons))
 
 
-def with_walls(zones: ZoneIndex, walls: ZoneIndex) -> ZoneIndex:
+def with_obstacles(zones: ZoneIndex, obstacles: ZoneIndex) -> ZoneIndex:
     """Both, the zones first; made once for the two, with what the index works out as it is asked, and kept for as long as both are."""
-    if not len(walls):
+    if not len(obstacles):
         return zones
-    of_zones = _with_walls.setdefault(zones, WeakKeyDictionary())
-    both = of_zones.get(walls)
+    of_zones = _with_obstacles.setdefault(zones, WeakKeyDictionary())
+    both = of_zones.get(obstacles)
     if both is None:
-        both = of_zones[walls] = ZoneIndex(
-            np.concatenate([zones.polygons, walls.polygons]),
-            np.concatenate([zones.ids, walls.ids]),
-            [*zones.names, *walls.names],
-            floor_agl_m=np.concatenate([zones.floor_agl_m, walls.floor_agl_m]),
-            ceiling_agl_m=np.concatenate([zones.ceiling_agl_m, walls.ceiling_agl_m]),
+        both = of_zones[obstacles] = ZoneIndex(
+            np.concatenate([zones.polygons, obstacles.polygons]),
+            np.concatenate([zones.ids, obstacles.ids]),
+            [*zones.names, *obstacles.names],
+            floor_agl_m=np.concatenate([zones.floor_agl_m, obstacles.floor_agl_m]),
+            ceiling_agl_m=np.concatenate([zones.ceiling_agl_m, obstacles.ceiling_agl_m]),
         )
     return both
 
@@ -66,7 +66,7 @@ def at_all_heights(zones: ZoneIndex) -> ZoneIndex:
     return ZoneIndex(zones.polygons, zones.ids, zones.names)
 
 
-def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_]) -> Geometries:
+def obstacles_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_]) -> Geometries:
     """BESIDE_M around lines in lon/lat, (n, 2) each, what touches in one piece; round the ends where that is told, (n, 2)."""
     if not len(start):
         return np.zeros(0, dtype=object)
@@ -78,17 +78,17 @@ def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_])
         caps = shapely.buffer(shapely.points(place_m[rounded]), BESIDE_M * ROUNDER, quad_segs=CORNERS)
         pieces[rounded] = shapely.union(pieces[rounded], caps)
     vertices, owner = shapely.get_coordinates(pieces, return_index=True)
-    walls: Geometries = shapely.get_parts(shapely.union_all(shapely.set_coordinates(pieces, vertices / scale[owner])))
-    return walls
+    obstacles: Geometries = shapely.get_parts(shapely.union_all(shapely.set_coordinates(pieces, vertices / scale[owner])))
+    return obstacles
 
 
-def _walls(network: Network, heights: FlownHeights) -> Geometries:
+def _obstacles(network: Network, heights: FlownHeights) -> Geometries:
     tallest_m = heights.max_agl_m - heights.clearance_m
     pairs, heights_m, _ = hung_between(network, tallest_m)
     start, along = network.position[pairs[:, 0]], network.position[pairs[:, 1]] - network.position[pairs[:, 0]]
     begin, until = _above(heights_m[:, 0], heights_m[:, 1], tallest_m)
     is_round = np.column_stack([begin == 0.0, until == 1.0])
-    return walls_along(start + begin[:, None] * along, start + until[:, None] * along, is_round)
+    return obstacles_along(start + begin[:, None] * along, start + until[:, None] * along, is_round)
 
 
 def _above(start_m: FloatArray, end_m: FloatArray, limit_m: float) -> tuple[FloatArray, FloatArray]:
@@ -110,8 +110,8 @@ def low_ceilings(network: Network, zones: ZoneIndex, heights: FlownHeights, clea
     met, hangs = np.zeros(len(start), dtype=bool), (start != end).any(axis=1)
     met[hangs] = aloft.meets(start[hangs], end[hangs], wide_m, low_m[hangs], high_m[hangs])
     met[~hangs] = aloft.contains(start[~hangs], wide_m, low_m[~hangs], high_m[~hangs])
-    walls = walls_along(start[met], end[met], np.ones((int(met.sum()), 2), dtype=bool))
-    return LowCeilings(index_of_walls(walls), np.unique(pairs[met]))
+    obstacles = obstacles_along(start[met], end[met], np.ones((int(met.sum()), 2), dtype=bool))
+    return LowCeilings(obstacle_index_of(obstacles), np.unique(pairs[met]))
 
 
-NO_CEILINGS = LowCeilings(index_of_walls(np.zeros(0, dtype=object)), np.zeros(0, dtype=np.int64))
+NO_CEILINGS = LowCeilings(obstacle_index_of(np.zeros(0, dtype=object)), np.zeros(0, dtype=np.int64))

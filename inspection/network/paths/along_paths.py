@@ -53,11 +53,11 @@ class Sums:
 
 def _steps(graph: InspectionGraph) -> PathSteps:
     index = route_index(graph)
-    condensed, labels = index.condensed, index.labels
+    contracted, labels = index.contracted, index.labels
     next_entry, turn = _entries_in_turn(
-        condensed.chain_tail, condensed.chain_head, labels.label_first, labels.label_hub, labels.label_chain
+        contracted.chain_tail, contracted.chain_head, labels.label_first, labels.label_hub, labels.label_chain
     )
-    length_m, east, north = _directions(condensed.chain_first, condensed.place_node, condensed.place_m, graph.position)
+    length_m, east, north = _directions(contracted.chain_first, contracted.place_node, contracted.place_m, graph.position)
     return PathSteps(length_m, east, north, next_entry, turn)
 
 
@@ -66,9 +66,11 @@ steps_of_graph = OncePerGraph(_steps)
 
 def sums_along(graph: InspectionGraph, taken: FloatArray) -> Sums:
     """taken (p, 2, q): what the step to each place of a chain takes, and the step back; 0 at a chain's first place. Summed in place."""
-    condensed, labels = route_index(graph).condensed, route_index(graph).labels
+    contracted, labels = route_index(graph).contracted, route_index(graph).labels
     steps = steps_of_graph(graph)
-    label = _sums(taken, condensed.chain_first, condensed.chain_tail, labels.label_first, labels.label_chain, steps.next_entry, steps.turn)
+    label = _sums(
+        taken, contracted.chain_first, contracted.chain_tail, labels.label_first, labels.label_chain, steps.next_entry, steps.turn
+    )
     return Sums(taken, label)
 
 
@@ -94,8 +96,8 @@ def leg_of_way(end: int, entry_leg: NumberArray) -> int:
 
 def chain_arrays(index: RouteIndex) -> tuple[NumberArray, NumberArray, NumberArray]:
     """In the order in which the compiled sums take them."""
-    condensed = index.condensed
-    return condensed.node_chain, condensed.node_place, condensed.chain_first
+    contracted = index.contracted
+    return contracted.node_chain, contracted.node_place, contracted.chain_first
 
 
 @njit(cache=True, nogil=True)

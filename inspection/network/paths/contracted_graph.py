@@ -56,26 +56,26 @@ class ContractedGraph:
         return length_m
 
 
-def condense(node_count: int, edge: NDArray[np.integer], cost: FloatArray, length_m: FloatArray) -> ContractedGraph:
+def contract(node_count: int, edge: NDArray[np.integer], cost: FloatArray, length_m: FloatArray) -> ContractedGraph:
     """Chains and core of an undirected graph with edges (m, 2); several between two nodes are allowed, loops at a node are left out.
 
     The core is every node that has not exactly two edges, and of a ring that meets no such node the one with the lowest number.
     """
-    return condense_columns(node_count, edge[:, 0], edge[:, 1], cost, length_m)
+    return contract_columns(node_count, edge[:, 0], edge[:, 1], cost, length_m)
 
 
-def condense_columns(
+def contract_columns(
     node_count: int, tail: NDArray[np.integer], head: NDArray[np.integer], cost: FloatArray, length_m: FloatArray
 ) -> ContractedGraph:
     """The same with the edges' ends in columns. Where the cost is the length, one array serves as both."""
     is_cost_length = cost is length_m
     cost = _column(cost, np.float64)
     length_m = cost if is_cost_length else _column(length_m, np.float64)
-    arrays = _condense(node_count, _column(tail, np.int32), _column(head, np.int32), cost, length_m, is_cost_length)
+    arrays = _contract(node_count, _column(tail, np.int32), _column(head, np.int32), cost, length_m, is_cost_length)
     for array in arrays:
         array.setflags(write=False)
-    condensed = ContractedGraph(*arrays)
-    return replace(condensed, place_m=condensed.place_cost) if is_cost_length else condensed
+    contracted = ContractedGraph(*arrays)
+    return replace(contracted, place_m=contracted.place_cost) if is_cost_length else contracted
 
 
 def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
@@ -85,7 +85,7 @@ def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
 
 
 @njit(cache=True, nogil=True)
-def _condense(
+def _contract(
     node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray, is_cost_length: bool
 ) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:
     first = np.zeros(node_count + 1, dtype=np.int32)

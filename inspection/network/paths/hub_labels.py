@@ -44,15 +44,15 @@ class HubLabels:
     component: NumberArray
 
 
-def label(condensed: ContractedGraph) -> HubLabels:
+def label(contracted: ContractedGraph) -> HubLabels:
     """Labels of the core's nodes by the cost of the chains."""
-    tail, head, cost, length_m = condensed.chain_tail, condensed.chain_head, condensed.chain_cost, condensed.chain_m
-    first, chain_at = _chains_of_nodes(condensed.core_count, tail, head)
-    trees = max(MIN_TREES, min(SAMPLED_TREES, MAX_SAMPLED_NODES // max(1, condensed.core_count)))
+    tail, head, cost, length_m = contracted.chain_tail, contracted.chain_head, contracted.chain_cost, contracted.chain_m
+    first, chain_at = _chains_of_nodes(contracted.core_count, tail, head)
+    trees = max(MIN_TREES, min(SAMPLED_TREES, MAX_SAMPLED_NODES // max(1, contracted.core_count)))
     draw = np.random.default_rng(SEED)
-    roots = np.empty((trees, condensed.core_count), dtype=np.int32)
+    roots = np.empty((trees, contracted.core_count), dtype=np.int32)
     for tree in range(trees):
-        roots[tree] = draw.permutation(condensed.core_count)
+        roots[tree] = draw.permutation(contracted.core_count)
     order, component = _order(first, chain_at, tail, head, cost, roots)
     arrays = (*_label(first, chain_at, tail, head, cost, length_m, order), component)
     for array in arrays:

@@ -13,7 +13,7 @@ from inspection.network.route_index import route_index
 
 
 @dataclass(frozen=True, eq=False)
-class Spread:
+class OneToAllSearch:
     """The way of least cost between a place and each of n nodes, the same both ways, and what is summed up along it.
 
     cost      float64 (n,)       inf where there is no way
@@ -27,51 +27,51 @@ class Spread:
 
 
 @dataclass(frozen=True, eq=False)
-class Crossroads:
+class CoreGraph:
     """The chains at each core node: those of node k are chain[first[k]:first[k + 1]]; a loop is there twice."""
 
     first: NumberArray
     chain: NumberArray
 
 
-def crossroads(condensed: ContractedGraph) -> Crossroads:
-    chains = np.arange(len(condensed.chain_tail), dtype=np.int32)
-    core = np.concatenate([condensed.chain_tail, condensed.chain_head])
+def core_graph(contracted: ContractedGraph) -> CoreGraph:
+    chains = np.arange(len(contracted.chain_tail), dtype=np.int32)
+    core = np.concatenate([contracted.chain_tail, contracted.chain_head])
     order = np.argsort(core, kind="stable")
-    first = np.searchsorted(core[order], np.arange(condensed.core_count + 1)).astype(np.int32)
-    return Crossroads(first, np.concatenate([chains, chains])[order])
+    first = np.searchsorted(core[order], np.arange(contracted.core_count + 1)).astype(np.int32)
+    return CoreGraph(first, np.concatenate([chains, chains])[order])
 
 
-def spread(
+def search_from(
     graph: InspectionGraph,
     legs: Attachments,
-    at_core: Crossroads | None = None,
+    at_core: CoreGraph | None = None,
     *,
     place_sum: FloatArray | None = None,
     leg_taken: FloatArray | None = None,
-) -> Spread:
+) -> OneToAllSearch:
     """From a place that meets the graph over these legs (Dijkstra 1959 on the core; the chains follow from their ends).
 
     at_core: of the graph's condensed form, where there are more places to do. place_sum (p, 2, q): of each quantity the sum from the first
     place of a chain to each, and from that one back; leg_taken (legs, 2, q): out over a leg, and back. Without them there are none.
     """
-    condensed = route_index(graph).condensed
-    at_core = crossroads(condensed) if at_core is None else at_core
-    sums = np.zeros((len(condensed.place_node), 2, 0)) if place_sum is None else place_sum
+    contracted = route_index(graph).contracted
+    at_core = core_graph(contracted) if at_core is None else at_core
+    sums = np.zeros((len(contracted.place_node), 2, 0)) if place_sum is None else place_sum
     taken = np.zeros((len(legs), 2, sums.shape[2])) if leg_taken is None else leg_taken
     if taken.shape != (len(legs), 2, sums.shape[2]):
         raise ValueError("leg_taken must have shape (legs, 2, quantities)")
-    return Spread(
-        *_spread(
-            condensed.core_node,
-            condensed.node_chain,
-            condensed.node_place,
-            condensed.chain_first,
-            condensed.chain_tail,
-            condensed.chain_head,
-            condensed.place_node,
-            condensed.place_cost,
-            condensed.place_m,
+    return OneToAllSearch(
+        *_search_from(
+            contracted.core_node,
+            contracted.node_chain,
+            contracted.node_place,
+            contracted.chain_first,
+            contracted.chain_tail,
+            contracted.chain_head,
+            contracted.place_node,
+            contracted.place_cost,
+            contracted.place_m,
             at_core.first,
             at_core.chain,
             np.asarray(legs.node, dtype=np.int32),
@@ -84,7 +84,7 @@ def spread(
 
 
 @njit(cache=True, nogil=True)
-def _spread(
+def _search_from(
     core_node: NumberArray,
     node_chain: NumberArray,
     node_place: NumberArray,

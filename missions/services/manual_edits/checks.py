@@ -15,7 +15,7 @@ from missions.models import Mission
 from missions.reason_texts import fault_texts
 from missions.selectors.legs import LegFlyer, speed_words, too_low_text
 from missions.selectors.zones import MetZone, zones_met
-from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
+from missions.services.manual_edits.points import EditedPoint, are_moved, list_faults, route_points
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_route
 from planning.checks.zones import flown_route
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
@@ -37,7 +37,7 @@ HIGHER_M = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class HandGround:
+class ManualEditContext:
     """What a look stands on. heights: of the terrain model; None: there is none."""
 
     network: Network
@@ -45,14 +45,14 @@ class HandGround:
     dataset_version: DatasetVersion
 
 
-def hand_ground() -> HandGround:
+def manual_edit_context() -> ManualEditContext:
     """Of now. Raises NoGraph."""
     ground = planning_read().ground()
-    return HandGround(ground.network(), heights_at(ground.dataset_version), ground.dataset_version)
+    return ManualEditContext(ground.network(), heights_at(ground.dataset_version), ground.dataset_version)
 
 
 @dataclass(frozen=True)
-class HandPointFlown:
+class FlownEditedPoint:
     """What is flown at a wished point: seconds after the departure, battery left then, and the speed over ground on the way there."""
 
     arrival_s: float
@@ -69,12 +69,12 @@ class ManualEditCheck:
 
     faults: dict[str, str]
     flown: PlannedRoute | None = None
-    points: tuple[HandPointFlown, ...] = field(default=())
+    points: tuple[FlownEditedPoint, ...] = field(default=())
 
 
-def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[HandPoint]) -> ManualEditCheck:
+def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[EditedPoint]) -> ManualEditCheck:
     """What would be refused of these points, and what flying them would take. Nothing is kept. Raises InvalidRequest where nobody flies."""
-    ground = hand_ground()
+    ground = manual_edit_context()
     route = kept_route(mission, uav, ground.dataset_version)
     if route is None:
         raise InvalidRequest({"uav": _("This UAV flies no route.")})
@@ -84,7 +84,7 @@ def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[HandPoint]
     wished = route_points(points, route.waypoints)
     faults = obstacle_faults(wished, ground) | point_faults(points, route.waypoints, ground)
     try:
-        flown = flown_by_hand(route.request, uav, wished, route.departs_s, ground)
+        flown = flown_manual_edit(route.request, uav, wished, route.departs_s, ground)
     except InvalidRequest as error:
         return ManualEditCheck(fault_texts(error) | faults)
     for found in faults_as_flown(flown, wished, mission, route.request, uav, ground):
@@ -92,7 +92,7 @@ def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[HandPoint]
     return ManualEditCheck(faults, flown, _points_flown(flown, wished, route.request, uav))
 
 
-def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[HandPointFlown, ...]:
+def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[FlownEditedPoint, ...]:
     assert flown.waypoints is not None and flown.timing is not None  # noqa: S101 - just drawn
     asked, clock = request.uavs[uav], flown.timing
     speeds_mps = ground_speeds(
@@ -106,7 +106,7 @@ def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest
             slowest[number] = min(speed_mps, slowest.get(number, speed_mps))
     left = clock.battery_left_percent
     return tuple(
-        HandPointFlown(
+        FlownEditedPoint(
             float(clock.arrival_s[last[number]]) + flown.departs_s,
             None if left is None else float(left[last[number]]),
             slowest.get(number),
@@ -115,7 +115,7 @@ def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest
     )
 
 
-def point_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint], ground: HandGround) -> dict[str, str]:
+def point_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint], ground: ManualEditContext) -> dict[str, str]:
     """What is wrong with single points: their places, heights and speeds."""
     faults: dict[str, str] = {}
     flight, network = settings.FLIGHT_RULES, ground.network
@@ -133,7 +133,7 @@ def point_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint],
     return faults
 
 
-def obstacle_faults(points: RoutePoints, ground: HandGround) -> dict[str, str]:
+def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str, str]:
     """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
     flight = settings.FLIGHT_RULES
     under_m = np.full(len(points), np.nan) if ground.heights is None else ground.heights(points.position)
@@ -154,7 +154,7 @@ def obstacle_faults(points: RoutePoints, ground: HandGround) -> dict[str, str]:
     return faults
 
 
-def _wire_faults(flown: PlannedRoute, ground: HandGround) -> dict[str, str]:
+def _wire_faults(flown: PlannedRoute, ground: ManualEditContext) -> dict[str, str]:
     """The last look at the route as it is drawn over the ground."""
     assert flown.waypoints is not None  # noqa: S101 - just drawn
     heights = None if flown.is_flat else ground.heights
@@ -185,7 +185,7 @@ def _node_heights_m(network: Network, assets: Collection[int]) -> dict[int, floa
     return found
 
 
-def flown_by_hand(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float, ground: HandGround) -> PlannedRoute:
+def flown_manual_edit(request: PlanRequest, uav: int, points: RoutePoints, departs_s: float, ground: ManualEditContext) -> PlannedRoute:
     flight, action = settings.FLIGHT_RULES, request.end_action(uav)
     points, length_m = with_short_legs(points, flight.longest_leg_m)
     waypoints, is_flat = with_heights(points, ground.heights, flight)
@@ -213,7 +213,7 @@ def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
 
 
 def faults_as_flown(
-    flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int, ground: HandGround
+    flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int, ground: ManualEditContext
 ) -> Iterator[dict[str, str]]:
     """What is wrong with a route as it is drawn, one kind after the other: speeds, wires, zones at their times, range and battery."""
     assert flown.waypoints is not None  # noqa: S101 - just drawn

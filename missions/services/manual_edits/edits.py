@@ -11,15 +11,15 @@ from django.utils.translation import gettext as _
 from missions.models import Mission, Route, Waypoint
 from missions.services.manual_edits.checks import (
     HIGHER_M,
-    HandGround,
+    ManualEditContext,
     faults_as_flown,
-    flown_by_hand,
-    hand_ground,
+    flown_manual_edit,
+    manual_edit_context,
     obstacle_faults,
     point_faults,
 )
 from missions.services.manual_edits.legs import step_points, step_row
-from missions.services.manual_edits.points import HandPoint, are_moved, list_faults, route_points
+from missions.services.manual_edits.points import EditedPoint, are_moved, list_faults, route_points
 from missions.services.manual_edits.still_separated import separation_of_stored
 from missions.services.manual_edits.stored_route import KeptWaypoint, kept_waypoints
 from missions.services.missions import check_lost_link, lock_mission, note, request_of_mission
@@ -32,7 +32,9 @@ SAME_SPEED_MPS = 0.005
 MAX_STEPS = 5  # that can be taken back
 
 
-def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[HandPoint], expected_revision: int | None = None) -> Mission:
+def change_route(
+    *, mission: Mission, actor: User, uav: int, points: Sequence[EditedPoint], expected_revision: int | None = None
+) -> Mission:
     """Fly the route of one UAV, by its place in the mission, over these points. Its targets stay, and their order.
 
     Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a speed that the wind does
@@ -40,7 +42,7 @@ def change_route(*, mission: Mission, actor: User, uav: int, points: Sequence[Ha
     """
     with transaction.atomic():
         locked, route = _locked_route(mission, uav, expected_revision)
-        rows, ground = list(route.waypoints.select_related("asset", "target")), hand_ground()
+        rows, ground = list(route.waypoints.select_related("asset", "target")), manual_edit_context()
         until_now = kept_waypoints(rows)
         _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
         if len(route.before_hand) == MAX_STEPS:  # the route as planned is forgotten, and with it what was proven of it
@@ -62,7 +64,7 @@ def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revisi
         *route.before_hand, rows = route.before_hand
         points = step_points(rows)
         by_hand = {place_of(point.position, point.agl_m) for point, row in zip(points, rows, strict=True) if row["is_by_hand"]}
-        _fly(locked, route, RoutePoints.of(points), by_hand, hand_ground())
+        _fly(locked, route, RoutePoints.of(points), by_hand, manual_edit_context())
         note(locked, actor, "by-hand-undone", before=None, after={"revision": locked.revision, "uav": route.mission_uav.name})
     return locked
 
@@ -77,25 +79,25 @@ def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> 
     return locked, route
 
 
-def checked_by_hand(locked: Mission, route: Route, wished: RoutePoints, ground: HandGround) -> PlannedRoute:
+def checked_manual_edit(locked: Mission, route: Route, wished: RoutePoints, ground: ManualEditContext) -> PlannedRoute:
     """The route over these points as it is flown. Raises InvalidRequest with the first thing that is wrong."""
     _refuse(obstacle_faults(wished, ground))
     request, uav = request_of_mission(mission=locked), route.mission_uav.sequence
-    flown = flown_by_hand(request, uav, wished, route.departs_s, ground)
+    flown = flown_manual_edit(request, uav, wished, route.departs_s, ground)
     for faults in faults_as_flown(flown, wished, locked, request, uav, ground):
         _refuse(faults)
     return flown
 
 
-def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: HandGround) -> None:
+def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: ManualEditContext) -> None:
     """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
-    store_by_hand(locked, route, checked_by_hand(locked, route, wished, ground), by_hand)
-    settle_by_hand(locked)
+    store_manual_edit(locked, route, checked_manual_edit(locked, route, wished, ground), by_hand)
+    settle_manual_edits(locked)
     locked.revision += 1
     locked.save()
 
 
-def settle_by_hand(locked: Mission) -> None:
+def settle_manual_edits(locked: Mission) -> None:
     """What follows from changed routes on the mission; the caller saves it."""
     locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
     locked.longest_route_m = max(own.length_m for own in locked.routes.all())
@@ -121,7 +123,7 @@ def _refuse(faults: dict[str, str]) -> None:
         raise InvalidRequest(faults)
 
 
-def store_by_hand(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
+def store_manual_edit(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
     """by_hand: places of the waypoints that a person changed, as `place_of` has them."""
     assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
     targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
@@ -161,7 +163,7 @@ def _task(point: RoutePoint) -> dict[str, Any] | None:
     return None if point.task is None else {"kind": point.task.kind.value, "hold_s": point.task.hold_s}
 
 
-def _is_by_hand(point: HandPoint, until_now: Sequence[KeptWaypoint]) -> bool:
+def _is_by_hand(point: EditedPoint, until_now: Sequence[KeptWaypoint]) -> bool:
     """Of one that stays at its place."""
     if point.was is None:
         return True

@@ -48,7 +48,7 @@ def step_points(rows: Sequence[Step]) -> list[RoutePoint]:
 
 
 @dataclass(frozen=True)
-class HandLeg:
+class EditedLeg:
     """From one fixed point of a route to the next, told by what they are: start, target, end.
 
     points: between them, as step_row has them; None: as they are planned. end_agl_m and end_speed_mps: of the end, where it is by hand.
@@ -73,8 +73,8 @@ def hand_legs_json(mission: Mission) -> list[dict[str, Any]]:
     return found
 
 
-def hand_legs_from_json(value: Sequence[Mapping[str, Any]]) -> dict[str, list[HandLeg]]:
-    return {own["uav"]: [HandLeg(**leg) for leg in own["legs"]] for own in value}
+def hand_legs_from_json(value: Sequence[Mapping[str, Any]]) -> dict[str, list[EditedLeg]]:
+    return {own["uav"]: [EditedLeg(**leg) for leg in own["legs"]] for own in value}
 
 
 def target_keys(mission: Mission) -> dict[int, Any]:
@@ -101,7 +101,7 @@ def _key(row: Step, targets: Mapping[int, Any]) -> str:
     return json.dumps([row["kind"], None if row["target"] is None else targets.get(row["target"]), at])
 
 
-def _hand_legs(route: Route, targets: Mapping[int, Any]) -> Iterator[HandLeg]:
+def _hand_legs(route: Route, targets: Mapping[int, Any]) -> Iterator[EditedLeg]:
     rows = [step_row(row) for row in route.waypoints.select_related("target")]
     if not route.before_hand and not any(row["is_by_hand"] for row in rows):
         return
@@ -111,7 +111,7 @@ def _hand_legs(route: Route, targets: Mapping[int, Any]) -> Iterator[HandLeg]:
         points, own = rows[first + 1 : last], rows[last]
         is_other = any(row["is_by_hand"] for row in points) or _places(points) != _places(before.get((start, end), points))
         if is_other or own["is_by_hand"]:
-            yield HandLeg(start, end, points if is_other else None, own["is_by_hand"], own["agl_m"], own["speed_mps"])
+            yield EditedLeg(start, end, points if is_other else None, own["is_by_hand"], own["agl_m"], own["speed_mps"])
 
 
 def _places(rows: Sequence[Step]) -> list[tuple[float, ...]]:

@@ -18,7 +18,7 @@ MAX_LENGTH_M = 1_000_000.0
 
 
 @dataclass(frozen=True)
-class HandPoint:
+class EditedPoint:
     """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
 
     speed_mps: over ground on the leg that leads here; None: the UAV's own.
@@ -30,7 +30,7 @@ class HandPoint:
     speed_mps: float | None = None
 
 
-def list_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
+def list_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
     """What is wrong with the list itself: with such a fault nothing else can be said of it."""
     if len(points) > MAX_WAYPOINTS:
         return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MAX_WAYPOINTS}}
@@ -45,14 +45,14 @@ def list_faults(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) 
     return {}
 
 
-def are_moved(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
+def are_moved(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
     """Whether each point is put in, or elsewhere than the waypoint that it was."""
     before = [point.position if point.was is None else until_now[point.was].position for point in points]
     away_m = distance_m(np.array([point.position for point in points]), np.array(before)).tolist()
     return [point.was is None or metres > MOVED_M for point, metres in zip(points, away_m, strict=True)]
 
 
-def route_points(points: Sequence[HandPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:
+def route_points(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:
     """A point that was moved passes nothing."""
     drawn = []
     for point, is_moved in zip(points, are_moved(points, until_now), strict=True):

@@ -230,11 +230,11 @@ function planningKeys() {
   return [
     { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => void actions.save() },
-    { keys: ["mod+z"], words: t("Undo"), act: () => (store.state.hand ? actions.undoByHand() : actions.undo()) },
+    { keys: ["mod+z"], words: t("Undo"), act: () => (store.state.hand ? actions.undoManualEdit() : actions.undo()) },
     {
       keys: ["mod+shift+z", "mod+y"],
       words: t("Redo"),
-      act: () => (store.state.hand ? actions.redoByHand() : actions.redo()),
+      act: () => (store.state.hand ? actions.redoManualEdit() : actions.redo()),
     },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
     { keys: ["l"], words: t("Lock or unlock the chosen target"), act: lockChosen },

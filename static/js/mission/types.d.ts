@@ -288,7 +288,7 @@ export interface Why {
   /** place of a route */
   route?: number;
   /** place of the route that is changed by hand */
-  byHand?: number;
+  manualEdit?: number;
   compare?: boolean;
   alternatives?: boolean;
 }
@@ -305,7 +305,7 @@ export interface HandPoint {
   was: number | null;
   kind: Route["waypoints"][number]["kind"];
   target: number | null;
-  isByHand: boolean;
+  isManual: boolean;
 }
 
 /** What the server says against waypoints and legs, by index. */
@@ -326,7 +326,7 @@ export interface HandEdit {
   dragged: HandPoint[] | null;
   /** the server's last answer */
   look: HandLook | null;
-  isLookOld: boolean;
+  isCheckOld: boolean;
   /** why that could not be asked for */
   unknown: string;
   faults: HandFaults;

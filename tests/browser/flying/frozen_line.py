@@ -12,7 +12,7 @@ CHUNK = 65_536
 
 @dataclass
 class FrozenLine:
-    """Listens on `address`. `freeze` stops forwarding in both directions, `cut` closes and refuses, `mend` ends both."""
+    """Listens on `address`. `freeze` stops forwarding in both directions, `cut` closes and refuses, `repair` ends both."""
 
     site_address: str
     _moves: threading.Event = field(default_factory=threading.Event)
@@ -35,7 +35,7 @@ class FrozenLine:
         self._is_cut = True
         self._hang_up()
 
-    def mend(self) -> None:
+    def repair(self) -> None:
         self._is_cut = False
         self._moves.set()
 

@@ -34,7 +34,7 @@ def test_a_page_without_data_says_so_within_6_s(fault: str, size: tuple[int, int
         expect(stale).to_contain_text("No data on this device for 5 s.")
         took_s = time.monotonic() - stopped_s
         stated = stale.inner_text()
-        line.mend()
+        line.repair()
         expect(stale).to_be_hidden()
     page.context.close()
     visitor.complaints.clear()  # of a line that was cut

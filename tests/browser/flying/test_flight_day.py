@@ -229,7 +229,7 @@ def blind_pages_blame_no_uav(visitor: Visitor, site: Site, north: Flown) -> None
                 took_s = page.evaluate("window.shownAt") / 1_000 - began_s
                 page.wait_for_timeout(8_000)
                 assert page.get_by_text("nobody can say where it is now").count() <= lost, (size, fault)
-                line.mend()
+                line.repair()
             page.context.close()
             visitor.complaints.clear()
             visitor.requests_outside[:] = [url for url in visitor.requests_outside if not url.startswith(address)]

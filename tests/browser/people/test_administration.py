@@ -194,11 +194,11 @@ def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Vi
 
 
 def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
-    door = visitor.opens()
-    door.get_by_label("User name").fill("nobody-at-all")
-    door.get_by_label("Password").fill("wrong")
-    door.get_by_role("button", name="Sign in").click()
-    expect(door.get_by_role("alert")).to_be_visible()
+    endpoint = visitor.opens()
+    endpoint.get_by_label("User name").fill("nobody-at-all")
+    endpoint.get_by_label("Password").fill("wrong")
+    endpoint.get_by_role("button", name="Sign in").click()
+    expect(endpoint.get_by_role("alert")).to_be_visible()
 
     page = administration(visitor.signs_in("ada"))
     page.get_by_role("radio", name="Sign-ins").check()

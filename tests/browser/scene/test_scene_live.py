@@ -48,7 +48,7 @@ class Line:
             route.close()
         self.routes.clear()
 
-    def mend(self) -> None:
+    def repair(self) -> None:
         self.is_cut = False
         self.page.unroute(ASKED)
 
@@ -109,7 +109,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     line.cut()
     expect(cut_off).to_be_visible()
     seen = reading(page, "tower")
-    line.mend()
+    line.repair()
     expect(cut_off).to_be_hidden()
     flies_until(page, lambda: is_shown(certainty, "measured") and reading(page, "tower") != seen, flyers, along_m)
     visitor.complaints[:] = [words for words in visitor.complaints if "ERR_FAILED" not in words]

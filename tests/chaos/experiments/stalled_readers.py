@@ -44,9 +44,9 @@ class Reader:
     goes_on: asyncio.Event = field(default_factory=asyncio.Event)
     _sequence: int = 0
 
-    async def listen(self, port: int, trust: ssl.SSLContext, door: asyncio.Semaphore) -> None:
+    async def listen(self, port: int, trust: ssl.SSLContext, endpoint: asyncio.Semaphore) -> None:
         try:
-            async with door:
+            async with endpoint:
                 socket = await _open(port, trust, self.token)
                 self._take(orjson.loads(await socket.receive()), socket)
             self.is_open.set()
@@ -98,8 +98,8 @@ async def _watch(course: Course, day: Day) -> None:
         await asyncio.to_thread(wait_until, lambda: (at := day.newest_record_at()) is not None and at.timestamp() > began_s, "reports")
         stalled = set(course.chance.sample(range(number), STALLED))
         readers = [Reader(tokens[index % len(tokens)], stalls=index in stalled) for index in range(number)]
-        door, trust = asyncio.Semaphore(AT_ONCE), installation.trust()
-        listening = [asyncio.create_task(reader.listen(installation.port, trust, door)) for reader in readers]
+        endpoint, trust = asyncio.Semaphore(AT_ONCE), installation.trust()
+        listening = [asyncio.create_task(reader.listen(installation.port, trust, endpoint)) for reader in readers]
         all_open = asyncio.gather(*(reader.is_open.wait() for reader in readers))
         async with asyncio.timeout(OPEN_WITHIN_S):
             await all_open

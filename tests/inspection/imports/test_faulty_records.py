@@ -89,8 +89,8 @@ def test_a_zone_whose_new_record_is_faulty_stays_until_a_version_can_be_read(tmp
     applied(proposal, curator, seen=["line 10"])
     assert sorted(zone.name for zone in NoFlyZone.objects.all()) == ["East", "North", "West"]
     assert NoFlyZone.objects.get(name="East").geometry.equals_exact(was.geometry)
-    mended = proposed(openair(tmp_path, ("West", SQUARE.format(7)), ("East", SQUARE.format(5)), ("North", SQUARE.format(9))), curator)
-    assert (mended.difference["changed"], mended.difference["vanished"]) == (1, 0)
+    repaired = proposed(openair(tmp_path, ("West", SQUARE.format(7)), ("East", SQUARE.format(5)), ("North", SQUARE.format(9))), curator)
+    assert (repaired.difference["changed"], repaired.difference["vanished"]) == (1, 0)
 
 
 def test_a_faulty_zone_of_a_json_file_is_left_out_with_its_box(tmp_path: Path, curator: User) -> None:

@@ -18,11 +18,11 @@ from tests.inspection.network.test_paths import leg, plannings
 
 def taken_by(graph: InspectionGraph, amount: np.ndarray) -> np.ndarray:
     """(p, 2, q): of each chain's steps there and back what amount (n, n, q) has for the way from node to node."""
-    condensed = route_index(graph).condensed
-    taken = np.zeros((len(condensed.place_node), 2, amount.shape[2]))
-    for first, end in pairwise(condensed.chain_first.tolist()):
+    contracted = route_index(graph).contracted
+    taken = np.zeros((len(contracted.place_node), 2, amount.shape[2]))
+    for first, end in pairwise(contracted.chain_first.tolist()):
         for place in range(first + 1, end):
-            before, node = condensed.place_node[place - 1], condensed.place_node[place]
+            before, node = contracted.place_node[place - 1], contracted.place_node[place]
             taken[place, 0], taken[place, 1] = amount[before, node], amount[node, before]
     return taken
 
@@ -61,8 +61,8 @@ def test_steps_are_the_edges_with_their_directions():
     """A straight north, then straight east."""
     graph = drawn_graph([(0, 0), (0, 0.01), (0.01, 0.01)], [(0, 1, 100.0), (1, 2, 80.0)])
     steps = steps_of_graph(graph)
-    condensed = route_index(graph).condensed
-    order = 1 if condensed.place_node[0] == 0 else -1
+    contracted = route_index(graph).contracted
+    order = 1 if contracted.place_node[0] == 0 else -1
     assert steps.length_m.tolist()[::1] == ([0, 100, 80] if order == 1 else [0, 80, 100])
     assert steps.north[1 if order == 1 else 2] == pytest.approx(order)
     assert steps.east[2 if order == 1 else 1] == pytest.approx(order)

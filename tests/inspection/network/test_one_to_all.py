@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.network.legs import NO_LEGS, Attachments
-from inspection.network.paths.one_to_all import spread
+from inspection.network.paths.one_to_all import search_from
 from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import route_index
 from tests.inspection.network import search_oracle
@@ -18,7 +18,7 @@ from tests.inspection.network.test_paths import leg
 def test_every_node_has_its_way_and_what_cannot_be_reached_has_none():
     """start --5-- A --100-- B --80-- C     D"""
     graph = drawn_graph([(0, 0), (1, 0), (2, 0), (9, 0)], [(0, 1, 100.0), (1, 2, 80.0)])
-    found = spread(graph, Attachments.of([leg(0, 5, 2.0)]))
+    found = search_from(graph, Attachments.of([leg(0, 5, 2.0)]))
     assert found.cost.tolist() == [10.0, 110.0, 190.0, np.inf]
     assert found.length_m.tolist() == [5.0, 105.0, 185.0, np.inf]
     assert found.taken.shape == (4, 2, 0)
@@ -26,7 +26,7 @@ def test_every_node_has_its_way_and_what_cannot_be_reached_has_none():
 
 def test_from_a_place_that_meets_nothing_there_is_no_way():
     graph = drawn_graph([(0, 0), (1, 0)], [(0, 1, 100.0)])
-    assert np.isinf(spread(graph, NO_LEGS).cost).all()
+    assert np.isinf(search_from(graph, NO_LEGS).cost).all()
 
 
 def test_from_the_middle_of_a_line_both_ways_are_summed_up_in_their_direction():
@@ -34,18 +34,18 @@ def test_from_the_middle_of_a_line_both_ways_are_summed_up_in_their_direction():
     graph = drawn_graph([(0, 0), (1, 0), (2, 0), (3, 0)], [(0, 1, 50.0), (1, 2, 50.0), (2, 3, 50.0)])
     amount = np.zeros((4, 4))
     amount[[0, 1, 2], [1, 2, 3]], amount[[1, 2, 3], [0, 1, 2]] = 1.0, 10.0
-    found = spread(graph, Attachments.of([leg(2, 7)]), place_sum=_sums(graph, amount), leg_taken=np.array([[[100.0], [1_000.0]]]))
+    found = search_from(graph, Attachments.of([leg(2, 7)]), place_sum=_sums(graph, amount), leg_taken=np.array([[[100.0], [1_000.0]]]))
     assert found.taken[:, 0, 0].tolist() == [120.0, 110.0, 100.0, 101.0]
     assert found.taken[:, 1, 0].tolist() == [1_002.0, 1_001.0, 1_000.0, 1_010.0]
 
 
 def _sums(graph, amount):
     """Sums of amount (n, n) along each chain from its first place, and back to it, as spread takes them."""
-    condensed = route_index(graph).condensed
-    sums = np.zeros((len(condensed.place_node), 2, 1))
-    for first, end in pairwise(condensed.chain_first.tolist()):
+    contracted = route_index(graph).contracted
+    sums = np.zeros((len(contracted.place_node), 2, 1))
+    for first, end in pairwise(contracted.chain_first.tolist()):
         for place in range(first + 1, end):
-            before, node = condensed.place_node[place - 1], condensed.place_node[place]
+            before, node = contracted.place_node[place - 1], contracted.place_node[place]
             sums[place, :, 0] = sums[place - 1, :, 0] + (amount[before, node], amount[node, before])
     return sums
 
@@ -61,7 +61,7 @@ def test_it_is_what_a_search_over_the_whole_graph_finds(seed, count, legs):
     amount = generator.uniform(0.0, 9.0, (count, count))
     leg_taken = generator.uniform(0.0, 9.0, (legs, 2, 1))
 
-    found = spread(graph, Attachments.of(start), place_sum=_sums(graph, amount), leg_taken=leg_taken)
+    found = search_from(graph, Attachments.of(start), place_sum=_sums(graph, amount), leg_taken=leg_taken)
 
     truth = search_oracle.travel_between(graph, [start], ends)
     np.testing.assert_allclose(found.cost, truth.cost[0])

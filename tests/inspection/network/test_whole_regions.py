@@ -11,7 +11,7 @@ from inspection import services
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.build import build
 from inspection.network.build.edges import component_labels
-from inspection.network.build.zone_masking import ClearedGraph
+from inspection.network.build.zone_masking import MaskedGraph
 from inspection.network.infrastructure import GroundData, Zones
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.nearness import pairs_within
@@ -65,7 +65,7 @@ def with_random_zones(ground: GroundData, seed: int, count: int = 40) -> GroundD
     )
 
 
-def assert_rules_hold(result: ClearedGraph) -> None:
+def assert_rules_hold(result: MaskedGraph) -> None:
     graph = result.graph
     start, end = graph.edge.T
     kinds = np.sort(np.column_stack([graph.node_kind[start], graph.node_kind[end]]), axis=1)

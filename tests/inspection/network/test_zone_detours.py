@@ -193,8 +193,8 @@ def brute_force_m(drawn: list[BaseGeometry], start: Spot, end: Spot) -> float:
         for by_m in (6.0, 7.0)
         for polygon in drawn
     ]
-    walls, corners = grown[: len(drawn)], [tuple(place) for polygon in grown[len(drawn) :] for place in polygon.exterior.coords[:-1]]
-    union = shapely.union_all(walls)
+    obstacles, corners = grown[: len(drawn)], [tuple(place) for polygon in grown[len(drawn) :] for place in polygon.exterior.coords[:-1]]
+    union = shapely.union_all(obstacles)
     places = [tuple(np.array(lonlat(place)) * scale) for place in (start, end)]
     if any(union.intersects(shapely.Point(place)) for place in places):
         return np.inf

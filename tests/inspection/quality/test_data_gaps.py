@@ -33,7 +33,7 @@ def counts(state=GapState.OPEN):
     return Counter(DataGap.objects.filter(state=state).values_list("kind", flat=True))
 
 
-def mend(gap, curator, action=None, **parameters):
+def repair(gap, curator, action=None, **parameters):
     return repair_gap(gap=gap, action=action or offers_of(gap)[0].action, parameters=parameters, actor=curator)
 
 
@@ -112,7 +112,7 @@ def test_a_repair_is_kept_over_the_next_import(name, region_file, curator):
     find_gaps()
     gap = DataGap.objects.filter(kind="long_span").order_by("-details__span_m").first()
     vertices = len(gap.asset.geometry.coords)
-    repaired = mend(gap, curator)
+    repaired = repair(gap, curator)
     placed = gap.details["missing_towers"]
     assert len(repaired.entries) == placed + 1
     assert repaired.said == f"{placed} towers placed, 1 line changed."
@@ -136,7 +136,7 @@ def test_a_repair_is_undone_whole(name, missing, region_file, curator):
     find_gaps()
     gap = DataGap.objects.get(kind="missing_support", details__missing_towers=missing)
     before = gap.asset.geometry.coords
-    repaired = mend(gap, curator)
+    repaired = repair(gap, curator)
     find_gaps()
     assert state_of(gap) == GapState.REPAIRED
     made = Asset.objects.filter(tags__has_key="spanwise:placed")
@@ -154,7 +154,7 @@ def test_a_tower_made_of_a_vertex_is_the_one_that_a_later_file_has(name, missing
     """It is known by the vertex's OSM node: no second one when OSM gets it too."""
     import_osm(path=region_file(name))
     find_gaps()
-    mend(DataGap.objects.get(kind="missing_support", details__missing_towers=missing), curator)
+    repair(DataGap.objects.get(kind="missing_support", details__missing_towers=missing), curator)
     made = list(Asset.objects.filter(tags__has_key="spanwise:placed"))
     assert len(made) == missing
     nodes = set(made[0].line.node_osm_ids)
@@ -203,7 +203,7 @@ def test_towers_may_be_placed_where_they_were_seen(curator):
     drawn_search()
     gap = DataGap.objects.get(kind="long_span")
     seen = [[10.001, 56.0 + 0.0027 * 16], [10.0005, 56.0 + 0.0027 * 13]]
-    mend(gap, curator, positions=seen)
+    repair(gap, curator, positions=seen)
     course = Asset.objects.get(pk=row.pk).geometry.coords
     assert list(course[11:13]) == [tuple(seen[1]), tuple(seen[0])]
     assert [tuple(map(tuple, [row.geometry.coords])) for row in Asset.objects.filter(tags__has_key="spanwise:placed").order_by("pk")] == [
@@ -217,7 +217,7 @@ def test_places_that_are_none_are_refused(curator, positions):
     drawn_search()
     before = AuditEntry.objects.count()
     with pytest.raises(CannotRepair):
-        mend(DataGap.objects.get(kind="long_span"), curator, positions=positions)
+        repair(DataGap.objects.get(kind="long_span"), curator, positions=positions)
     assert (AuditEntry.objects.count(), state_of(DataGap.objects.get(kind="long_span"))) == (before, GapState.OPEN)
 
 
@@ -226,14 +226,14 @@ def test_a_line_that_changed_meanwhile_is_not_repaired_blindly(curator):
     drawn_search()
     Asset.objects.filter(pk=row.pk).update(geometry=LineString((10.0, 56.0), (10.0, 56.01), srid=4326))
     with pytest.raises(CannotRepair, match="has changed since"):
-        mend(DataGap.objects.get(kind="long_span"), curator)
+        repair(DataGap.objects.get(kind="long_span"), curator)
 
 
 def test_of_two_curators_the_second_is_told(curator):
     long_line()
     drawn_search()
     gap = DataGap.objects.get(kind="long_span")
-    mend(gap, curator)
+    repair(gap, curator)
     with pytest.raises(CannotRepair, match="Somebody has decided"):
         repair_gap(gap=gap, action="place_towers", parameters={}, actor=a_user(Role.CURATOR))
 
@@ -245,7 +245,7 @@ def test_ends_that_miss_each_other_are_joined(curator):
     tower((10.00003, 56.02))
     drawn_search()
     gap = DataGap.objects.get(kind="ends_apart")
-    mend(gap, curator)
+    repair(gap, curator)
     drawn_search()
     assert state_of(gap) == GapState.REPAIRED
     ends = {Asset.objects.get(pk=one.pk).geometry.coords[-1], Asset.objects.get(pk=other.pk).geometry.coords[0]}
@@ -258,7 +258,7 @@ def test_an_end_beside_a_span_gets_a_vertex_there(curator):
     branch = line((10.00004, 56.004), (10.01, 56.004))
     drawn_search()
     gap = DataGap.objects.get(kind="ends_apart")
-    repaired = mend(gap, curator)
+    repaired = repair(gap, curator)
     assert repaired.said == "2 lines changed."
     assert len(Asset.objects.get(pk=through.pk).geometry.coords) == 3
     assert Asset.objects.get(pk=branch.pk).geometry.coords[0] == Asset.objects.get(pk=through.pk).geometry.coords[1]
@@ -269,7 +269,7 @@ def test_a_dead_end_is_led_on_to_the_network(curator):
     one, other = line((10.0, 56.0), (10.0, 56.01)), line((10.0, 56.02), (10.0, 56.03))
     drawn_search()
     gap = DataGap.objects.filter(kind="dead_end", details__nearest_m__lt=1_200, asset=one.pk).first()
-    mend(gap, curator)
+    repair(gap, curator)
     assert Asset.objects.get(pk=one.pk).geometry.coords[-1] == other.geometry.coords[0]
     drawn_search()
     assert state_of(gap) == GapState.REPAIRED
@@ -282,7 +282,7 @@ def test_a_lone_tower_joins_the_line_beside_it(curator):
     tower((10.0002, 56.0045))
     drawn_search()
     gap = DataGap.objects.get(kind="tower_on_no_line")
-    mend(gap, curator)
+    repair(gap, curator)
     assert Asset.objects.get(pk=row.pk).geometry.coords[2] == (10.0002, 56.0045)
     drawn_search()
     assert state_of(gap) == GapState.REPAIRED
@@ -294,7 +294,7 @@ def test_a_line_is_drawn_along_a_row_of_towers_and_taken_back(curator):
         tower(place, voltages_v=[132_000])
     drawn_search()
     gap = DataGap.objects.get(kind="tower_on_no_line")
-    repaired = mend(gap, curator, "draw_line")
+    repaired = repair(gap, curator, "draw_line")
     assert repaired.said == "1 line drawn."
     row = Asset.objects.get(kind="line")
     assert sorted(places) in (list(row.geometry.coords), list(reversed(row.geometry.coords)))
@@ -309,7 +309,7 @@ def test_what_is_left_out_is_no_gap_any_more(curator):
     lone = tower((10.0, 56.0))
     drawn_search()
     gap = DataGap.objects.get(kind="tower_on_no_line")
-    mend(gap, curator, "leave_out")
+    repair(gap, curator, "leave_out")
     assert not Asset.objects.get(pk=lone.pk).is_flyable
     drawn_search()
     assert state_of(gap) == GapState.REPAIRED
@@ -319,8 +319,8 @@ def test_a_voltage_is_corrected_as_offered_or_as_typed(curator):
     offered = line((10.0, 56.0), (10.0, 56.001), voltages_v=[110], tags={"voltage": "110"})
     typed = line((11.0, 56.0), (11.0, 56.001), voltages_v=[220], tags={"voltage": "220"})
     drawn_search()
-    mend(DataGap.objects.get(kind="impossible_voltage", asset=offered), curator)
-    mend(DataGap.objects.get(kind="impossible_voltage", asset=typed), curator, voltages_v=[132_000])
+    repair(DataGap.objects.get(kind="impossible_voltage", asset=offered), curator)
+    repair(DataGap.objects.get(kind="impossible_voltage", asset=typed), curator, voltages_v=[132_000])
     assert list(Asset.objects.filter(pk__in=[offered.pk, typed.pk]).order_by("pk").values_list("max_voltage_v", flat=True)) == [
         110_000, 132_000,
     ]  # fmt: skip
@@ -333,7 +333,7 @@ def test_voltages_that_cannot_be_are_refused(curator, volts):
     line((10.0, 56.0), (10.0, 56.001), voltages_v=[110])
     drawn_search()
     with pytest.raises(CannotRepair):
-        mend(DataGap.objects.get(kind="impossible_voltage"), curator, voltages_v=volts)
+        repair(DataGap.objects.get(kind="impossible_voltage"), curator, voltages_v=volts)
 
 
 def test_a_bridge_is_told_what_it_carries(curator):
@@ -341,8 +341,8 @@ def test_a_bridge_is_told_what_it_carries(curator):
     drawn_search()
     gap = DataGap.objects.get(kind="bridge_without_way")
     with pytest.raises(CannotRepair):
-        mend(gap, curator, "carries", way="cows")
-    mend(gap, curator, "carries", way="railway")
+        repair(gap, curator, "carries", way="cows")
+    repair(gap, curator, "carries", way="railway")
     assert Asset.objects.get(pk=row.pk).carries == "a railway"
     drawn_search()
     assert state_of(gap) == GapState.REPAIRED
@@ -364,7 +364,7 @@ def test_the_search_runs_once_for_each_ground(curator):
     drawn_search()
     assert gaps_are_current()
     assert find_gaps() is None
-    mend(DataGap.objects.get(kind="long_span"), curator)
+    repair(DataGap.objects.get(kind="long_span"), curator)
     assert not gaps_are_current()
     find_gaps_task()
     assert gaps_are_current()

@@ -27,8 +27,8 @@ def gap():
     return DataGap.objects.get(kind="long_span")
 
 
-def post(client, gap, door, body=None):
-    return client.post(f"/api/v1/gaps/{gap.pk}/{door}", body or {}, content_type="application/json")
+def post(client, gap, endpoint, body=None):
+    return client.post(f"/api/v1/gaps/{gap.pk}/{endpoint}", body or {}, content_type="application/json")
 
 
 def kinds(client, query=""):
@@ -128,11 +128,11 @@ def test_a_repair_that_does_not_fit_is_refused(client, gap, body, status):
 
 
 @pytest.mark.parametrize("role", [Role.VIEWER, Role.OPERATOR])
-@pytest.mark.parametrize("door", ["repair", "dismiss", "reopen", "undo"])
-def test_who_is_no_curator_may_only_read(gap, role, door):
+@pytest.mark.parametrize("endpoint", ["repair", "dismiss", "reopen", "undo"])
+def test_who_is_no_curator_may_only_read(gap, role, endpoint):
     client = client_of(a_user(role))
     assert kinds(client)
-    assert post(client, gap, door, {"action": "place_towers", "entries": [1]}).status_code == 403
+    assert post(client, gap, endpoint, {"action": "place_towers", "entries": [1]}).status_code == 403
     assert DataGap.objects.get(pk=gap.pk).state == "open"
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.compare import ReadbackMatch, are_identical, differences, found, mix_in_words
+from mavlink.mission_sync.compare import ReadbackMatch, are_identical, differences, found, mix_message
 from mavlink.mission_sync.wire import OnboardItem, OnboardList, onboard_item
 from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot
@@ -185,7 +185,7 @@ def test_list_is_told_from_what_was_approved(autopilot_type: AutopilotType, held
 def test_mix_is_told_by_items():
     before = through(ARDUPILOT, OLD)
     held = (*through(ARDUPILOT, NEW[:3]), *before[3:5], *through(ARDUPILOT, load(7, east=9_000).mission[1:2]))
-    words = mix_in_words(held, NEW, before, ARDUPILOT)
+    words = mix_message(held, NEW, before, ARDUPILOT)
     assert words == "6 items where 9 are approved: 0-2 are new, 3-4 are of the list before, 5 is of neither list"
-    assert mix_in_words((), NEW, before, ARDUPILOT) == "no items"
-    assert "not approved" in mix_in_words(before, NEW, None, ARDUPILOT)
+    assert mix_message((), NEW, before, ARDUPILOT) == "no items"
+    assert "not approved" in mix_message(before, NEW, None, ARDUPILOT)

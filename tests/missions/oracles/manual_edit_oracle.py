@@ -15,7 +15,7 @@ import shapely
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.models import Mission
-from missions.services import HandPoint, InvalidRequest, PlanRequest, change_route, take_back_change
+from missions.services import EditedPoint, InvalidRequest, PlanRequest, change_route, take_back_change
 from tests.missions.air import limit_mps, wind_mps
 from tests.missions.oracles.clock_oracle import clock_of
 from tests.missions.oracles.flight_oracle import Judge, flights_m
@@ -39,7 +39,7 @@ _SHORT = re.compile(r"is ([\d.]+) m too low")
 _NO_STOPS: dict[int, float] = {}
 
 
-class HandJudge:
+class ManualEditOracle:
     def __init__(self, judge: Judge, author: User) -> None:
         self.judge, self.author = judge, author
 
@@ -313,8 +313,8 @@ def _as_flown(mission: Mission, plan: dict[str, Any]) -> dict[str, Any]:
     return plan | {"routes": routes, "separation": mission.separation, "lost_link": mission.lost_link_check}
 
 
-def _hand_point(point: dict[str, Any]) -> HandPoint:
-    return HandPoint(LonLat(*point["position"]), point["altitude_agl_m"], point["was"], point["speed_mps"])
+def _hand_point(point: dict[str, Any]) -> EditedPoint:
+    return EditedPoint(LonLat(*point["position"]), point["altitude_agl_m"], point["was"], point["speed_mps"])
 
 
 def _is_the_same(point: dict[str, Any], wish: dict[str, Any]) -> bool:

@@ -21,7 +21,7 @@ from planning.request import EndAction, LostLinkRequest
 from tests.accounts.users import a_user
 from tests.inspection import ground
 from tests.missions.oracles.flight_oracle import Judge
-from tests.missions.oracles.manual_edit_oracle import HandJudge
+from tests.missions.oracles.manual_edit_oracle import ManualEditOracle
 from tests.missions.oracles.schedule_oracle import applies_at, sun
 from tests.missions.oracles.terrain_oracle import Hills
 from tests.missions.property_tests.random_flights import A_MONDAY, period, stored
@@ -341,7 +341,7 @@ def test_why_a_change_by_hand_is_refused_is_judged() -> None:
     asked = request(here.towers[5], uavs=(uav(performance=Performance(battery_wh=IRIS_BATTERY_WH)),))
     plan = make_plan(request=asked)
     route = plan["routes"][0]
-    by_hand = HandJudge(Judge(), a_user())
+    by_hand = ManualEditOracle(Judge(), a_user())
     wished = [point | {"was": number, "from": point["position"], "put_in": False} for number, point in enumerate(route["waypoints"])]
     aside = wished[0] | {"kind": "pass", "position": [10.003, 55.9935], "was": None, "from": [10.003, 55.9935], "put_in": True}
     through = [wished[0], aside, *wished[1:]]

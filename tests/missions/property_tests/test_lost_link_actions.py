@@ -48,8 +48,8 @@ def test_a_zone_between_the_route_and_its_start_bars_the_return_and_a_rally_poin
     assert {one["trouble"] for one in failed} == {"zone"}
     assert {one["zone"] for one in failed} == {"Fire brigade"}
     assert {one["haven"] for one in failed} == {0}
-    mended = checked(client, here, behaviour="return", rally_points=[[10.021, 56.0005]])["failed"]
-    assert len(mended) < len(failed)
+    repaired = checked(client, here, behaviour="return", rally_points=[[10.021, 56.0005]])["failed"]
+    assert len(repaired) < len(failed)
 
 
 def test_over_wires_between_tall_towers_it_returns_higher_and_says_how_high(here: World, client: Client) -> None:

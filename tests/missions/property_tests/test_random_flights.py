@@ -12,7 +12,7 @@ from missions.services import GraphOutdated, PlanRequest, make_plan
 from planning import planner
 from tests.accounts.users import somebody
 from tests.missions.oracles.flight_oracle import Judge
-from tests.missions.oracles.manual_edit_oracle import HandJudge
+from tests.missions.oracles.manual_edit_oracle import ManualEditOracle
 from tests.missions.oracles.refusal_oracle import first_of_all, missing
 from tests.missions.property_tests.random_flights import HILLY, airs, approve_some, bring_in, departures, flight, put_zones
 from tests.missions.property_tests.random_missions import Region
@@ -105,7 +105,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int, twice: Twice) ->
         draw = random.Random(seed * 1_000 + number)
         put_zones(seed * 100 + number, draw)
         region, judge = Region(), Judge(hills)
-        by_hand = HandJudge(judge, author)
+        by_hand = ManualEditOracle(judge, author)
         times = departures(draw, DEPARTURES)
         every_air = airs(draw)
         for departs_at in times[1:]:
@@ -128,7 +128,7 @@ def _fly(path: Path, folder: Path, *, missions: int, seed: int, twice: Twice) ->
 
 
 def _judged(
-    asked: PlanRequest, judge: Judge, draw: random.Random, seen: Counter[str], flown_share: float, by_hand: HandJudge | None
+    asked: PlanRequest, judge: Judge, draw: random.Random, seen: Counter[str], flown_share: float, by_hand: ManualEditOracle | None
 ) -> list[str]:
     plan = make_plan(request=asked)
     _count(seen, plan)

@@ -13,8 +13,8 @@ from telemetry.models import UavLink
 from tests.accounts.users import a_user, client_of
 from tests.telemetry.links.uav_clients import linked_uav, report
 from workspace.api_tokens import create_api_token
-from workspace.door_models import BrowserSession
 from workspace.models import AuditEntry, Role
+from workspace.sign_in_models import BrowserSession
 
 pytestmark = pytest.mark.django_db
 

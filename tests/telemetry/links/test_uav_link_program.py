@@ -17,7 +17,7 @@ from scripts.places import WEB_PROGRAMS, Places
 from scripts.programs import web_programs
 from telemetry.models import TelemetryRecord
 from tests.telemetry.links.uav_clients import UavClient, linked_uav, report
-from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
+from tests.workspace.live.proxied_site import Endpoint, front_endpoint, redis_at, running, wait_until
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
@@ -44,22 +44,22 @@ def _listens(path: Path) -> bool:
 
 
 @pytest.fixture
-def door(django_db_setup: None) -> Iterator[Door]:
+def endpoint(django_db_setup: None) -> Iterator[Endpoint]:
     """With the program of UAVs, a Redis, and web programs that are busy."""
-    with front_door() as door, ExitStack() as programs:
-        programs.enter_context(running(redis_at(door.redis)))
-        program = next(one for one in web_programs(Places(door.folder), door.folder) if one.name == "uav-link")
-        programs.enter_context(running(program.command, **door.environment))
+    with front_endpoint() as endpoint, ExitStack() as programs:
+        programs.enter_context(running(redis_at(endpoint.redis)))
+        program = next(one for one in web_programs(Places(endpoint.folder), endpoint.folder) if one.name == "uav-link")
+        programs.enter_context(running(program.command, **endpoint.environment))
         for name in WEB_PROGRAMS:
-            programs.enter_context(_Busy(door.folder / f"{name}.sock").serves())
-        wait_until(lambda: _listens(door.folder / "uav-link.sock"))
-        yield door
+            programs.enter_context(_Busy(endpoint.folder / f"{name}.sock").serves())
+        wait_until(lambda: _listens(endpoint.folder / "uav-link.sock"))
+        yield endpoint
 
 
-def sent(door: Door, kite: UavClient, body: dict[str, object]) -> tuple[int, float]:
+def sent(endpoint: Endpoint, kite: UavClient, body: dict[str, object]) -> tuple[int, float]:
     """Return the status of a report and how long its answer took."""
     request = urllib.request.Request(
-        f"http://127.0.0.1:{door.port}/api/v1/uav-link/telemetry",
+        f"http://127.0.0.1:{endpoint.port}/api/v1/uav-link/telemetry",
         data=json.dumps(body).encode(),
         headers={"Authorization": f"Bearer {kite.token}", "Content-Type": "application/json"},
     )
@@ -68,15 +68,15 @@ def sent(door: Door, kite: UavClient, body: dict[str, object]) -> tuple[int, flo
         return answer.status, time.monotonic() - began_s
 
 
-def test_a_report_is_answered_while_pages_take_every_thread(door: Door) -> None:
+def test_a_report_is_answered_while_pages_take_every_thread(endpoint: Endpoint) -> None:
     kite = linked_uav()
-    waiting = [threading.Thread(target=_ask_for_a_page, args=[door], daemon=True) for _ in range(16)]
+    waiting = [threading.Thread(target=_ask_for_a_page, args=[endpoint], daemon=True) for _ in range(16)]
     for page in waiting:
         page.start()
-    sent(door, kite, {"stream": "boot-1", "records": [report(0)]})
+    sent(endpoint, kite, {"stream": "boot-1", "records": [report(0)]})
     taken_s = []
     for number in range(1, 21):
-        status, lasted_s = sent(door, kite, {"stream": "boot-1", "records": [report(number)]})
+        status, lasted_s = sent(endpoint, kite, {"stream": "boot-1", "records": [report(number)]})
         assert status == 200
         taken_s.append(lasted_s)
     assert all(page.is_alive() for page in waiting)  # none of the pages has been answered meanwhile
@@ -84,14 +84,14 @@ def test_a_report_is_answered_while_pages_take_every_thread(door: Door) -> None:
     assert TelemetryRecord.objects.count() == 21
 
 
-def _ask_for_a_page(door: Door) -> None:
+def _ask_for_a_page(endpoint: Endpoint) -> None:
     with suppress(OSError):
-        urllib.request.urlopen(f"http://127.0.0.1:{door.port}/missions", timeout=110).close()
+        urllib.request.urlopen(f"http://127.0.0.1:{endpoint.port}/missions", timeout=110).close()
 
 
-def test_the_program_of_uavs_answers_nothing_else(door: Door) -> None:
+def test_the_program_of_uavs_answers_nothing_else(endpoint: Endpoint) -> None:
     with socket.socket(socket.AF_UNIX) as asked:
         asked.settimeout(60)
-        asked.connect(str(door.folder / "uav-link.sock"))
+        asked.connect(str(endpoint.folder / "uav-link.sock"))
         asked.sendall(b"GET /api/v1/missions HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
         assert asked.recv(100).split()[1] == b"404"

@@ -6,38 +6,38 @@ from typing import Any
 
 import pytest
 
-from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, through_its_redis, wait_until
+from tests.workspace.live.proxied_site import Endpoint, front_endpoint, redis_at, running, through_its_redis, wait_until
 
 
 @pytest.fixture(scope="package")
-def closed_door(django_db_setup: None) -> Iterator[Door]:
-    with front_door() as door:
-        yield door
+def closed_endpoint(django_db_setup: None) -> Iterator[Endpoint]:
+    with front_endpoint() as endpoint:
+        yield endpoint
 
 
 @pytest.fixture(scope="package")
-def live_program(closed_door: Door) -> Iterator[int]:
+def live_program(closed_endpoint: Endpoint) -> Iterator[int]:
     """The process that keeps those which serve; it starts another when one is killed."""
-    with closed_door.serves_live() as program:
-        wait_until(lambda: closed_door.is_open)
+    with closed_endpoint.serves_live() as program:
+        wait_until(lambda: closed_endpoint.is_open)
         yield program.pid
 
 
 @pytest.fixture
-def door(closed_door: Door, live_program: int) -> Door:
-    return closed_door
+def endpoint(closed_endpoint: Endpoint, live_program: int) -> Endpoint:
+    return closed_endpoint
 
 
 @pytest.fixture
-def without_redis(door: Door, settings: Any, tmp_path: Path) -> Door:
+def without_redis(endpoint: Endpoint, settings: Any, tmp_path: Path) -> Endpoint:
     """The tests' own words go through its Redis as well, once a test has started one."""
-    through_its_redis(door, settings)
+    through_its_redis(endpoint, settings)
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    return door
+    return endpoint
 
 
 @pytest.fixture
-def here(without_redis: Door) -> Iterator[Door]:
+def here(without_redis: Endpoint) -> Iterator[Endpoint]:
     with running(redis_at(without_redis.redis)):
         wait_until(without_redis.redis.exists)
         yield without_redis

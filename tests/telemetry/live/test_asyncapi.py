@@ -17,7 +17,7 @@ from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.records import record
 from tests.workspace.api.described_answers import openapi_document, validate
-from tests.workspace.live.proxied_site import Door, close_code
+from tests.workspace.live.proxied_site import Endpoint, close_code
 from workspace.api_tokens import create_api_token
 from workspace.jobs.services import create_job, finish_job, start_job
 from workspace.models import User
@@ -31,7 +31,7 @@ def document() -> Any:
     return json.loads(DOCUMENT.read_text().replace('"/api/schema#', '"#'))
 
 
-def follow(here: Door, path: str, user: User) -> WebSocket:
+def follow(here: Endpoint, path: str, user: User) -> WebSocket:
     token = create_api_token(user=user, name="follower", expires_at=timezone.now() + timedelta(hours=1))
     return here.open(path, token=token, origin=None)
 
@@ -72,7 +72,7 @@ def test_every_websocket_is_in_the_document(document: Any) -> None:
     assert {channel["address"] for channel in document["channels"].values()} == addresses
 
 
-def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(here: Door, document: Any) -> None:
+def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(here: Endpoint, document: Any) -> None:
     uav, live = a_flying_uav(), follow(here, "/ws/live", a_user())
     assert receive(live, document, "snapshot")["live"]["uavs"]
     live.send('{"type": "have", "sequence": 1}')
@@ -84,13 +84,13 @@ def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(her
     assert receive(live, document, "snapshot")["sequence"] > changed["sequence"]
 
 
-def test_what_the_document_does_not_name_hangs_up(here: Door) -> None:
+def test_what_the_document_does_not_name_hangs_up(here: Endpoint) -> None:
     live = follow(here, "/ws/live", a_user())
     live.send('{"type": "hello"}')
     assert close_code(live) == 4400
 
 
-def test_a_job_is_told_as_the_document_says(here: Door, document: Any) -> None:
+def test_a_job_is_told_as_the_document_says(here: Endpoint, document: Any) -> None:
     user = a_user()
     job = create_job(organisation=user.organisation, created_by=user, task="missions.tasks.solve_plan", parameters={}, message="Planning")
     started = start_job(job_id=job.pk)
@@ -102,7 +102,7 @@ def test_a_job_is_told_as_the_document_says(here: Door, document: Any) -> None:
 
 
 @pytest.mark.long
-def test_a_follower_by_the_document_stays_and_one_that_confirms_nothing_is_hung_up_on(here: Door, document: Any) -> None:
+def test_a_follower_by_the_document_stays_and_one_that_confirms_nothing_is_hung_up_on(here: Endpoint, document: Any) -> None:
     uav, user = a_flying_uav(), a_user()
     live, mute = follow(here, "/ws/live", user), follow(here, "/ws/live", user)
     live.send(json.dumps({"type": "have", "sequence": receive(live, document, "snapshot")["sequence"]}))

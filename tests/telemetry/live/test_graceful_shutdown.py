@@ -23,7 +23,7 @@ from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.program import free_port
 from tests.telemetry.live.page import HungUp, Page
 from tests.telemetry.records import record
-from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
+from tests.workspace.live.proxied_site import Endpoint, front_endpoint, redis_at, running, wait_until
 from workspace.live.graceful_shutdown import RESTARTS, GracefulShutdown
 from workspace.live.timed_waits import wait_for_event
 
@@ -37,17 +37,17 @@ TIMEOUT_S = 120.0
 class Replicas:
     """Two programs behind one port, in turn."""
 
-    door: Door
+    endpoint: Endpoint
     programs: list[subprocess.Popen[bytes]]
 
 
 @pytest.fixture
 def replicas(django_db_setup: None) -> Iterator[Replicas]:
     with ExitStack() as running_here:
-        door = running_here.enter_context(front_door())
-        running_here.enter_context(running(redis_at(door.redis)))
-        sockets = [door.folder / f"live-{number}.sock" for number in (1, 2)]
-        port, places = free_port(), Places(door.folder / "two")
+        endpoint = running_here.enter_context(front_endpoint())
+        running_here.enter_context(running(redis_at(endpoint.redis)))
+        sockets = [endpoint.folder / f"live-{number}.sock" for number in (1, 2)]
+        port, places = free_port(), Places(endpoint.folder / "two")
         places.process("proxy").mkdir(parents=True)
         live = tuple(f"unix:{path}" for path in sockets)
         site = Site(places.process("proxy"), places.static, web=live, live=live, listens_at=f"127.0.0.1:{port}")
@@ -55,8 +55,8 @@ def replicas(django_db_setup: None) -> Iterator[Replicas]:
         configuration.write_text(site_configuration(site))
         nginx = find_program("nginx") or "nginx"
         running_here.enter_context(running([nginx, "-e", "stderr", "-c", str(configuration)]))
-        programs = [running_here.enter_context(running(commands.live("--uds", str(path)), **door.environment)) for path in sockets]
-        two = replace(door, port=port)
+        programs = [running_here.enter_context(running(commands.live("--uds", str(path)), **endpoint.environment)) for path in sockets]
+        two = replace(endpoint, port=port)
         wait_until(lambda: all(accepts(path) for path in sockets) and two.is_open, TIMEOUT_S)
         yield Replicas(two, programs)
 
@@ -75,7 +75,7 @@ def shows(page: Page, uav: Uav, lon_deg: float) -> bool:
 def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(replicas: Replicas) -> None:
     uav, person = a_uav("Tern"), a_user()
     assert store_records([record(uav, 1, longitude_deg=10.0)]).stored == 1
-    pages = [Page(replicas.door.open("/ws/live", user=person)) for _ in range(PAGES)]
+    pages = [Page(replicas.endpoint.open("/ws/live", user=person)) for _ in range(PAGES)]
     for page in pages:
         page.take_until(lambda one: shows(one, uav, 10.0), TIMEOUT_S)
     stopped = replicas.programs[0]
@@ -89,7 +89,7 @@ def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(repl
             page.take_until(lambda one: shows(one, uav, 11.0), TIMEOUT_S)
         except HungUp as goodbye:
             assert goodbye.code == RESTARTS
-            again = Page(replicas.door.open("/ws/live", user=person))
+            again = Page(replicas.endpoint.open("/ws/live", user=person))
             again.take_until(lambda one: shows(one, uav, 11.0), TIMEOUT_S)
             came_back += 1
     assert 0 < came_back < PAGES

@@ -7,12 +7,12 @@ from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
-from tests.workspace.live.proxied_site import Door
+from tests.workspace.live.proxied_site import Endpoint
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
 
-def test_a_page_is_told_everything_and_then_what_changes(here: Door) -> None:
+def test_a_page_is_told_everything_and_then_what_changes(here: Endpoint) -> None:
     uav = a_uav("Tern")
     store_records([record(uav, 1, battery_percent=80.0)])
     page = Page(here.open("/ws/live", user=a_user()))

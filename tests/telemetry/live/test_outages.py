@@ -19,7 +19,7 @@ from tests.missions.commands.outbox import a_uav
 from tests.telemetry.gateway.outages.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
-from tests.workspace.live.proxied_site import Door, redis_at, running, wait_until
+from tests.workspace.live.proxied_site import Endpoint, redis_at, running, wait_until
 from workspace.api_tokens import create_api_token
 from workspace.models import User
 
@@ -51,34 +51,34 @@ def wipe(redis: Path) -> None:
     subprocess.run(["redis-cli", "-s", str(redis), "flushall"], check=True, capture_output=True)  # noqa: S603, S607
 
 
-def kill_redis_often(door: Door, times: int) -> None:
+def kill_redis_often(endpoint: Endpoint, times: int) -> None:
     flight = Flight()
     flight.report()
-    page = Page(door.open("/ws/live", user=a_user()))
+    page = Page(endpoint.open("/ws/live", user=a_user()))
     for _ in range(times):
-        with running(redis_at(door.redis)) as redis:
-            wait_until(door.redis.exists)
-            for harm in (lambda: None, lambda: wipe(door.redis)):
+        with running(redis_at(endpoint.redis)) as redis:
+            wait_until(endpoint.redis.exists)
+            for harm in (lambda: None, lambda: wipe(endpoint.redis)):
                 harm()
                 flight.report()
                 page.take_until(flight.is_shown_by, AGAIN_WITHIN_S)
             redis.kill()
             redis.wait()
-            door.redis.unlink(missing_ok=True)
+            endpoint.redis.unlink(missing_ok=True)
         flight.report()  # without any
         page.take_until(flight.is_shown_by, AGAIN_WITHIN_S)
     assert TelemetryRecord.objects.filter(uav=flight.uav).count() == flight.sent
 
 
-def test_while_redis_is_killed_and_emptied_pages_stay_live(without_redis: Door) -> None:
+def test_while_redis_is_killed_and_emptied_pages_stay_live(without_redis: Endpoint) -> None:
     kill_redis_often(without_redis, 2)
 
 
-def test_redis_may_be_killed_and_emptied_ten_times(without_redis: Door) -> None:
+def test_redis_may_be_killed_and_emptied_ten_times(without_redis: Endpoint) -> None:
     kill_redis_often(without_redis, 10)
 
 
-def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Door) -> None:
+def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Endpoint) -> None:
     flight = Flight()
     flight.report()
     page = Page(without_redis.open("/ws/live", user=a_user()))
@@ -95,7 +95,7 @@ def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Door) -> 
             waits_s.append(time.monotonic() - began_s)
 
 
-def test_who_comes_while_the_database_is_away_is_told_to_try_again(here: Door) -> None:
+def test_who_comes_while_the_database_is_away_is_told_to_try_again(here: Endpoint) -> None:
     token = create_api_token(user=a_user(), name="test", expires_at=timezone.now() + timedelta(hours=1))
     with database_away(), pytest.raises(WebSocketBadStatusException) as refused:
         here.open("/ws/live", token=token, origin=None)
@@ -110,11 +110,11 @@ def processes_below(pid: int) -> list[int]:
     return [below for child in children for below in (child, *processes_below(child))]
 
 
-def reopened(door: Door, user: User, until_s: float) -> Page:
+def reopened(endpoint: Endpoint, user: User, until_s: float) -> Page:
     """As a page's own program does: it tries until it is told everything."""
     while True:
         try:
-            page = Page(door.open("/ws/live", user=user))
+            page = Page(endpoint.open("/ws/live", user=user))
             page.take()
         except (WebSocketException, OSError):
             assert time.monotonic() < until_s, "the live program does not come back"
@@ -123,7 +123,7 @@ def reopened(door: Door, user: User, until_s: float) -> Page:
             return page
 
 
-def test_the_live_program_is_killed_and_pages_that_come_back_are_whole(here: Door, live_program: int) -> None:
+def test_the_live_program_is_killed_and_pages_that_come_back_are_whole(here: Endpoint, live_program: int) -> None:
     user, flight = a_user(), Flight()
     flight.report()
     page = Page(here.open("/ws/live", user=user))

@@ -16,7 +16,7 @@ from missions.services.fleet.credentials import make_credential
 from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
-from tests.workspace.live.proxied_site import Door, close_code
+from tests.workspace.live.proxied_site import Endpoint, close_code
 from workspace.api_tokens import create_api_token
 from workspace.jobs.services import create_job
 from workspace.live import sockets
@@ -51,9 +51,9 @@ def token_of(user: User) -> str:
     return create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
 
 
-def is_let_in(door: Door, path: str, **who: Any) -> bool:
+def is_let_in(endpoint: Endpoint, path: str, **who: Any) -> bool:
     try:
-        door.open(path, **who).close()
+        endpoint.open(path, **who).close()
     except WebSocketBadStatusException as refused:
         assert refused.status_code == 403
         return False
@@ -65,7 +65,7 @@ def test_every_route_is_in_the_table() -> None:
 
 
 @pytest.mark.parametrize("route", ROUTES)
-def test_every_role_listens_in_its_own_organisation_and_nowhere_else(here: Door, route: str) -> None:
+def test_every_role_listens_in_its_own_organisation_and_nowhere_else(here: Endpoint, route: str) -> None:
     home, elsewhere = Organisation.objects.get(pk=1), Organisation.objects.create(name="Elsewhere")
     address = ROUTES[route]
     path = "/" + route if address is None else address(home)
@@ -89,7 +89,7 @@ def test_every_role_listens_in_its_own_organisation_and_nowhere_else(here: Door,
     assert [what for what, who in refused.items() if is_let_in(here, path, **who)] == []
 
 
-def test_what_is_not_there_or_deleted_lets_nobody_in(here: Door) -> None:
+def test_what_is_not_there_or_deleted_lets_nobody_in(here: Endpoint) -> None:
     user = a_user()
     deleted = a_mission(user.organisation)
     Mission.objects.filter(pk=deleted.pk).update(deleted_at=timezone.now())
@@ -98,7 +98,7 @@ def test_what_is_not_there_or_deleted_lets_nobody_in(here: Door) -> None:
             here.open(path, user=user)
 
 
-def test_a_page_of_the_organisation_shows_nothing_of_another(here: Door) -> None:
+def test_a_page_of_the_organisation_shows_nothing_of_another(here: Endpoint) -> None:
     elsewhere = Organisation.objects.create(name="Elsewhere")
     Mission.objects.create(name="theirs", organisation=elsewhere, state="draft", ended_at=timezone.now())
     Mission.objects.create(name="ours", ended_at=timezone.now())
@@ -107,7 +107,7 @@ def test_a_page_of_the_organisation_shows_nothing_of_another(here: Door) -> None
     assert [mission["name"] for mission in page.shows["missions"].values()] == ["ours"]
 
 
-def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here: Door) -> None:
+def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here: Endpoint) -> None:
     assert sockets.CHECK_PERSON_INTERVAL_S <= 4.0
     elsewhere = Organisation.objects.create(name="Elsewhere")
     ends: dict[str, Callable[[User], object]] = {
@@ -137,7 +137,7 @@ def test_whoever_may_not_listen_any_more_is_hung_up_on_within_five_seconds(here:
     assert time.monotonic() - ended_s < SOON_S
 
 
-def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Door) -> None:
+def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Endpoint) -> None:
     mission = a_mission(Organisation.objects.get(pk=1))
     page = Page(here.open(f"/ws/missions/{mission.pk}/live", user=a_user()))
     page.take()
@@ -161,7 +161,7 @@ def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Door)
         pytest.param('{"type":"again","and":1}', id="more than it may say"),
     ],
 )
-def test_whoever_says_what_no_page_says_is_hung_up_on(here: Door, message: str | bytes) -> None:
+def test_whoever_says_what_no_page_says_is_hung_up_on(here: Endpoint, message: str | bytes) -> None:
     page = Page(here.open("/ws/live", user=a_user()))
     page.take()
     (page.socket.send if isinstance(message, str) else page.socket.send_binary)(message)

@@ -11,7 +11,7 @@ from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
-from tests.workspace.live.proxied_site import Door
+from tests.workspace.live.proxied_site import Endpoint
 
 LAST = 30
 
@@ -54,7 +54,7 @@ def test_a_reader_that_has_lost_count_is_given_everything_but_not_all_the_time(m
 
 
 @pytest.mark.django_db(transaction=True)
-def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_alone(here: Door) -> None:
+def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_alone(here: Endpoint) -> None:
     uavs = [a_uav("Tern"), a_uav("Gull")]
     store_records([record(uav, 1) for uav in uavs])
     quick, slow = Page(here.open("/ws/live", user=a_user())), Page(here.open("/ws/live", user=a_user()))
@@ -76,7 +76,7 @@ def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_al
 
 
 @pytest.mark.django_db(transaction=True)
-def test_a_page_that_asks_again_is_whole_again(here: Door) -> None:
+def test_a_page_that_asks_again_is_whole_again(here: Endpoint) -> None:
     uav = a_uav("Tern")
     store_records([record(uav, 1)])
     page = Page(here.open("/ws/live", user=a_user()))

@@ -32,7 +32,7 @@ TIMEOUT_S = 60.0
 
 
 @dataclass(frozen=True)
-class Door:
+class Endpoint:
     """The one port, and the Redis behind it; `live` is the program that speaks."""
 
     port: int
@@ -104,7 +104,7 @@ def close_code(live: WebSocket) -> int:
 
 
 @contextmanager
-def front_door() -> Iterator[Door]:
+def front_endpoint() -> Iterator[Endpoint]:
     """Without its live program and its Redis, which tests start and kill."""
     nginx = find_program("nginx")
     if nginx is None:
@@ -119,7 +119,7 @@ def front_door() -> Iterator[Door]:
     live = next(program for program in web_programs(places, folder) if program.name == "live")
     try:
         with running([nginx, "-e", "stderr", "-c", str(folder / "nginx.conf")]):
-            yield Door(port, folder / "redis.sock", folder, live.command, environment_of(folder))
+            yield Endpoint(port, folder / "redis.sock", folder, live.command, environment_of(folder))
     finally:
         shutil.rmtree(folder)
 
@@ -136,9 +136,9 @@ def environment_of(folder: Path) -> dict[str, str]:
     }
 
 
-def through_its_redis(door: Door, settings: Any) -> None:
+def through_its_redis(endpoint: Endpoint, settings: Any) -> None:
     """The test's own words go through it as well."""
     layer = settings.CHANNEL_LAYERS["default"]
-    hosts = [{"address": f"unix://{door.redis}", "socket_connect_timeout": 1}]
+    hosts = [{"address": f"unix://{endpoint.redis}", "socket_connect_timeout": 1}]
     settings.CHANNEL_LAYERS = {"default": layer | {"CONFIG": layer["CONFIG"] | {"hosts": hosts}}}
-    settings.REDIS_URL = f"unix://{door.redis}"
+    settings.REDIS_URL = f"unix://{endpoint.redis}"

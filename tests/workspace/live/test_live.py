@@ -19,7 +19,16 @@ from django.utils import timezone
 from websocket import WebSocket, WebSocketBadStatusException
 
 from tests.accounts.users import a_user
-from tests.workspace.live.proxied_site import TIMEOUT_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
+from tests.workspace.live.proxied_site import (
+    TIMEOUT_S,
+    Endpoint,
+    close_code,
+    front_endpoint,
+    redis_at,
+    running,
+    through_its_redis,
+    wait_until,
+)
 from workspace.api_tokens import create_api_token
 from workspace.jobs.consumers import ENDED, JobConsumer
 from workspace.jobs.services import cancel_job, create_job, finish_job, report_progress, start_job
@@ -31,19 +40,19 @@ pytestmark = pytest.mark.django_db(transaction=True)
 
 
 @pytest.fixture(scope="module")
-def door(django_db_setup: None) -> Iterator[Door]:
-    with front_door() as door, door.serves_live():
-        wait_until(lambda: door.is_open)
-        yield door
+def endpoint(django_db_setup: None) -> Iterator[Endpoint]:
+    with front_endpoint() as endpoint, endpoint.serves_live():
+        wait_until(lambda: endpoint.is_open)
+        yield endpoint
 
 
 @pytest.fixture
-def here(door: Door, settings: Any) -> Iterator[Door]:
+def here(endpoint: Endpoint, settings: Any) -> Iterator[Endpoint]:
     """With a Redis of its own, which the tests' own words go through as well."""
-    through_its_redis(door, settings)
-    with running(redis_at(door.redis)):
-        wait_until(door.redis.exists)
-        yield door
+    through_its_redis(endpoint, settings)
+    with running(redis_at(endpoint.redis)):
+        wait_until(endpoint.redis.exists)
+        yield endpoint
 
 
 def at(job: Job) -> str:
@@ -68,7 +77,7 @@ def reported(live: WebSocket) -> dict[str, Any]:
             return job
 
 
-def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Door) -> None:
+def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Endpoint) -> None:
     user = a_user()
     job = running_job(user)
     live = here.open(at(job), user=user)
@@ -84,13 +93,13 @@ def test_a_page_is_told_of_a_job_at_once_at_each_change_and_at_its_end(here: Doo
 
 
 @pytest.mark.parametrize("origin", ["", None], ids=["from this host", "that names no origin"])
-def test_a_program_listens_with_its_token(here: Door, origin: str | None) -> None:
+def test_a_program_listens_with_its_token(here: Endpoint, origin: str | None) -> None:
     user = a_user()
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
     assert reported(here.open(at(running_job(user)), token=token, origin=origin))["state"] == "running"
 
 
-def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
+def test_who_may_not_listen_is_refused_at_the_door(here: Endpoint) -> None:
     user = a_user()
     job = running_job(user)
     stranger = a_user(organisation=Organisation.objects.create(name="Elsewhere"))
@@ -113,7 +122,7 @@ def test_who_may_not_listen_is_refused_at_the_door(here: Door) -> None:
         here.open(at(Job(organisation=user.organisation)), user=user)  # is not there
 
 
-def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_moved(here: Door) -> None:
+def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_moved(here: Endpoint) -> None:
     user = a_user()
     job = running_job(user)
     token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(hours=1))
@@ -134,7 +143,7 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
     assert time.monotonic() - ended_s < 8.0  # four seconds, and a busy machine
 
 
-def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
+def test_whoever_sends_something_is_hung_up_on(here: Endpoint) -> None:
     user = a_user()
     live = here.open(at(running_job(user)), user=user)
     reported(live)
@@ -142,19 +151,19 @@ def test_whoever_sends_something_is_hung_up_on(here: Door) -> None:
     assert close_code(live) == 4400
 
 
-def test_a_dead_redis_delays_word_and_comes_back(door: Door, here: Door) -> None:
+def test_a_dead_redis_delays_word_and_comes_back(endpoint: Endpoint, here: Endpoint) -> None:
     user = a_user()
     job = running_job(user)
     live = here.open(at(job), user=user)
     reported(live)
-    subprocess.run(["redis-cli", "-s", str(door.redis), "shutdown", "nosave"], check=False)  # noqa: S603, S607
-    wait_until(lambda: not door.redis.exists())
+    subprocess.run(["redis-cli", "-s", str(endpoint.redis), "shutdown", "nosave"], check=False)  # noqa: S603, S607
+    wait_until(lambda: not endpoint.redis.exists())
     report_progress(job=job, progress=0.3, message="without Redis")
     assert reported(live)["message"] == "without Redis"
     other = here.open(at(job), user=user)  # a page that is opened meanwhile
     assert reported(other)["progress"] == 0.3
-    with running(redis_at(door.redis)):
-        wait_until(door.redis.exists)
+    with running(redis_at(endpoint.redis)):
+        wait_until(endpoint.redis.exists)
         report_progress(job=job, progress=0.6, message="it is back")
         assert [reported(live)["message"], reported(other)["message"]] == ["it is back", "it is back"]
         cancel_job(job=job)
@@ -192,14 +201,14 @@ def test_nobody_waits_for_a_redis_that_does_not_answer(
     assert "Redis is away" in caplog.text
 
 
-def test_plain_http_is_told_to_upgrade(here: Door) -> None:
+def test_plain_http_is_told_to_upgrade(here: Endpoint) -> None:
     with pytest.raises(urllib.error.HTTPError) as caught:
         urllib.request.urlopen(f"http://127.0.0.1:{here.port}/ws/jobs/{Job().pk}", timeout=TIMEOUT_S)
     assert caught.value.code == 426
     assert json.loads(caught.value.read())["error"]["code"] == "upgrade_required"
 
 
-def test_without_the_program_the_door_says_try_again(here: Door) -> None:
+def test_without_the_program_the_door_says_try_again(here: Endpoint) -> None:
     (here.folder / "live.sock").rename(here.folder / "away.sock")
     try:
         with pytest.raises(urllib.error.HTTPError) as caught:

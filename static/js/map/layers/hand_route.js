@@ -5,7 +5,7 @@ import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { MapLibreMap, Position } from "../types.d.ts" */
 
-/** @typedef {{ position: number[], isByHand: boolean }} HandPoint */
+/** @typedef {{ position: number[], isManual: boolean }} HandPoint */
 /** @typedef {{ chosen: number | null, stateOf: (leg: number) => string, isFree: (point: any) => boolean }} HandLook */
 
 const SOURCE = "hand-route";
@@ -74,7 +74,7 @@ function layers() {
       filter: isRole("point"),
       paint: {
         "circle-radius": ["interpolate", ["linear"], ["zoom"], 10, radius(2), 12.5, radius(touch ? 8 : 5.5)],
-        "circle-color": ["case", ["get", "fixed"], ink, ["get", "byHand"], accent, raised],
+        "circle-color": ["case", ["get", "fixed"], ink, ["get", "manualEdit"], accent, raised],
         "circle-stroke-color": ["case", ["get", "chosen"], ink, ["get", "fixed"], raised, quiet],
         "circle-stroke-width": ["case", ["get", "chosen"], 3, 1.5],
       },
@@ -119,7 +119,7 @@ export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
       index,
       chosen: index === chosen,
       fixed: !isFree(point),
-      byHand: point.isByHand,
+      manualEdit: point.isManual,
     }),
   );
   const features = [...legs, ...middles, ...dots];

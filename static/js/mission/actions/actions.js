@@ -2,7 +2,7 @@
 
 import { ApiError, signInAddress } from "../../api.js";
 import { t } from "../../text.js";
-import { createHandEditing } from "../hand/hand_editing.js";
+import { createManualEditing } from "../hand/manual_editing.js";
 import { settled } from "../locks.js";
 import { showBoth } from "../panels/both.js";
 import { basisOf } from "../selection.js";
@@ -45,7 +45,7 @@ export function createActions(store, history, page, drafts) {
     ...createOpening(context, conflicts),
     ...createFleetActions(context),
     ...createRallyPoints(context),
-    ...createHandEditing(context, { save: saving.save, keepOpen: createStoredMission(context).keepOpen }),
+    ...createManualEditing(context, { save: saving.save, keepOpen: createStoredMission(context).keepOpen }),
   };
 }
 

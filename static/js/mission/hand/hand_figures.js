@@ -26,7 +26,7 @@ const signed = (difference, least, textOf) =>
  * @param {HandLook | null} look
  * @param {Pick<Route, "length_m" | "duration_s" | "battery_percent"> | null | undefined} stored
  */
-export function figuresOfLook(look, stored) {
+export function figuresOfCheck(look, stored) {
   if (!look || look.length_m === null || look.duration_s === null || !stored) return "";
   const reported = [
     `${lengthText(look.length_m)}${signed(look.length_m - stored.length_m, MIN_M, lengthText)}`,

@@ -88,7 +88,7 @@ export function mountHandMap(map, store, actions) {
       event.stopPropagation();
       event.preventDefault();
       if (handle.isFixed) {
-        actions.chooseByHand(handle.index);
+        actions.chooseManually(handle.index);
         click.ends();
         return;
       }
@@ -116,7 +116,7 @@ export function mountHandMap(map, store, actions) {
     if (!drag.now && Math.hypot(at.x - drag.from.x, at.y - drag.from.y) < MOVED_PX) return;
     const { lng, lat } = map.unproject([at.x, at.y]);
     drag.now = moved(drag.points, drag.index, [lng, lat]);
-    actions.dragByHand(drag.now, drag.index);
+    actions.dragManually(drag.now, drag.index);
   });
   /** @param {PointerEvent} event */
   function end(event) {
@@ -126,10 +126,10 @@ export function mountHandMap(map, store, actions) {
     map.dragPan.enable();
     click.ends();
     if (!store.state.hand) return;
-    if (event.type === "pointerup" && ended.now) actions.dropByHand(ended.now, ended.index);
-    else if (event.type === "pointerup" && ended.isNew) actions.dropByHand(ended.points, ended.index);
-    else if (event.type === "pointerup") actions.chooseByHand(ended.index);
-    else actions.dropByHand(null);
+    if (event.type === "pointerup" && ended.now) actions.dropManually(ended.now, ended.index);
+    else if (event.type === "pointerup" && ended.isNew) actions.dropManually(ended.points, ended.index);
+    else if (event.type === "pointerup") actions.chooseManually(ended.index);
+    else actions.dropManually(null);
   }
   canvas.addEventListener("pointerup", end);
   canvas.addEventListener("pointercancel", end);

@@ -1,7 +1,7 @@
 /** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in,
  * values out.
  *
- * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isByHand }; `was` is its place in the route as
+ * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isManual }; `was` is its place in the route as
  * stored,
  * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and
  * targets stay.
@@ -23,7 +23,7 @@ export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
 
 /** @param {Pick<Route, "waypoints" | "by_hand" | "speeds_by_hand">} route @returns {HandPoint[]} */
 export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
-  const byHand = new Set(by_hand ?? []);
+  const manualEdit = new Set(by_hand ?? []);
   const speeds = new Map((speeds_by_hand ?? []).map(({ waypoint, speed_mps }) => [waypoint, speed_mps]));
   return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({
     position,
@@ -32,13 +32,13 @@ export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
     was,
     kind,
     target,
-    isByHand: byHand.has(was),
+    isManual: manualEdit.has(was),
   }));
 }
 
 /** @param {HandPoint[]} points @param {number} index @param {Partial<HandPoint>} values */
 const replaced = (points, index, values) =>
-  points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
+  points.map((point, at) => (at === index ? { ...point, ...values, isManual: true } : point));
 
 /**
  * The same points where one that has to stay would be moved.
@@ -90,7 +90,7 @@ export function inserted(points, index, position = null) {
     was: null,
     kind: "pass",
     target: null,
-    isByHand: true,
+    isManual: true,
   };
   return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
 }

@@ -2,7 +2,7 @@
 
 import { h, icon } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { figuresOfLook } from "../../hand/hand_figures.js";
+import { figuresOfCheck } from "../../hand/hand_figures.js";
 import { changesOf, isFree } from "../../hand/hand_route.js";
 import { createHandFields } from "./hand_fields.js";
 
@@ -23,10 +23,10 @@ function kindWords(point, plan) {
   if (point.kind === "start") return t("start");
   if (point.kind === "end") return t("end");
   if (point.kind === "base") return t("between two flights");
-  const how = point.isByHand ? t("by hand") : t("as planned");
+  const how = point.isManual ? t("by hand") : t("as planned");
   if (point.kind !== "target") return how;
   const label = (point.target === null ? null : plan?.targets[point.target]?.label) ?? t("Target");
-  return point.isByHand ? `${label}, ${how}` : label;
+  return point.isManual ? `${label}, ${how}` : label;
 }
 
 /** @param {HandEdit} hand */
@@ -54,7 +54,7 @@ function sentenceOf(hand, changes, faults) {
       ? tn(changes, "{count} waypoint is changed.", "{count} waypoints are changed.")
       : t("Nothing is changed yet."),
   ];
-  if (hand.isLookOld && !hand.unknown) parts.push(t("The route is being checked."));
+  if (hand.isCheckOld && !hand.unknown) parts.push(t("The route is being checked."));
   else if (changes && !faults.length) parts.push(t("The whole route is clear."));
   return parts.join(" ");
 }
@@ -94,13 +94,13 @@ function createWalk(store, actions) {
     if (!hand) return;
     const { points, chosen } = hand;
     const next = (chosen ?? (step > 0 ? -1 : points.length)) + step;
-    actions.chooseByHand(Math.min(points.length - 1, Math.max(0, next)));
+    actions.chooseManually(Math.min(points.length - 1, Math.max(0, next)));
   };
   const which = h("span", { class: "hand-which" });
   const before = iconButton("arrow-left", t("Waypoint before"), { act: go(-1) });
   const after = iconButton("arrow-left", t("Next waypoint"), { class: "turned", act: go(1) });
-  const undo = iconButton("undo-2", t("Undo"), { title: t("Undo (Ctrl+Z)"), act: actions.undoByHand });
-  const redo = iconButton("redo-2", t("Redo"), { title: t("Redo (Ctrl+Shift+Z)"), act: actions.redoByHand });
+  const undo = iconButton("undo-2", t("Undo"), { title: t("Undo (Ctrl+Z)"), act: actions.undoManualEdit });
+  const redo = iconButton("redo-2", t("Redo"), { title: t("Redo (Ctrl+Shift+Z)"), act: actions.redoManualEdit });
   return {
     element: h("div", { class: "hand-walk" }, before, which, after, undo, redo),
     /** @param {HandEdit} hand @param {HandPoint[]} points @param {ShownPlan | null} plan */
@@ -193,11 +193,11 @@ export function createByHand(store, actions) {
     const changes = changesOf(points, hand.original);
     const list = faultsOf(hand);
     const stored = plan?.result.routes[hand.sequence];
-    const reported = figuresOfLook(hand.look, stored);
+    const reported = figuresOfCheck(hand.look, stored);
     explanation.textContent = sentenceOf(hand, changes, list);
     figures.hidden = !reported;
     figures.textContent = reported;
-    figures.classList.toggle("old", hand.isLookOld);
+    figures.classList.toggle("old", hand.isCheckOld);
     drawFaults(list);
     walk.refresh(hand, points, plan);
     hint.hidden = hand.chosen !== null && Boolean(points[hand.chosen]);

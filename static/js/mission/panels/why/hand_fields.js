@@ -48,12 +48,15 @@ export function createHandFields(actions, chosen) {
   });
   speed.addEventListener("change", () => {
     if (!speed.validity.valid) return;
-    actions.paceByHand(chosen(), speed.value && speed.valueAsNumber > 0 ? speed.valueAsNumber * SPEED_UNIT.mps : null);
+    actions.setSpeedManually(
+      chosen(),
+      speed.value && speed.valueAsNumber > 0 ? speed.valueAsNumber * SPEED_UNIT.mps : null,
+    );
   });
   for (const input of [latitude, longitude])
     input.addEventListener("change", () => {
       if ([latitude, longitude].every(({ value, validity }) => value && validity.valid))
-        actions.moveByHand(chosen(), [longitude.valueAsNumber, latitude.valueAsNumber]);
+        actions.moveManually(chosen(), [longitude.valueAsNumber, latitude.valueAsNumber]);
     });
 
   /** @type {number | null} */

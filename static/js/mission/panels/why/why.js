@@ -102,14 +102,14 @@ class WhyPanel {
   #store;
   #actions;
   #canPlan;
-  #byHand;
+  #manualEdit;
 
   /** @param {MissionStore} store @param {MissionActions} actions @param {boolean} canPlan */
   constructor(store, actions, canPlan) {
     this.#store = store;
     this.#actions = actions;
     this.#canPlan = canPlan;
-    this.#byHand = createByHand(store, actions);
+    this.#manualEdit = createByHand(store, actions);
   }
 
   close() {
@@ -132,7 +132,7 @@ class WhyPanel {
     if (why !== this.#shown) this.#opener.remember();
     byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
     this.#explain(state, plan, why);
-    markRoute(panel, why.route ?? why.byHand);
+    markRoute(panel, why.route ?? why.manualEdit);
     if (why !== this.#shown || document.activeElement === document.body) this.#title.focus(); // on a phone it comes into sight so
     this.#shown = why;
   }
@@ -140,9 +140,9 @@ class WhyPanel {
   /** Shows what is asked. @param {MissionPageState} state @param {ShownPlan} plan @param {Why} why */
   #explain(state, plan, why) {
     const mayChange = this.#canPlan && isPlanCurrent(state);
-    if (why.byHand !== undefined) {
-      const { uav: name } = plan.result.routes[why.byHand];
-      if (why !== this.#shown) put(t("Change the route of {name} by hand", { name }), this.#byHand.element);
+    if (why.manualEdit !== undefined) {
+      const { uav: name } = plan.result.routes[why.manualEdit];
+      if (why !== this.#shown) put(t("Change the route of {name} by hand", { name }), this.#manualEdit.element);
     } else if (why.alternatives) this.#putAlternatives(state, mayChange);
     else if (why.compare) {
       const last = lastPlanOf(state);

@@ -18,7 +18,7 @@ export const NO_FAULTS = hand.faultsOf(null);
 const keyOf = (points) => JSON.stringify(hand.bodyOf(points));
 
 /** @param {Pick<MissionContext, "store" | "wordsOf">} context */
-export function createHandLooks({ store, wordsOf }) {
+export function createManualEditChecks({ store, wordsOf }) {
   /** @type {Map<string, HandLook>} by what was asked */
   const looks = new Map();
   let isAsking = false;
@@ -45,7 +45,7 @@ export function createHandLooks({ store, wordsOf }) {
         .changedLegs(points, original)
         .map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]),
     );
-    return { look: exact ?? last, isLookOld: exact === null, faults, legs, unknown: "" };
+    return { look: exact ?? last, isCheckOld: exact === null, faults, legs, unknown: "" };
   }
 
   /** Asks about what is shown on the map at this moment, dragged or not. */

@@ -7,8 +7,8 @@ import { ApiError, request } from "../../api.js";
 import { announce, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { isPlanCurrent } from "../plan_view.js";
-import { createHandLooks, NO_FAULTS } from "./hand_looks.js";
 import * as hand from "./hand_route.js";
+import { createManualEditChecks, NO_FAULTS } from "./manual_edit_checks.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission } from "../../api_types.d.ts" */
@@ -25,7 +25,7 @@ const beginningOf = (original, sequence) => ({
   chosen: null,
   dragged: null,
   look: null,
-  isLookOld: true,
+  isCheckOld: true,
   unknown: "",
   faults: NO_FAULTS,
   legs: new Map(),
@@ -42,7 +42,7 @@ const beginningOf = (original, sequence) => ({
 function isStillOpen({ hand: edit, why, plan }) {
   if (!edit) return true;
   const route = plan?.result.routes[edit.sequence];
-  const isShown = why?.byHand === edit.sequence && Boolean(route?.geometry);
+  const isShown = why?.manualEdit === edit.sequence && Boolean(route?.geometry);
   return isShown && route !== undefined && hand.pointsOf(route).length === edit.original.length;
 }
 
@@ -50,7 +50,7 @@ function isStillOpen({ hand: edit, why, plan }) {
  * The points of the route with undo and redo.
  *
  * @param {MissionStore} store
- * @param {ReturnType<typeof createHandLooks>} looks
+ * @param {ReturnType<typeof createManualEditChecks>} looks
  */
 function createSteps(store, { ask, knownOf, put }) {
   /** @type {HandPoint[][]} */
@@ -114,9 +114,9 @@ function createSteps(store, { ask, knownOf, put }) {
  * @param {MissionContext} context
  * @param {Saving} saving
  */
-export function createHandEditing(context, saving) {
+export function createManualEditing(context, saving) {
   const { store } = context;
-  const looks = createHandLooks(context);
+  const looks = createManualEditChecks(context);
   const { ask, knownOf, put, forget } = looks;
   const { take, undo, redo, beginAnew } = createSteps(store, looks);
   const state = () => store.state.hand;
@@ -133,12 +133,12 @@ export function createHandEditing(context, saving) {
     beginAnew();
     forget();
     const edit = beginningOf(hand.pointsOf(route), sequence);
-    store.update({ hand: edit, why: { byHand: sequence }, tool: "point" });
+    store.update({ hand: edit, why: { manualEdit: sequence }, tool: "point" });
     void ask();
   }
 
   function end() {
-    if (state()) store.update({ hand: null, why: store.state.why?.byHand === undefined ? store.state.why : null });
+    if (state()) store.update({ hand: null, why: store.state.why?.manualEdit === undefined ? store.state.why : null });
   }
 
   store.listen(["plan", "why"], (now) => {
@@ -150,14 +150,14 @@ export function createHandEditing(context, saving) {
     endByHand: end,
     ...createKeeping(context, saving, { put, end }),
     /** @param {number | null} chosen */
-    chooseByHand: (chosen) => put({ chosen }),
+    chooseManually: (chosen) => put({ chosen }),
     /**
      * While it is dragged: shown and asked about, no step of the history.
      *
      * @param {HandPoint[]} points
      * @param {number} chosen
      */
-    dragByHand(points, chosen) {
+    dragManually(points, chosen) {
       put({ dragged: points, chosen });
       const edit = state();
       if (edit) put(knownOf(edit, points));
@@ -169,24 +169,24 @@ export function createHandEditing(context, saving) {
      * @param {HandPoint[] | null} points
      * @param {number | null} [chosen]
      */
-    dropByHand(points, chosen = null) {
+    dropManually(points, chosen = null) {
       put({ dragged: null });
       if (points && take(() => points, chosen)) return;
       const edit = state();
       if (edit) put(knownOf(edit, edit.points));
     },
     /** @param {number} index @param {number[]} position */
-    moveByHand: (index, position) => take((points) => hand.moved(points, index, position), index),
+    moveManually: (index, position) => take((points) => hand.moved(points, index, position), index),
     /** @param {number} index @param {number} height_m */
     raiseByHand: (index, height_m) => take((points) => hand.raised(points, index, height_m), index),
     /** @param {number} index @param {number | null} speed_mps */
-    paceByHand: (index, speed_mps) => take((points) => hand.paced(points, index, speed_mps), index),
+    setSpeedManually: (index, speed_mps) => take((points) => hand.paced(points, index, speed_mps), index),
     /** @param {number} index */
     insertByHand: (index) => take((points) => hand.inserted(points, index), index + 1),
     /** @param {number} index */
     removeByHand: (index) => take((points) => hand.dropped(points, index), null),
-    undoByHand: undo,
-    redoByHand: redo,
+    undoManualEdit: undo,
+    redoManualEdit: redo,
   };
 }
 
