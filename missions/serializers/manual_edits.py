@@ -9,7 +9,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_SPEED_MPS
 from missions.serializers.shapes import WaypointSerializer
 from missions.services.manual_edits.checks import ManualEditCheck
-from missions.services.manual_edits.points import MAX_WAYPOINTS, HandPoint
+from missions.services.manual_edits.points import MAX_WAYPOINTS, EditedPoint
 from planning.plan_json import column_to_json, timing_to_json, waypoints_to_json
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
@@ -39,9 +39,9 @@ class HandRouteSerializer(KnownFieldsSerializer):
             raise serializers.ValidationError(f"At most {MAX_WAYPOINTS} waypoints.")
         return value
 
-    def points(self) -> list[HandPoint]:
+    def points(self) -> list[EditedPoint]:
         return [
-            HandPoint(point["position"], point["altitude_agl_m"], point.get("was"), point.get("speed_mps"))
+            EditedPoint(point["position"], point["altitude_agl_m"], point.get("was"), point.get("speed_mps"))
             for point in self.validated_data["waypoints"]
         ]
 

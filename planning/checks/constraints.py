@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from inspection.geodesy import LonLat
-from inspection.network.build.obstacles import at_all_heights, with_walls
+from inspection.network.build.obstacles import at_all_heights, with_obstacles
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray
 from planning.airspace import ZoneChoice
@@ -65,7 +65,7 @@ class Constraints:
         if not self.spans:
             return closed
         wires = walls_of_spans(context.network, self.spans, self.closed_spans, terminals)
-        return wires if closed is None else with_walls(closed, wires)
+        return wires if closed is None else with_obstacles(closed, wires)
 
     def on_shortest_paths(self) -> "Constraints":
         """The same zones on the shortest paths; nothing has been shown there yet."""

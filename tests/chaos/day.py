@@ -16,7 +16,7 @@ from deploy.load.installation import Installation
 from scripts.places import PROJECT_DIR, CannotStart
 from tests.chaos.experiment import Course
 from tests.chaos.jobs import one_of
-from tests.chaos.site import Site, people_of, shipped
+from tests.chaos.site import Site, shipped, users_of
 
 SIZES = {False: {"people": 60, "uavs": 60, "companions": 8, "users": 40}, True: {"people": 20, "uavs": 20, "companions": 3, "users": 16}}
 SETTLES_S = 180
@@ -69,21 +69,26 @@ class Day:
             "--settle-s",
             str(SETTLES_S),
         ]
-        told = subprocess.run(  # noqa: S603
+        reported = subprocess.run(  # noqa: S603
             command, env=self.installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=False
         )
-        lines = told.stdout.splitlines()
+        lines = reported.stdout.splitlines()
         held = sum(line.startswith("|") and line.rstrip().endswith("| holds |") for line in lines)
         violated = [line.strip("| ") for line in lines if "VIOLATED" in line]
         counted = next((line for line in lines if "acknowledged items" in line), "nothing was counted")
-        figure = f"{counted}; {held} invariants hold" + (f"; {violated[:4]}, {lines[-3:]}" if violated or told.returncode else "")
-        course.tell(
-            "the clients' ledger against the database", figure, "0 acknowledged items lost, 0 doubled", told.returncode == 0 and held > 0
+        figure = f"{counted}; {held} invariants hold" + (f"; {violated[:4]}, {lines[-3:]}" if violated or reported.returncode else "")
+        course.record(
+            "the clients' ledger against the database",
+            figure,
+            "0 acknowledged items lost, 0 doubled",
+            reported.returncode == 0 and held > 0,
         )
         whole = played.served().get(ALL)
         if whole is not None:
             figure = f"{whole.failures:,} of {whole.requests:,} requests failed for good"
-            course.tell("the users of the day", figure + (f": {played.failures()[:3]}" if whole.failures else ""), "0", whole.failures == 0)
+            course.record(
+                "the users of the day", figure + (f": {played.failures()[:3]}" if whole.failures else ""), "0", whole.failures == 0
+            )
 
 
 @contextmanager
@@ -101,6 +106,6 @@ def working_day(
         for what in ("people", "uavs", "companions"):
             command += [f"--{what}", str(size[what])]
         subprocess.run(command, env=installation.environment(), cwd=PROJECT_DIR, check=True)  # noqa: S603
-        told = json.loads((folder / "day.json").read_text())
-        site = Site(installation, people_of(installation, told["organisation"]))
-        yield Day(site, folder, size["users"], tuple(uav["uav"] for uav in told["in_air"]))
+        reported = json.loads((folder / "day.json").read_text())
+        site = Site(installation, users_of(installation, reported["organisation"]))
+        yield Day(site, folder, size["users"], tuple(uav["uav"] for uav in reported["in_air"]))

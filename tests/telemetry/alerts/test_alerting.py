@@ -82,8 +82,8 @@ def test_a_uav_whose_flight_was_told_to_be_over_is_not_missed_while_others_fly(u
 
 
 def test_a_watch_that_takes_over_opens_nothing_twice_and_closes_what_is_over(uav, approval):
-    poll_alerts(watched=[watched_uav(uav, approval)], now=at(25), states=watching(uav, approval))
-    poll_alerts(watched=[watched_uav(uav, approval)], now=at(26), states=DetectorStates())
+    poll_alerts(watched=[watched_uav(uav, approval)], now=at(25), detector_states=watching(uav, approval))
+    poll_alerts(watched=[watched_uav(uav, approval)], now=at(26), detector_states=DetectorStates())
     alert = Alert.objects.get()
     assert (alert.closed_at, alert.revision) == (None, 1)
     received(uav, 27)
@@ -105,15 +105,15 @@ def test_a_raised_level_is_not_acknowledged_any_more(uav, approval):
 
 
 def test_what_is_on_the_ground_is_not_late(uav, approval):
-    poll_alerts(watched=[watched_uav(uav, approval, is_armed=False, is_in_air=False)], now=at(60), states=DetectorStates())
+    poll_alerts(watched=[watched_uav(uav, approval, is_armed=False, is_in_air=False)], now=at(60), detector_states=DetectorStates())
     assert not Alert.objects.exists()
 
 
 @pytest.mark.parametrize("state", ["completed", "aborted", "failed"])
 def test_a_mission_that_has_ended_ends_its_alerts(state, uav, approval):
-    poll_alerts(watched=[watched_uav(uav, approval)], now=at(60), states=DetectorStates())
+    poll_alerts(watched=[watched_uav(uav, approval)], now=at(60), detector_states=DetectorStates())
     Mission.objects.update(state=state)
-    poll_alerts(watched=[], now=at(60) + timedelta(seconds=1), states=DetectorStates())
+    poll_alerts(watched=[], now=at(60) + timedelta(seconds=1), detector_states=DetectorStates())
     assert Alert.objects.get().close_reason == "mission-ended"
 
 
@@ -249,7 +249,7 @@ def test_a_uav_that_came_down_beside_its_route_is_told_until_a_person_closes_it(
     assert (alert.code, alert.level, alert.mission_id) == ("down-off-plan", "critical", approval.mission_id)
     assert alert.details["position"] == pytest.approx([place.longitude_deg + 0.01, place.latitude_deg])
     Mission.objects.update(state="failed")
-    poll_alerts(watched=[], now=at(60), states=DetectorStates())
+    poll_alerts(watched=[], now=at(60), detector_states=DetectorStates())
     assert open_ones() == [("down-off-plan", "critical")], "the end of its mission does not end it"
     person = an_operator()
     close_down_alert(alert=alert, actor=person, reason="Brought back; motor 3 had failed")
@@ -330,7 +330,7 @@ def test_no_alert_of_a_uav_closes_because_it_is_down_in_the_wrong_place(uav, app
         in_flight(second, uav, approval, states, **fallen, battery_percent=9.0, mode="LAND")
     assert {code for code, _ in open_ones()} == {"battery-short", "down-off-plan", "mode-changed"}
     Mission.objects.update(state="failed")
-    poll_alerts(watched=[], now=at(40), states=DetectorStates())
+    poll_alerts(watched=[], now=at(40), detector_states=DetectorStates())
     assert len(open_ones()) == 3, "the end of its mission ends none of them either"
     Mission.objects.update(state="active")
     close_down_alert(alert=Alert.objects.get(code="down-off-plan"), actor=an_operator(), reason="Brought back")
