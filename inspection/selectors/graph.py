@@ -104,10 +104,10 @@ def graph_of_version(version: int) -> InspectionGraph:
 
 def zones_in_force() -> ZoneIndex:
     """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
-    return zones_of_edition(ground_dataset_version())
+    return zones_of_version(ground_dataset_version())
 
 
-def zones_of_edition(key: tuple[int, datetime | None]) -> ZoneIndex:
+def zones_of_version(key: tuple[int, datetime | None]) -> ZoneIndex:
     """The zones of a dataset version that has just been read: they are at least as new as that."""
     return zones_of_table(zone_table_of_version(key))
 

@@ -162,7 +162,7 @@ class Watch:
                 self._go_on_without_database(error)
             wait_s = _until_next(time.time())
         loop_heartbeats.stop(LOOP)
-        self._give_back()
+        self._release()
 
     def stop(self) -> None:
         self._stop.set()
@@ -289,7 +289,7 @@ class Watch:
             self._quiet_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
             logger.warning("the database is away, nothing is estimated: %s", type(error).__name__)
 
-    def _give_back(self) -> None:
+    def _release(self) -> None:
         try:
             release_watches(holder=self.options.holder)
         except DATABASE_UNAVAILABLE:

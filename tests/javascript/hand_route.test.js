@@ -112,7 +112,7 @@ async function editing() {
     { save: async () => {}, keepOpen: () => {} },
   );
   asked.length = 0;
-  await actions.beginByHand(0);
+  await actions.beginManually(0);
   await settled();
   return { store, actions, hand: () => store.state.hand };
 }

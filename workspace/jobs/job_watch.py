@@ -53,9 +53,9 @@ class JobWatch:
         if self._thread.ident is not None:
             self._thread.join()
         if kind is not None and issubclass(kind, SystemExit) and not connection.in_atomic_block:
-            self._give_back()
+            self._release()
 
-    def _give_back(self) -> None:
+    def _release(self) -> None:
         """The worker ends before the work does. Without a database the lease runs out by itself."""
         try:
             release_job(job=self.job)

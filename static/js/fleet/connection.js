@@ -20,9 +20,9 @@ const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 export function receivedWords({ heard_at, heard_by, server_time }) {
   if (!heard_at) return { words: t("Never connected."), isReceived: false };
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
-  const door = heard_by ? LINKS[heard_by].by : "";
+  const endpoint = heard_by ? LINKS[heard_by].by : "";
   return {
-    words: t("Last contact {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
+    words: t("Last contact {ago} {door}.", { ago: agoText(seconds, heard_at), door: endpoint }),
     isReceived: seconds <= LOST_AFTER_S,
   };
 }

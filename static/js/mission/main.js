@@ -251,7 +251,7 @@ function planningKeys() {
 
 function removeChosen() {
   const { hand, chosenTargets } = store.state;
-  if (hand) return hand.chosen !== null && actions.removeByHand(hand.chosen);
+  if (hand) return hand.chosen !== null && actions.removeManually(hand.chosen);
   if (!chosenTargets.length) return false;
   actions.removeTargets(chosenTargets);
   return true;

@@ -18,7 +18,7 @@ class FrozenLine:
     _moves: threading.Event = field(default_factory=threading.Event)
     _is_cut: bool = False
     _sockets: list[socket.socket] = field(default_factory=list)
-    _door: socket.socket = field(default_factory=lambda: socket.create_server(("127.0.0.1", 0)))
+    _endpoint: socket.socket = field(default_factory=lambda: socket.create_server(("127.0.0.1", 0)))
 
     def __post_init__(self) -> None:
         self._moves.set()
@@ -26,7 +26,7 @@ class FrozenLine:
 
     @property
     def address(self) -> str:
-        return f"http://127.0.0.1:{self._door.getsockname()[1]}"
+        return f"http://127.0.0.1:{self._endpoint.getsockname()[1]}"
 
     def freeze(self) -> None:
         self._moves.clear()
@@ -42,7 +42,7 @@ class FrozenLine:
     def close(self) -> None:
         self._is_cut = True
         self._moves.set()
-        self._door.close()
+        self._endpoint.close()
         self._hang_up()
 
     def _hang_up(self) -> None:
@@ -55,7 +55,7 @@ class FrozenLine:
         place = urlsplit(self.site_address)
         with suppress(OSError):  # it is closed
             while True:
-                near, _ = self._door.accept()
+                near, _ = self._endpoint.accept()
                 if self._is_cut:
                     near.close()
                     continue

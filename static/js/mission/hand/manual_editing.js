@@ -146,8 +146,8 @@ export function createManualEditing(context, saving) {
   });
 
   return {
-    beginByHand: begin,
-    endByHand: end,
+    beginManually: begin,
+    endManually: end,
     ...createKeeping(context, saving, { put, end }),
     /** @param {number | null} chosen */
     chooseManually: (chosen) => put({ chosen }),
@@ -178,13 +178,13 @@ export function createManualEditing(context, saving) {
     /** @param {number} index @param {number[]} position */
     moveManually: (index, position) => take((points) => hand.moved(points, index, position), index),
     /** @param {number} index @param {number} height_m */
-    raiseByHand: (index, height_m) => take((points) => hand.raised(points, index, height_m), index),
+    raiseManually: (index, height_m) => take((points) => hand.raised(points, index, height_m), index),
     /** @param {number} index @param {number | null} speed_mps */
     setSpeedManually: (index, speed_mps) => take((points) => hand.paced(points, index, speed_mps), index),
     /** @param {number} index */
-    insertByHand: (index) => take((points) => hand.inserted(points, index), index + 1),
+    insertManually: (index) => take((points) => hand.inserted(points, index), index + 1),
     /** @param {number} index */
-    removeByHand: (index) => take((points) => hand.dropped(points, index), null),
+    removeManually: (index) => take((points) => hand.dropped(points, index), null),
     undoManualEdit: undo,
     redoManualEdit: redo,
   };
@@ -243,7 +243,7 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
   }
 
   return {
-    async keepByHand() {
+    async keepManually() {
       const { hand: edit, mission, name } = store.state;
       if (!edit || !mission) return;
       const { sequence, points, original } = edit;
@@ -266,7 +266,7 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
         showRefused(error);
       }
     },
-    takeBackByHand: () => {
+    takeBackManually: () => {
       const edit = store.state.hand;
       if (edit) void takeBack(edit.sequence);
     },

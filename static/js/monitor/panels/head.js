@@ -71,11 +71,11 @@ function drawStale(state) {
   stale.hidden = !summary;
   if (summary && wasHidden) announce(`${summary.words} ${summary.rest ?? ""}`); // once: the seconds that follow are for the eye
   if (!summary) return;
-  const door = summary.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
+  const endpoint = summary.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
   setChildren(
     stale,
     icon("cloud-off"),
-    h("span", {}, h("strong", {}, summary.words), summary.rest && ` ${summary.rest}`, door),
+    h("span", {}, h("strong", {}, summary.words), summary.rest && ` ${summary.rest}`, endpoint),
   );
 }
 

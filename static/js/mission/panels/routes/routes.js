@@ -72,7 +72,7 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
             look: () => store.update({ lookedAt: sequence }),
             leave: () => store.update({ lookedAt: null }),
             choose: () => store.update({ chosenRoute: store.state.chosenRoute === sequence ? null : sequence }),
-            change: () => void actions.beginByHand(sequence),
+            change: () => void actions.beginManually(sequence),
             explain: () => store.update({ why: { route: sequence } }),
           },
         });

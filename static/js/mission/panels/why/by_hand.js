@@ -63,7 +63,7 @@ function sentenceOf(hand, changes, faults) {
 function createTakeBack(actions) {
   const button = h(
     "button",
-    { type: "button", class: "button", onclick: actions.takeBackByHand },
+    { type: "button", class: "button", onclick: actions.takeBackManually },
     icon("undo-2", "small"),
     t("Take back the last change"),
   );
@@ -133,13 +133,13 @@ function createChosenPoint(store, actions) {
   const fields = createHandFields(actions, chosen);
   const put = h(
     "button",
-    { type: "button", class: "button", onclick: () => actions.insertByHand(chosen()) },
+    { type: "button", class: "button", onclick: () => actions.insertManually(chosen()) },
     icon("plus", "small"),
     t("Put one in after it"),
   );
   const drop = h(
     "button",
-    { type: "button", class: "button", onclick: () => actions.removeByHand(chosen()) },
+    { type: "button", class: "button", onclick: () => actions.removeManually(chosen()) },
     icon("trash-2", "small"),
     t("Remove"),
   );
@@ -159,7 +159,7 @@ function createChosenPoint(store, actions) {
 }
 
 /** Returns its element; it follows store.state.hand. @param {MissionStore} store @param {MissionActions} actions */
-export function createByHand(store, actions) {
+export function createManualEdit(store, actions) {
   const explanation = h("p", { class: "why-sentence", role: "status" });
   const figures = h("p", { class: "hand-figures" });
   const faults = h("ul", { class: "hand-faults", "aria-label": t("What is wrong") });
@@ -171,8 +171,8 @@ export function createByHand(store, actions) {
     t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."),
   );
   const takeBack = createTakeBack(actions);
-  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Apply"));
-  const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Discard"));
+  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepManually }, t("Apply"));
+  const leave = h("button", { type: "button", class: "button", onclick: actions.endManually }, t("Discard"));
 
   /** @param {string[]} list */
   function drawFaults(list) {

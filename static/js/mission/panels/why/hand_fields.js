@@ -44,7 +44,8 @@ export function createHandFields(actions, chosen) {
   speed.setAttribute("aria-describedby", speedNote.id);
 
   height.addEventListener("change", () => {
-    if (height.value && height.validity.valid) actions.raiseByHand(chosen(), height.valueAsNumber * SHORT_UNIT.metres);
+    if (height.value && height.validity.valid)
+      actions.raiseManually(chosen(), height.valueAsNumber * SHORT_UNIT.metres);
   });
   speed.addEventListener("change", () => {
     if (!speed.validity.valid) return;

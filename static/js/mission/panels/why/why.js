@@ -9,7 +9,7 @@ import { isPlanCurrent, lastPlanOf } from "../../plan_view.js";
 import { takesShortestWays } from "../../plan_words.js";
 import { requestOf } from "../../selection.js";
 import { alternatives } from "./alternatives.js";
-import { createByHand } from "./by_hand.js";
+import { createManualEdit } from "./by_hand.js";
 import { comparison } from "./compared.js";
 import { routeExplanation } from "./route.js";
 import { targetExplanation } from "./target.js";
@@ -109,7 +109,7 @@ class WhyPanel {
     this.#store = store;
     this.#actions = actions;
     this.#canPlan = canPlan;
-    this.#manualEdit = createByHand(store, actions);
+    this.#manualEdit = createManualEdit(store, actions);
   }
 
   close() {
