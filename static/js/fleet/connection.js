@@ -22,7 +22,7 @@ export function receivedWords({ heard_at, heard_by, server_time }) {
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
   const endpoint = heard_by ? LINKS[heard_by].by : "";
   return {
-    words: t("Last contact {ago} {door}.", { ago: agoText(seconds, heard_at), door: endpoint }),
+    words: t("Last contact {ago} {link}.", { ago: agoText(seconds, heard_at), link: endpoint }),
     isReceived: seconds <= LOST_AFTER_S,
   };
 }

@@ -128,7 +128,7 @@ export default {
   "{count} s ago": "vor {count} s",
   "{count} min ago": "vor {count} min",
   "Never connected.": "Noch nie verbunden.",
-  "Last contact {ago} {door}.": "Letzter Kontakt {ago} {door}.",
+  "Last contact {ago} {link}.": "Letzter Kontakt {ago} {link}.",
   "in the air": "in der Luft",
   "armed": "scharf",
   "disarmed": "gesichert",
