@@ -88,9 +88,9 @@ def layout_of(form: Form, tags: Tags, phases: int, voltage_v: int | None) -> Lay
 
 def is_anchor(tags: Tags, ways: int, bend_deg: float) -> bool:
     """Whether wires end at the support: as tagged, else where a line ends, branches or turns."""
-    said = {tags.get(key, "") for key in ("line_attachment", "line_management", "tower:type")}
-    if said & _FASTENED:
+    stated = {tags.get(key, "") for key in ("line_attachment", "line_management", "tower:type")}
+    if stated & _FASTENED:
         return True
-    if said & _HUNG:
+    if stated & _HUNG:
         return False
     return ways != 2 or bend_deg > BEND_DEG

@@ -51,15 +51,15 @@ NUMBERED = re.compile(r"(?P<word>\w+) (?P<osm>[nwr])?(?P<number>\d{1,18})", re.I
 class MadeName:
     """What a made name says: the kind's word in English, and a place on a line, an OSM id ("w", 42), or the asset's own number."""
 
-    word: str
+    noun: str
     place: tuple[int, int] | None = None
     osm: tuple[str, int] | None = None
     number: int | None = None
 
     def filter(self) -> Q:
         """The assets that are called so."""
-        subtypes = [subtype for subtype, word in WORDS.items() if word == self.word]
-        kinds = [kind for kind, word in KIND_WORDS.items() if word == self.word]
+        subtypes = [subtype for subtype, noun in WORDS.items() if noun == self.noun]
+        kinds = [kind for kind, noun in KIND_WORDS.items() if noun == self.noun]
         alike = Q(subtype__in=subtypes) | (Q(kind__in=kinds) & ~Q(subtype__in=list(WORDS)))
         if self.place is not None:
             return alike & Q(ref="", name="", line__isnull=False, place_on_line=self.place[0], places_on_line=self.place[1])
@@ -68,7 +68,7 @@ class MadeName:
         return alike & Q(osm_id=None, pk=self.number)
 
 
-def word_of(kind: str, subtype: str) -> str:
+def noun_of(kind: str, subtype: str) -> str:
     """What such an asset is, in one English word, which is translated where it is shown."""
     return WORDS.get(subtype) or KIND_WORDS[AssetKind(kind)]
 
@@ -83,11 +83,11 @@ def assets_with_made_names(assets: QuerySet[Asset], names: Collection[MadeName])
     by_number = Q(osm_id=None, pk__in={name.number for name in names if name.number is not None})
     found: dict[MadeName, list[int]] = {name: [] for name in names}
     for asset in assets.filter(placed | by_osm | by_number).only(*NAMING).order_by("pk"):
-        word = word_of(asset.kind, asset.subtype)
+        noun = noun_of(asset.kind, asset.subtype)
         for name in (
-            MadeName(word, place=(asset.place_on_line or 0, asset.places_on_line or 0)),
-            MadeName(word, osm=(asset.osm_type, asset.osm_id or 0)),
-            MadeName(word, number=asset.pk),
+            MadeName(noun, place=(asset.place_on_line or 0, asset.places_on_line or 0)),
+            MadeName(noun, osm=(asset.osm_type, asset.osm_id or 0)),
+            MadeName(noun, number=asset.pk),
         ):
             if name in found:
                 found[name].append(asset.pk)
@@ -98,11 +98,11 @@ def made_name(text: str) -> MadeName | None:
     """Read a made name in any language of the pages; None for a text that is none. Case and double spaces do not matter."""
     plain = " ".join(text.split())
     for words, placed in _languages():
-        if (match := placed.fullmatch(plain)) and (word := words.get(match["word"].lower())):
-            return MadeName(word, place=(int(match["place"]), int(match["places"])))
-        if (match := NUMBERED.fullmatch(plain)) and (word := words.get(match["word"].lower())):
+        if (match := placed.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
+            return MadeName(noun, place=(int(match["place"]), int(match["places"])))
+        if (match := NUMBERED.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
             number = int(match["number"])
-            return MadeName(word, osm=(match["osm"].lower(), number)) if match["osm"] else MadeName(word, number=number)
+            return MadeName(noun, osm=(match["osm"].lower(), number)) if match["osm"] else MadeName(noun, number=number)
     return None
 
 
@@ -112,9 +112,9 @@ def _languages() -> list[tuple[dict[str, str], re.Pattern[str]]]:
     languages = []
     for code, _name in settings.LANGUAGES:
         with translation.override(code):
-            words = {_(word).lower(): word for word in {*KIND_WORDS.values(), *WORDS.values()}}
-            said = _(PLACED) % {"kind": "{kind}", "place": "{place}", "places": "{places}"}
-        pattern = re.escape(said).replace(r"\{kind\}", r"(?P<word>\w+)")
+            words = {_(noun).lower(): noun for noun in {*KIND_WORDS.values(), *WORDS.values()}}
+            stated = _(PLACED) % {"kind": "{kind}", "place": "{place}", "places": "{places}"}
+        pattern = re.escape(stated).replace(r"\{kind\}", r"(?P<word>\w+)")
         pattern = pattern.replace(r"\{place\}", r"(?P<place>\d{1,6})").replace(r"\{places\}", r"(?P<places>\d{1,6})")
         languages.append((words, re.compile(pattern, re.IGNORECASE)))
     return languages
@@ -132,10 +132,10 @@ def asset_label(asset: Asset) -> str:
         return " ".join(part for part in (asset.operator, voltage_text(asset.max_voltage_v)) if part)
     if asset.kind == AssetKind.RAILWAY and asset.operator:
         return _(RAILWAY_OF) % {"operator": asset.operator}
-    word = _(word_of(asset.kind, asset.subtype))
+    noun = _(noun_of(asset.kind, asset.subtype))
     if asset.line_id is not None:
-        return _(PLACED) % {"kind": word, "place": asset.place_on_line, "places": asset.places_on_line}
-    return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"
+        return _(PLACED) % {"kind": noun, "place": asset.place_on_line, "places": asset.places_on_line}
+    return f"{noun} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{noun} {asset.pk}"
 
 
 def asset_detail(asset: Asset) -> str:
@@ -169,7 +169,7 @@ def voltage_text(voltage_v: int | None) -> str:
 
 def _stated(values: Mapping[str, str], column: str, otherwise: str) -> str:
     """The word of a column's value in the reader's language, as SQL with parameters of `sql_words`."""
-    cases = " ".join(f"WHEN '{value}' THEN %({word})s" for value, word in values.items())
+    cases = " ".join(f"WHEN '{value}' THEN %({noun})s" for value, noun in values.items())
     return f"CASE {column} {cases} ELSE {otherwise} END"
 
 
@@ -180,7 +180,7 @@ def _sql_voltage_and_owner(voltage: str, owner: str) -> str:
 
 def sql_words() -> dict[str, str]:
     """The parameters of LABEL_SQL and DETAIL_SQL, in the reader's language; they are named as their English."""
-    words = {word: _(word) for word in {*KIND_WORDS.values(), *WORDS.values(), *CARRIES.values(), VOLTAGE_NOT_STATED}}
+    words = {noun: _(noun) for noun in {*KIND_WORDS.values(), *WORDS.values(), *CARRIES.values(), VOLTAGE_NOT_STATED}}
     placed = _(PLACED) % {"kind": "%1$s", "place": "%2$s", "places": "%3$s"}
     return words | {"placed": placed, "railway of": _(RAILWAY_OF) % {"operator": "%s"}}
 
@@ -189,7 +189,7 @@ def sql_words() -> dict[str, str]:
 LINE_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"
 VOLTAGES_SQL = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
 _VOLTAGE = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
-_WORD = _stated(WORDS, "subtype", _stated({str(kind): word for kind, word in KIND_WORDS.items()}, "kind", "INITCAP(kind)"))
+_WORD = _stated(WORDS, "subtype", _stated({str(kind): noun for kind, noun in KIND_WORDS.items()}, "kind", "INITCAP(kind)"))
 _GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
 _OPERATOR = f"NULLIF(NULLIF(operator, ''), {_GIVEN})"
 LABEL_SQL = f"""COALESCE(

@@ -92,9 +92,9 @@ def with_external_id(assets: QuerySet[DrawnAsset], organisation_id: int, externa
 def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[DrawnZone]:
     """All zones, with their geometry as GeoJSON text in `geometry_json`; with the words of the text in name, identifier or reason."""
     found = NoFlyZone.objects.select_related("zone_set__data_import")
-    for word in text.split():
+    for term in text.split():
         found = found.filter(
-            Q(name__icontains=word) | Q(identifier__icontains=word) | Q(reason__icontains=word) | Q(restriction__icontains=word)
+            Q(name__icontains=term) | Q(identifier__icontains=term) | Q(reason__icontains=term) | Q(restriction__icontains=term)
         )
     if zone_set is not None:
         found = found.filter(zone_set=zone_set)
@@ -121,12 +121,12 @@ def _text_filter(text: str) -> Q:
     wanted = Q()
     for kilovolts in VOLTAGE.findall(text):
         wanted &= Q(voltages_v__contains=[round(float(kilovolts) * 1000)])
-    for word in VOLTAGE.sub(" ", text).split():
-        matches = Q(name__icontains=word) | Q(ref__icontains=word) | Q(operator__icontains=word)
-        if key := OSM_KEY.fullmatch(word):
+    for term in VOLTAGE.sub(" ", text).split():
+        matches = Q(name__icontains=term) | Q(ref__icontains=term) | Q(operator__icontains=term)
+        if key := OSM_KEY.fullmatch(term):
             matches |= Q(osm_type=key[1].lower(), osm_id=int(key[2]))
-        if KILOVOLTS.fullmatch(word):
-            matches |= Q(voltages_v__contains=[round(float(word) * 1000)])
+        if KILOVOLTS.fullmatch(term):
+            matches |= Q(voltages_v__contains=[round(float(term) * 1000)])
         wanted &= matches
     made = made_name(text)
     return wanted if made is None else wanted | made.filter()

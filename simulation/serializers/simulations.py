@@ -19,7 +19,7 @@ from workspace.api import strict_serializers as serializers
 SPEEDS = (1, 2, 5, 10)
 MAX_POOL_UAVS = 100
 MAX_SYSTEM_ID = 250
-MIN_LIFETIME_S, USUAL_LIFETIME_S, MAX_TOLD_S = 60, 3_600, 7 * 86_400
+MIN_LIFETIME_S, USUAL_LIFETIME_S, MAX_LIFETIME_S = 60, 3_600, 7 * 86_400
 
 
 NOT_OF_THE_FLEET = gettext_lazy(
@@ -62,14 +62,14 @@ class FaultsSerializer(KnownFieldsSerializer):
         return attrs
 
 
-CONDITIONS_TOLD = (
+CONDITION_FIELDS = (
     "calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, "
     "turbulence_mps_at_20ft, battery_percent"
 )
 
 
 class VehicleChangeSerializer(KnownFieldsSerializer):
-    conditions = ConditionsField(required=False, help_text=f"the air from now on: {CONDITIONS_TOLD}; batteries stay as they are")
+    conditions = ConditionsField(required=False, help_text=f"the air from now on: {CONDITION_FIELDS}; batteries stay as they are")
     faults = FaultsSerializer(required=False)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
@@ -84,7 +84,7 @@ class SimulationChangeSerializer(VehicleChangeSerializer):
 
 class SimulatedFlightsInputSerializer(KnownFieldsSerializer):
     speed = serializers.ChoiceField(choices=SPEEDS, default=1, help_text="times real time")
-    conditions = ConditionsField(default="as-planned", help_text=CONDITIONS_TOLD)
+    conditions = ConditionsField(default="as-planned", help_text=CONDITION_FIELDS)
     faults = FaultsSerializer(required=False)
     flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7, help_text="of gusts and turbulence")
@@ -108,14 +108,14 @@ class SimulationInputSerializer(KnownFieldsSerializer):
     uavs: serializers.ListSerializer[Any] = serializers.ListSerializer(child=PoolUavSerializer(), min_length=1, max_length=MAX_POOL_UAVS)
     lifetime_s = serializers.IntegerField(
         min_value=MIN_LIFETIME_S,
-        max_value=MAX_TOLD_S,
+        max_value=MAX_LIFETIME_S,
         default=USUAL_LIFETIME_S,
         help_text="then they end",
     )
     airframe = serializers.ChoiceField(choices=sorted(AIRFRAMES), default="iris", help_text="GET /airframes lists them")
     flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
     speed = serializers.ChoiceField(choices=SPEEDS, default=1)
-    conditions = ConditionsField(default="calm", help_text=CONDITIONS_TOLD)
+    conditions = ConditionsField(default="calm", help_text=CONDITION_FIELDS)
     faults = FaultsSerializer(required=False)
     first_system_id = serializers.IntegerField(min_value=1, max_value=MAX_SYSTEM_ID, default=1, help_text="the others' follow")
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7)
@@ -208,7 +208,7 @@ class SimulationPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-TOLD = tuple(name for name in ToldSerializer().get_fields() if name != "at")
+REPORTED_FIELDS = tuple(name for name in ToldSerializer().get_fields() if name != "at")
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
@@ -232,7 +232,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
 
 
 def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
-    reported = {name: vehicle.reported[name] for name in TOLD if name in vehicle.reported}
+    reported = {name: vehicle.reported[name] for name in REPORTED_FIELDS if name in vehicle.reported}
     airframe = AIRFRAMES.get(vehicle.airframe)
     own_wh = 0.0 if airframe is None else airframe.battery_wh
     return {

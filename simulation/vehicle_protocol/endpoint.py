@@ -84,7 +84,7 @@ class Endpoint:
         self._now_s = now_s
         messages: list[Message] = []
         for event in self.vehicle.take_events():
-            reported = _TOLD.get(type(event))
+            reported = _REPORTED.get(type(event))
             if reported is not None:
                 messages += reported(self, event)
         state = self.vehicle.state
@@ -275,7 +275,7 @@ _HANDLERS: dict[str, Callable[[Endpoint, Any, Station, float], list[Outgoing]]] 
     "TIMESYNC": Endpoint._timesync,
     "PING": Endpoint._ping,
 }
-_TOLD: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
+_REPORTED: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
     events.ItemReached: Endpoint._reached,
     events.MissionEnded: Endpoint._ended,
     events.StatusText: Endpoint._stated,

@@ -19,7 +19,7 @@ NEAR_S = 60.0  # of an incident: a report that tells where the UAV was
 ABOUT = timedelta(minutes=2)  # before its first and after its last report, in which a UAV may speak of the flight
 ONE_FALL_S = 180.0  # between the words of a crash and the alert that the UAV is down: the same one
 _CRASH = re.compile(r"\bcrash", re.IGNORECASE)
-_TOLD = {CommandKind.RETURN: IncidentKind.ORDERED_RETURN, CommandKind.LAND: IncidentKind.ORDERED_LAND}
+_ORDERED = {CommandKind.RETURN: IncidentKind.ORDERED_RETURN, CommandKind.LAND: IncidentKind.ORDERED_LAND}
 _REACHED_UAV = (CommandState.SENT, CommandState.ACKNOWLEDGED, CommandState.APPLIED)
 
 Flown = tuple[int, str, Sequence[Fix]]  # place in the mission, name, reports
@@ -86,13 +86,13 @@ def _with_crash(found: list[Incident], place: int, name: str, fixes: Sequence[Fi
 
 
 def _of_commands(mission: Mission, flown: Mapping[int, Flown]) -> list[Incident]:
-    rows = UavCommand.objects.filter(mission=mission, kind__in=list(_TOLD), state__in=_REACHED_UAV, created_by__isnull=False)
+    rows = UavCommand.objects.filter(mission=mission, kind__in=list(_ORDERED), state__in=_REACHED_UAV, created_by__isnull=False)
     found = []
     for command in rows.select_related("created_by").order_by("created_at"):
         place, name, fixes = flown.get(command.uav_id, (None, "", ()))
         if place is None:
             continue
-        kind, at_s = _TOLD[CommandKind(command.kind)], (command.sent_at or command.created_at).timestamp()
+        kind, at_s = _ORDERED[CommandKind(command.kind)], (command.sent_at or command.created_at).timestamp()
         values = {"uav": name, "who": _name(command.created_by), "why": command.why}
         found.append(
             Incident(kind, OutcomeReason(f"{kind}-why" if command.why else kind, values, at_s), at_s, place, _position(fixes, at_s))

@@ -91,9 +91,9 @@ def opened_terrain(path: Path) -> Iterator[TerrainFile]:
             raise TerrainFileError(str(error)) from error
 
 
-def datum_of(file: TerrainFile, said: str) -> str:
+def datum_of(file: TerrainFile, stated: str) -> str:
     """The vertical datum of the heights: as the file states it, else as somebody says. Raises TerrainFileError."""
-    named = datum_named(said) if said.strip() else ""
+    named = datum_named(stated) if stated.strip() else ""
     if file.vertical_datum is not None:
         return file.vertical_datum
     if not named:

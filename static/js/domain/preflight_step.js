@@ -127,13 +127,13 @@ export function nextStep(preflight, isPilotDone, stand = null) {
 
 /** Simulated UAVs connect by themselves. @param {UavPreflight[]} waiting for the mission @returns {NextStep} */
 function startingStep(waiting) {
-  const unheard = waiting.filter((row) => !isConnected(row));
+  const unacknowledged = waiting.filter((row) => !isConnected(row));
   return {
     act: "connect",
     words: t("Starting simulated UAVs …"),
     image: "radio",
-    why: unheard.length
-      ? t("They connect by themselves. Waiting for: {names}.", { names: namesOf(unheard) })
+    why: unacknowledged.length
+      ? t("They connect by themselves. Waiting for: {names}.", { names: namesOf(unacknowledged) })
       : t("All are connected. The mission is uploaded next."),
     left: [],
     uavs: waiting.map(({ uav }) => uav),

@@ -175,14 +175,14 @@ const isEmpty = (value) =>
   value === "" ||
   (typeof value === "object" && Object.keys(value).length === 0);
 
-const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // said elsewhere
+const NOT_STATED = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // said elsewhere
 
 /** Figures of a file, for people: numbers and short texts alone. @param {Summary} summary */
 export function summaryLines(summary) {
   return Object.entries(summary)
     .filter(
       ([name, value]) =>
-        !NOT_SAID.has(name) &&
+        !NOT_STATED.has(name) &&
         (typeof value === "number" || typeof value === "string" || typeof value === "boolean") &&
         value !== "",
     )

@@ -48,7 +48,7 @@ def test_without_walls_it_is_the_zones() -> None:
 @pytest.mark.parametrize("is_tall", [True, False])
 def test_zones_that_went_are_not_kept(gone: str, *, is_tall: bool) -> None:
     """Each change of the zones makes another set, and each is as large as all zones are."""
-    pair = {"zones": zone(3.0, "Airport"), "walls": obstacles(4.0) if is_tall else no_obstacles()}
+    pair = {"zones": zone(3.0, "Airport"), "obstacles": obstacles(4.0) if is_tall else no_obstacles()}
     kept = [ref(pair[gone]), *([ref(with_obstacles(**pair))] if is_tall else [])]
     del pair[gone]
     gc.collect()

@@ -96,7 +96,7 @@ def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(repl
 
 
 def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None:
-    class Told:
+    class Reported:
         def __init__(self, shutdown: GracefulShutdown) -> None:
             self.shutdown = shutdown
             self.reported: list[tuple[int, float]] = []
@@ -106,14 +106,14 @@ def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None
             self.reported.append((code, asyncio.get_running_loop().time()))
             self.shutdown.forget(self)
 
-    async def all_reported() -> tuple[list[Told], int]:
+    async def all_reported() -> tuple[list[Reported], int]:
         loop, left = asyncio.get_running_loop(), asyncio.Event()
         loop.add_signal_handler(signal.SIGINT, left.set)
         shutdown = GracefulShutdown(loop, spread_s=0.2)
-        sockets = [Told(shutdown) for _ in range(19)]
+        sockets = [Reported(shutdown) for _ in range(19)]
         shutdown.begin()
         shutdown.begin()
-        sockets.append(Told(shutdown))
+        sockets.append(Reported(shutdown))
         assert await wait_for_event(left, TIMEOUT_S)
         loop.remove_signal_handler(signal.SIGINT)
         return sockets, len(shutdown._sockets)

@@ -1,6 +1,6 @@
 /** A mission as it flies: the feed's word of each UAV, and between two words a glide. */
 
-import { certaintyOf, MEASURED as HEARD, LOST as UNHEARD } from "../../domain/certainty.js";
+import { certaintyOf, MEASURED as RECEIVED, LOST as UNREACHABLE } from "../../domain/certainty.js";
 import { inAir } from "../../domain/in_air.js";
 import { tracksOf } from "../../record/track.js";
 import { completed, ESTIMATED, LOST, MEASURED, momentOf } from "./pieces.js";
@@ -28,11 +28,11 @@ export function liveSample(uav, now_ms) {
   const certainty = certaintyOf(uav, now_ms);
   if (certainty === null) return null;
   const { measured, estimated } = uav;
-  const received = certainty === HEARD && measured?.position ? measured : null;
+  const received = certainty === RECEIVED && measured?.position ? measured : null;
   const from = received ?? estimated ?? measured;
   if (!from?.position) return null;
   return {
-    kind: certainty === UNHEARD ? LOST : received ? MEASURED : ESTIMATED,
+    kind: certainty === UNREACHABLE ? LOST : received ? MEASURED : ESTIMATED,
     at_ms: now_ms,
     since_ms: measured ? Date.parse(measured.measured_at) : null,
     position: from.position,

@@ -13,7 +13,7 @@ from tests.telemetry.gateway.commands.test_commands import AUTOPILOT_TYPES, disp
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 
 pytestmark = pytest.mark.django_db(transaction=True)
-TOLD = {
+REPORTED = {
     AutopilotType.PX4: ({"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0, "RTL_MIN_DIST": 10.0}, {"RTL_RETURN_ALT": 85.0}, 85.0),
     AutopilotType.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
 }
@@ -29,7 +29,7 @@ def mission(uav, settings, tmp_path) -> Mission:
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 def test_the_height_of_its_return_is_read_and_read_anew(autopilot_type, uav, mission, tmp_path):
-    first, later, height_m = TOLD[autopilot_type]
+    first, later, height_m = REPORTED[autopilot_type]
     vehicle = AUTOPILOT_TYPES[autopilot_type](parameters=dict(first))
     reported = {"autopilot": str(autopilot_type), "parameters": first}
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
@@ -45,7 +45,7 @@ def test_the_height_of_its_return_is_read_and_read_anew(autopilot_type, uav, mis
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)
 def test_the_height_of_its_return_is_set_and_read_back(autopilot_type, uav, mission, tmp_path):
-    first, _later, _height_m = TOLD[autopilot_type]
+    first, _later, _height_m = REPORTED[autopilot_type]
     vehicle = AUTOPILOT_TYPES[autopilot_type](parameters=dict(first))
     name = next(iter(first))
     with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
