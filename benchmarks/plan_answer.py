@@ -106,12 +106,12 @@ def _people() -> Iterator[dict[str, str]]:
 
 def _asker(application: Callable[..., Any]) -> Callable[[dict[str, Any]], None]:
     def ask(request: dict[str, Any]) -> None:
-        said = []
-        answer = application(request, lambda status, headers: said.append(status))
+        stated = []
+        answer = application(request, lambda status, headers: stated.append(status))
         content = b"".join(answer)
         answer.close()
-        if said != ["200 OK"]:
-            raise RuntimeError(f"{said}: {content[:500]!r}")
+        if stated != ["200 OK"]:
+            raise RuntimeError(f"{stated}: {content[:500]!r}")
 
     return ask
 

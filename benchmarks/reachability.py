@@ -24,7 +24,7 @@ from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.route_index import route_index
 from inspection.network.rules import FlownHeights, LinkingRules
@@ -84,7 +84,7 @@ def measure(
     network, zones = network_of(made), zones_of(made)
     linking, flight, routing = LinkingRules(), FlightRules(), RoutingRules()
     heights = FlownHeights(flight.transit_agl_m, flight.clearance_m, flight.terrain_tolerance_m, 10.0)
-    whole = cleared(network, zones, linking, heights).graph
+    whole = masked(network, zones, linking, heights).graph
     graph = flyable_part(whole, flight.tallest_m)
     route_index(graph)
     rules = AccessRules(

@@ -12,14 +12,14 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile
 import numpy as np
 
 from inspection.geodesy import LonLat
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.snapshot_file import CorruptSnapshot, from_bytes, to_bytes
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.terrain.heights import HeightGrid
 from inspection.terrain.tiled_terrain import IntArray, TiledTerrain
-from inspection.zones.reach import BoolArray, Limits, ZoneTable
+from inspection.zones.reach import BoolArray, HeightLimits, ZoneTable
 from inspection.zones.schedule import ZoneRules
 from planning.airspace import NEAR_DEG, NEAR_SHARE
 from planning.context import Box, OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
@@ -95,7 +95,7 @@ def _context(
         box=zones["box"],
         floor_agl_m=zones["floor_agl_m"],
         ceiling_agl_m=zones["ceiling_agl_m"],
-        limits=tuple(Limits(*limits) for limits in text["limits"]),
+        limits=tuple(HeightLimits(*limits) for limits in text["limits"]),
         schedules=tuple(text["schedules"]),
         rules=rules.zones,
     )
@@ -111,7 +111,7 @@ def _context(
     def cleared_of(index: ZoneIndex) -> InspectionGraph:
         if index not in graphs:
             stamps = {"version": about["graph_version"], "ground_revision": about["map_version"]}
-            graphs[index] = cleared(network, index, rules.linking, rules.heights, **stamps).graph
+            graphs[index] = masked(network, index, rules.linking, rules.heights, **stamps).graph
         return graphs[index]
 
     flights = _flights_from_json(about["other_flights"])

@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from shapely import LineString, Point
 
-from inspection.network.infrastructure import Ways
+from inspection.network.infrastructure import InfrastructureWays
 from inspection.network.nearness import nearest_within
 from inspection.quality.infrastructure import Gap, GapGround, WayFacts, asset_key, place_key
-from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, Network
+from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, SupportNetwork
 
 MAX_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
 MAX_VALUES = 6
@@ -43,7 +43,7 @@ def impossible_voltages(ground: GapGround) -> list[Gap]:
     ]
 
 
-def _of_ways(ways: Ways, facts: WayFacts, *, is_railway: bool) -> list[Gap]:
+def _of_ways(ways: InfrastructureWays, facts: WayFacts, *, is_railway: bool) -> list[Gap]:
     gaps = []
     for way, (volts, text) in enumerate(zip(facts.voltages_v, facts.voltage_text, strict=True)):
         fault = voltage_fault(volts, text, subtype=facts.subtype[way], is_railway=is_railway)
@@ -109,7 +109,7 @@ ASKED_AT_ONCE = 2_000_000  # neighbours, so that memory stays bounded
 REACH_M = 2_000.0  # how far an end may be from the network that it could belong to
 
 
-def line_ends(network: Network) -> list[Gap]:
+def line_ends(network: SupportNetwork) -> list[Gap]:
     """Ends that no other leg leaves from: apart from another line by a few metres, or with nothing around them.
 
     Spanwise keeps no substations. An end counts as meant where another line, a cable, a busbar, a portal or a tower tagged as terminal is
@@ -127,7 +127,7 @@ def line_ends(network: Network) -> list[Gap]:
     return _ends_apart(network, vertex[is_apart], near, nearest[is_apart]) + _dead_ends(network, vertex[is_dead])
 
 
-def is_at_terminal(network: Network, position: FloatArray, way: IntArray) -> BoolArray:
+def is_at_terminal(network: SupportNetwork, position: FloatArray, way: IntArray) -> BoolArray:
     """Whether something at the place says that lines end there: a terminal support, what is not flown, or another line."""
     ground = network.ground
     terminals = np.concatenate([ground.off_network, ground.supports.position[ground.support_facts.is_terminal]])
@@ -138,7 +138,7 @@ def is_at_terminal(network: Network, position: FloatArray, way: IntArray) -> Boo
     return at_terminal
 
 
-def _loose_ends(network: Network) -> IntArray:
+def _loose_ends(network: SupportNetwork) -> IntArray:
     """Vertex numbers of first and last vertices from whose node one leg leaves only."""
     lines = network.ground.lines
     has = np.diff(lines.first) > 1
@@ -149,13 +149,13 @@ def _loose_ends(network: Network) -> IntArray:
     return chosen
 
 
-def _of_other_lines(network: Network, vertex: IntArray, near: NearLegs) -> NearLegs:
+def _of_other_lines(network: SupportNetwork, vertex: IntArray, near: NearLegs) -> NearLegs:
     keep = network.leg_way[near.leg] != network.way_of_vertex[vertex[near.place]]
     keep &= (network.leg_node[near.leg] != network.node_of_vertex[vertex[near.place]][:, None]).all(axis=1)
     return NearLegs(near.place[keep], near.leg[keep], near.metres[keep], near.fraction[keep], near.position[keep])
 
 
-def _ends_apart(network: Network, vertex: IntArray, near: NearLegs, row: IntArray) -> list[Gap]:
+def _ends_apart(network: SupportNetwork, vertex: IntArray, near: NearLegs, row: IntArray) -> list[Gap]:
     """One gap for each pair of an end and the line that it should join; two ends that miss each other are one gap."""
     leg = near.leg[row]
     start, other_end = network.leg_start[leg], network.leg_start[leg] + 1
@@ -188,7 +188,7 @@ def _ends_apart(network: Network, vertex: IntArray, near: NearLegs, row: IntArra
     return list(gaps.values())
 
 
-def _dead_ends(network: Network, vertex: IntArray) -> list[Gap]:
+def _dead_ends(network: SupportNetwork, vertex: IntArray) -> list[Gap]:
     node = network.node_of_vertex[vertex]
     position = network.node_position[node]
     lines = network.ground.lines
@@ -218,7 +218,7 @@ def _dead_ends(network: Network, vertex: IntArray) -> list[Gap]:
     return gaps
 
 
-def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray, FloatArray]:
+def _nearest_other_component(network: SupportNetwork, node: IntArray) -> tuple[IntArray, FloatArray]:
     """For each node the nearest one within reach of lines of its voltage that do not hang together with it, or -1.
 
     Lines of two voltages meet in a transformer, not in each other; a voltage that is not stated may be any.
@@ -244,7 +244,7 @@ def _nearest_other_component(network: Network, node: IntArray) -> tuple[IntArray
     return partner, best
 
 
-def _node_volts(network: Network) -> IntArray:
+def _node_volts(network: SupportNetwork) -> IntArray:
     """Of each node the highest voltage of its lines, 0 where none is stated."""
     of_way = np.array([max(volts, default=0) for volts in network.ground.line_facts.voltages_v], dtype=np.int64)
     highest = np.zeros(network.node_count, dtype=np.int64)
@@ -252,5 +252,5 @@ def _node_volts(network: Network) -> IntArray:
     return highest
 
 
-def _way_key(network: Network, way: int) -> str:
+def _way_key(network: SupportNetwork, way: int) -> str:
     return asset_key("w", int(network.ground.line_facts.osm_id[way]), int(network.ground.lines.asset[way]))

@@ -11,12 +11,12 @@ from inspection.network.build.edges import component_labels
 from inspection.network.nearness import nearest_within, pairs_within
 from inspection.quality.infrastructure import Gap, asset_key, place_key
 from inspection.quality.lines import is_at_terminal
-from inspection.quality.network import BoolArray, FloatArray, IntArray, Network, metres_by
+from inspection.quality.network import BoolArray, FloatArray, IntArray, SupportNetwork, metres_by
 
 MIN_LINE_M = 150.0  # what is shorter may hang between two portals
 
 
-def missing_supports(network: Network) -> list[Gap]:
+def missing_supports(network: SupportNetwork) -> list[Gap]:
     """One gap per line that has vertices without a support.
 
     First and last vertices count only where nothing says that the line ends in a substation there: those hang on portals, which are
@@ -38,7 +38,7 @@ def missing_supports(network: Network) -> list[Gap]:
     ]
 
 
-def _gap_of_line(network: Network, line: int, vertices: IntArray, has_supports: bool, without_m: float) -> Gap:
+def _gap_of_line(network: SupportNetwork, line: int, vertices: IntArray, has_supports: bool, without_m: float) -> Gap:
     ground = network.ground
     kind = "missing_support" if has_supports else "line_without_towers"
     positions = ground.lines.position[vertices]
@@ -60,7 +60,7 @@ def _gap_of_line(network: Network, line: int, vertices: IntArray, has_supports: 
     )
 
 
-def _is_excused_end(network: Network, bare: BoolArray) -> BoolArray:
+def _is_excused_end(network: SupportNetwork, bare: BoolArray) -> BoolArray:
     """First and last vertices without support that are known to be in a substation, or where the line goes under ground."""
     lines = network.ground.lines
     count = np.diff(lines.first) > 0
@@ -72,7 +72,7 @@ def _is_excused_end(network: Network, bare: BoolArray) -> BoolArray:
     return excused
 
 
-def _without_tower_m(network: Network, bare: BoolArray) -> FloatArray:
+def _without_tower_m(network: SupportNetwork, bare: BoolArray) -> FloatArray:
     """Of each line, the metres of its legs that have no tower at one end at least."""
     start = network.leg_start
     is_bare = bare[start] | bare[start + 1]
@@ -84,7 +84,7 @@ LINE_REACH_M = 500.0  # how far the nearest line is looked for
 NAMED = 200  # towers of one row whose keys are kept in the details
 
 
-def lone_towers(network: Network) -> list[Gap]:
+def lone_towers(network: SupportNetwork) -> list[Gap]:
     """One gap for each tower, or for each row of towers, that no line passes."""
     supports = network.ground.supports
     lone = np.flatnonzero(~network.is_carried)
@@ -151,14 +151,14 @@ def _shortest_tree(position: FloatArray, pairs: IntArray) -> IntArray:
     return np.column_stack([tree.row, tree.col]).astype(np.int64)
 
 
-def _sorting_key(network: Network, lone: IntArray) -> IntArray:
+def _sorting_key(network: SupportNetwork, lone: IntArray) -> IntArray:
     """OSM ids first: the first tower of a row names it."""
     osm_id = network.ground.support_facts.osm_id[lone]
     return np.where(osm_id >= 0, osm_id, np.int64(2) ** 61 + network.ground.supports.asset[lone])
 
 
 def _gap_of_row(
-    network: Network, lone: IntArray, members: IntArray, leg: IntArray, metres: FloatArray, length_m: float, is_path: bool
+    network: SupportNetwork, lone: IntArray, members: IntArray, leg: IntArray, metres: FloatArray, length_m: float, is_path: bool
 ) -> Gap:
     ground = network.ground
     towers = lone[members]
@@ -204,11 +204,11 @@ def voltage_class(voltage_v: FloatArray) -> NDArray[np.int64]:
     return found
 
 
-def way_classes(network: Network) -> NDArray[np.int64]:
+def way_classes(network: SupportNetwork) -> NDArray[np.int64]:
     return voltage_class(np.array([max(volts, default=0) for volts in network.ground.line_facts.voltages_v], dtype=np.float64))
 
 
-def usual_span_m(network: Network) -> FloatArray:
+def usual_span_m(network: SupportNetwork) -> FloatArray:
     """Of each line: the median of its own spans, or where it has few the median of all spans of its voltage class."""
     classes = way_classes(network)
     usual = np.array([CLASSES[index][1] for index in classes])
@@ -226,7 +226,7 @@ def usual_span_m(network: Network) -> FloatArray:
     return usual
 
 
-def long_spans(network: Network) -> list[Gap]:
+def long_spans(network: SupportNetwork) -> list[Gap]:
     """Legs longer than three times the usual span of their line and than the bound of its voltage."""
     lines, facts = network.ground.lines, network.ground.line_facts
     usual = usual_span_m(network)[network.leg_way]

@@ -9,7 +9,7 @@ from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.joining import join_vertices
 from inspection.network.build.network import support_heights_m
-from inspection.network.infrastructure import Places, Ways
+from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import asset_heights_m
 
@@ -47,7 +47,7 @@ class Overhead:
         )  # fmt: skip
 
 
-def overhead(supports: Places, lines: Ways, box: Box) -> Overhead:
+def overhead(supports: InfrastructurePlaces, lines: InfrastructureWays, box: Box) -> Overhead:
     """What stands in a box, and every span that touches it, with both its ends.
 
     The lines have to be all that come to any of these supports.

@@ -9,7 +9,7 @@ import shapely
 from django.db import connection
 
 from inspection.models import AssetKind
-from inspection.network.infrastructure import NO_OSM_NODE, GroundData, Places, Ways, Zones
+from inspection.network.infrastructure import NO_OSM_NODE, GroundData, InfrastructurePlaces, InfrastructureWays, Zones
 from inspection.network.rules import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V
 from inspection.selectors.ground import ground_revision
 
@@ -51,7 +51,9 @@ def ground_data() -> GroundData:
     return data
 
 
-def supports_and_lines(box: tuple[float, float, float, float], *, line: int | None = None) -> tuple[Places, Ways]:
+def supports_and_lines(
+    box: tuple[float, float, float, float], *, line: int | None = None
+) -> tuple[InfrastructurePlaces, InfrastructureWays]:
     """Flyable supports whose place and lines whose box meets west, south, east, north; of the lines only one, where it is named."""
     in_box = _Area("AND geometry && ST_MakeEnvelope(%s, %s, %s, %s, 4326)", list(box))
     lines = in_box if line is None else _Area("AND id = %s", [line])
@@ -71,7 +73,7 @@ def _rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...
         return cursor.fetchall()
 
 
-def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Places:
+def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> InfrastructurePlaces:
     rows = _rows(
         f"""
         SELECT id, CASE WHEN osm_type = 'n' AND NOT is_edited THEN osm_id END, ST_X({column}), ST_Y({column}), height_m
@@ -79,7 +81,7 @@ def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Places:
         """,  # noqa: S608  # column and condition are literals of this file
         [kind, *area.parameters],
     )
-    return Places(
+    return InfrastructurePlaces(
         asset=np.array([row[0] for row in rows], dtype=np.int64),
         osm_node=np.array([NO_OSM_NODE if row[1] is None else row[1] for row in rows], dtype=np.int64),
         position=np.array([row[2:4] for row in rows], dtype=np.float64).reshape(-1, 2),
@@ -87,7 +89,7 @@ def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Places:
     )
 
 
-def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> Ways:
+def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> InfrastructureWays:
     """A way whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position alone."""
     rows = _rows(
         f"""
@@ -107,7 +109,7 @@ def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> Ways:
     ]
     asset = np.array([row[0] for row in rows], dtype=np.int64)
     height_m = np.array([np.nan if row[1] is None else row[1] for row in rows], dtype=np.float64)
-    return Ways(
+    return InfrastructureWays(
         asset=asset[owner],
         height_m=height_m[owner],
         first=np.concatenate([[0], np.cumsum(count)]).astype(np.int64),

@@ -15,11 +15,11 @@ from django.utils.translation import gettext_noop
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import Asset, AssetKind, NoFlyZone
-from inspection.network.infrastructure import Ways
+from inspection.network.infrastructure import InfrastructureWays
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.rules import UNTAGGED_HEIGHT_M
 from inspection.scene.overhead import Overhead, overhead
-from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SupportFacts, drawn
+from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SceneSupportFacts, drawn
 from inspection.selectors.assets import Box, area_of
 from inspection.selectors.ground_data import supports_and_lines
 from inspection.selectors.terrain import ground_heights_m
@@ -89,7 +89,7 @@ class SceneZone:
 
 
 @dataclass(frozen=True, eq=False)
-class Scene:
+class SceneContent:
     box: Box
     clip: Box
     origin_amsl_m: float
@@ -124,7 +124,7 @@ def check_box(box: Box) -> None:
         raise UnfitBox(gettext_noop("A side of the box is longer than 40 km."))
 
 
-def scene_in(box: Box) -> Scene:
+def scene_in(box: Box) -> SceneContent:
     """Raises UnfitBox."""
     check_box(box)
     clip = _wider(box, AROUND_M)
@@ -136,7 +136,7 @@ def scene_in(box: Box) -> Scene:
     lines = {asset.pk: asset for asset in _read(Asset.objects.filter(pk__in=sorted({line for own in found.span_lines for line in own})))}
     supports, spans = drawn(
         found,
-        {pk: SupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
+        {pk: SceneSupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
         {pk: LineFacts(line.max_voltage_v, line.circuits, line.tags, is_minor=line.subtype == "minor_line") for pk, line in lines.items()},
     )
     railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
@@ -146,7 +146,7 @@ def scene_in(box: Box) -> Scene:
         [(row, _shape(row, clip)) for row in _in_area(AssetKind.BRIDGE, clip)], middle, MAX_BRIDGES
     )
     kept_zones, left_out["zones"] = _nearest([(zone, _shape(zone, clip)) for zone in zones], middle, MAX_ZONES)
-    return Scene(
+    return SceneContent(
         box=box,
         clip=clip,
         origin_amsl_m=float(_reported(middle[None], ground)[0]),
@@ -214,7 +214,7 @@ def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
     return kept, {"supports": int((~stays).sum()), "spans": len(found.span) - len(kept.span)}
 
 
-def _reach(box: Box, lines: Ways) -> Box:
+def _reach(box: Box, lines: InfrastructureWays) -> Box:
     """The box, with the ends of all spans that touch it; spans longer than REACH_DEG stay cut."""
     west, south, east, north = box
     start = lines.leg_start

@@ -8,7 +8,7 @@ from django.db.models import Count, Max
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import TerrainTile
-from inspection.selectors.ground import Edition, ground_edition
+from inspection.selectors.ground import DatasetVersion, ground_dataset_version
 from inspection.terrain.heights import HeightGrid, unpacked
 from inspection.terrain.tiled_terrain import IntArray, TerrainHeights, TiledTerrain
 
@@ -20,23 +20,23 @@ def has_terrain() -> bool:
     return TerrainTile.objects.exists()
 
 
-def terrain_edition() -> tuple[int | None, int]:
+def terrain_dataset_version() -> tuple[int | None, int]:
     """Another one after every change of the terrain, and the same one after other changes of the ground."""
     tiles = TerrainTile.objects.aggregate(newest=Max("pk"), number=Count("pk"))
     return tiles["newest"], tiles["number"]
 
 
-def ground_heights_m(positions: FloatArray, edition: Edition | None = None) -> FloatArray:
+def ground_heights_m(positions: FloatArray, dataset_version: DatasetVersion | None = None) -> FloatArray:
     """Height of the ground above sea level [m] at positions of shape (n, 2), lon lat [deg]; NaN where no terrain model tells.
 
     Where models overlap the newest counts, and an older one fills its voids. edition: of the ground that was just read; None: it is read.
     """
-    return ground_truth(positions, edition).heights_m
+    return ground_truth(positions, dataset_version).heights_m
 
 
-def ground_truth(positions: FloatArray, edition: Edition | None = None) -> TerrainHeights:
+def ground_truth(positions: FloatArray, dataset_version: DatasetVersion | None = None) -> TerrainHeights:
     """As ground_heights_m, with the model that each height is from."""
-    return _tiles(edition or ground_edition()).heights_at(positions)
+    return _tiles(dataset_version or ground_dataset_version()).heights_at(positions)
 
 
 def grids_around(box: tuple[float, float, float, float], most: int) -> list[HeightGrid] | None:
@@ -47,11 +47,11 @@ def grids_around(box: tuple[float, float, float, float], most: int) -> list[Heig
 
 def tiles_around(box: tuple[float, float, float, float]) -> TiledTerrain:
     """The same as a terrain of their own."""
-    return _tiles(ground_edition()).around(box)
+    return _tiles(ground_dataset_version()).around(box)
 
 
 @lru_cache(maxsize=2)
-def _tiles(edition: Edition) -> TiledTerrain:
+def _tiles(dataset_version: DatasetVersion) -> TiledTerrain:
     """The tiles as they stand at this edition of the ground; what brings them in or takes them out makes a new one."""
     fields = ("pk", "data_import_id", "west_deg", "north_deg", "step_lon_deg", "step_lat_deg", "columns", "rows")
     rows = np.array(list(TerrainTile.objects.order_by("-pk").values_list(*fields)), dtype=np.float64).reshape(-1, len(fields))

@@ -12,10 +12,10 @@ from django.contrib.gis.db.models.functions import AsWKB
 
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.models import NoFlyZone
-from inspection.selectors.ground import ground_edition
-from inspection.selectors.terrain import grids_around, ground_heights_m, terrain_edition
+from inspection.selectors.ground import ground_dataset_version
+from inspection.selectors.terrain import grids_around, ground_heights_m, terrain_dataset_version
 from inspection.terrain.heights import HeightGrid
-from inspection.zones.reach import Limits, ZoneTable, agl_band
+from inspection.zones.reach import HeightLimits, ZoneTable, agl_band
 
 MAX_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; the ground under a larger zone counts as not known
 MAX_VOIDS = 10_000  # posts without a height under one zone that are looked up in older models
@@ -32,10 +32,10 @@ _ranges: OrderedDict[tuple[tuple[int | None, int], bytes], GroundRange] = Ordere
 
 def zone_table() -> ZoneTable:
     """The zones of the ground as it is now. Costs one small query until they change."""
-    return zone_table_of_edition(ground_edition())
+    return zone_table_of_version(ground_dataset_version())
 
 
-def zone_table_of_edition(key: tuple[int, datetime | None]) -> ZoneTable:
+def zone_table_of_version(key: tuple[int, datetime | None]) -> ZoneTable:
     """The zones of an edition of the ground that has just been read: they are at least as new as that."""
     global _table
     remembered = _table
@@ -48,8 +48,8 @@ def _read() -> ZoneTable:
     rows = list(NoFlyZone.objects.annotate(wkb=AsWKB("geometry")).order_by("pk").values_list(*COLUMNS))
     wkb = tuple(bytes(row[2]) for row in rows)
     polygons = np.array(shapely.from_wkb(np.array(wkb, dtype=object)), dtype=object)
-    limits = tuple(Limits(*row[3:7]) for row in rows)
-    terrain = terrain_edition() if any(limit.needs_ground for limit in limits) else (None, 0)
+    limits = tuple(HeightLimits(*row[3:7]) for row in rows)
+    terrain = terrain_dataset_version() if any(limit.needs_ground for limit in limits) else (None, 0)
     ranges = [
         _kept_range(terrain, code, polygon) if limit.needs_ground else UNKNOWN
         for code, polygon, limit in zip(wkb, polygons, limits, strict=True)

@@ -11,9 +11,9 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 from rest_framework.fields import empty, get_error_detail
 
-MAX_TOLD = 10
+MAX_NAMED = 10
 MAX_REPORTED_LENGTH = 80
-UNKNOWN_TOLD = "unknown_fields_told"
+UNKNOWN_NAMED = "unknown_fields_told"
 
 _of_thread = threading.local()  # `serializers`: by class, whose fields are made
 
@@ -95,9 +95,9 @@ class KnownFieldsSerializer(serializers.Serializer):
         if not unknown:
             return
         context = self.context
-        told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []
-        full = unknown[: max(0, MAX_TOLD - len(told))]
-        told += full
+        named = context.setdefault(UNKNOWN_NAMED, []) if isinstance(context, dict) else []
+        full = unknown[: max(0, MAX_NAMED - len(named))]
+        named += full
         words = {name: [_words(name, self.fields)] for name in full}
         raise serializers.ValidationError(words or {unknown[0]: [_("There is no such field.")]})
 

@@ -7,7 +7,7 @@ from django.utils import timezone
 from inspection.models import Asset, AssetKind, Ground
 from inspection.services import delete_asset, import_osm, save_asset
 from inspection.services.ground import number_supports
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.inspection.ground import line, tower
 from tests.inspection.imports.osm_files import small_line, write_osm
 from workspace.models import Role
@@ -95,7 +95,7 @@ def test_a_newer_file_numbers_again_and_what_vanished_keeps_its_place(tmp_path):
 
 
 def test_a_curators_change_of_a_line_or_support_numbers_again():
-    curator = somebody(Role.CURATOR)
+    curator = a_user(Role.CURATOR)
     [first, *_] = supports(1, 2, 3)
     high = line((10.001, 56.0), (10.003, 56.0), osm_id=20, voltages_v=[380_000], node_osm_ids=[1, 3])
     low = line((10.001, 56.0), (10.002, 56.0), (10.003, 56.0), osm_id=21, voltages_v=[110_000], node_osm_ids=[1, 2, 3])

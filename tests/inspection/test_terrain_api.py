@@ -17,7 +17,7 @@ from inspection.services import import_terrain
 from inspection.services.proposals import terrain
 from inspection.services.proposals.reading import FileRefused, Provenance, Reading
 from inspection.terrain.heights import MAX_SAMPLES, REFERENCES, UnknownReference, amsl_m, counted_from, samples_along
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.inspection.importers.terrain.tiffs import write_hgt
 from tests.inspection.imports.test_terrain_import import geotiff, plane, post
 from workspace.models import AuditEntry, Role
@@ -27,7 +27,7 @@ METRES = st.floats(-400, 8_800)
 
 @pytest.fixture
 def client() -> Client:
-    return client_of(somebody(Role.OPERATOR))
+    return client_of(a_user(Role.OPERATOR))
 
 
 def read(path: Path, **parameters: Any) -> Reading:
@@ -286,7 +286,7 @@ def test_a_model_is_taken_away_by_curators_and_the_older_one_counts_again(client
     place = f"/api/v1/terrain/height?position={lon},{lat}"
     assert client.get(place).json()["ground_amsl_m"] == 1_400.0
     assert client.delete(f"/api/v1/terrain/{newer.pk}").status_code == 403
-    curator = client_of(somebody(Role.CURATOR))
+    curator = client_of(a_user(Role.CURATOR))
     assert curator.delete(f"/api/v1/terrain/{newer.pk}").status_code == 204
     assert client.get(place).json()["ground_amsl_m"] == 400.0
     assert AuditEntry.objects.get().subject_type == "terrain"

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
@@ -68,7 +68,7 @@ def zone_index(*boxes):
 
 def judged(ground, flights, *, zones=None, bases=(), **more):
     zones = zone_index() if zones is None else zones
-    whole = cleared(ground, zones, LINKING, HEIGHTS).graph
+    whole = masked(ground, zones, LINKING, HEIGHTS).graph
     return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES, **more)
 
 
@@ -164,7 +164,7 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
     ends = [End.OPEN, End.RETURN, End.ANY_BASE]
     places = [LonLat(*place) for place in generator.uniform(-0.08, 0.08, (3, 2)).tolist()]
     flights = [Flight(place, ends[int(generator.integers(3))], float(generator.choice([4_000.0, 9_000.0, np.inf]))) for place in places[:2]]
-    graph = cleared(ground, zones, LINKING, HEIGHTS).graph
+    graph = masked(ground, zones, LINKING, HEIGHTS).graph
 
     found = judged(ground, flights, zones=zones, bases=places[2:])
 
@@ -217,7 +217,7 @@ def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
         for _ in range(int(generator.integers(1, 4)))
     ]
     ground, zones = network([line.tolist() for line in lines]), zone_index()
-    graph = cleared(ground, zones, LINKING, HEIGHTS).graph
+    graph = masked(ground, zones, LINKING, HEIGHTS).graph
     places = [LonLat(*place) for place in generator.uniform(-0.05, 0.05, (2, 2)).tolist()]
     end, lands = [(End.OPEN, False), (End.OPEN, True), (End.RETURN, True), (End.ANY_BASE, True)][int(generator.integers(4))]
     flying = IRIS if generator.random() < 0.5 else HEAVY

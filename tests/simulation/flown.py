@@ -12,21 +12,21 @@ import shapely
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.zones.reach import Limits as ZoneLimits
+from inspection.zones.reach import HeightLimits as ZoneLimits
 from inspection.zones.reach import ZoneTable, agl_band
 from inspection.zones.schedule import Schedule, ZoneRules
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
-from simulation.assessment.flown import Ending, FlownFlight, FlownRoute, FlownTrack
+from simulation.assessment.flown import AssessedRoute, FlownFlight, FlownTrack, TrackEnding
 from simulation.assessment.judging import Surroundings
-from simulation.assessment.limits import Limits
+from simulation.assessment.limits import AssessmentLimits
 from simulation.assessment.obstacles import Standing
 
 HERE = LonLat(10.0, 56.0)
 FRAME = LocalFrame.around(*HERE)
 UP_M, GROUND_M = 60.0, 100.0
-LIMITS = Limits()
+LIMITS = AssessmentLimits()
 LEG_M, SPEED_MPS = 1_000.0, 10.0
 
 Row = tuple[float, float, float, float, float]  # seconds, east, north, height above take-off [m], battery [%]
@@ -74,7 +74,7 @@ def rows(*, off_m: float = 0.0, high_m: float = 0.0, left_percent: float = 50.0,
     )
 
 
-def a_track(flown: Sequence[Row], *, ending: Ending = Ending.LANDED, late_s: float = 0.0) -> FlownTrack:
+def a_track(flown: Sequence[Row], *, ending: TrackEnding = TrackEnding.LANDED, late_s: float = 0.0) -> FlownTrack:
     table = np.array(flown)
     t_s = table[:, 0]
     return FlownTrack(
@@ -92,10 +92,10 @@ def a_track(flown: Sequence[Row], *, ending: Ending = Ending.LANDED, late_s: flo
     )
 
 
-def flown(track: FlownTrack | None = None, *, uav: int = 0, name: str = "Tern", hold_s: float = 0.0, east_m: float = 0.0) -> FlownRoute:
+def flown(track: FlownTrack | None = None, *, uav: int = 0, name: str = "Tern", hold_s: float = 0.0, east_m: float = 0.0) -> AssessedRoute:
     route = a_route(hold_s=hold_s, east_m=east_m)
     track = a_track(rows(east_m=east_m)) if track is None else track
-    return FlownRoute(uav, name, route, (FlownFlight(route.flights[0], track),), 20.0, 40.0, 270.0)
+    return AssessedRoute(uav, name, route, (FlownFlight(route.flights[0], track),), 20.0, 40.0, 270.0)
 
 
 def zones(

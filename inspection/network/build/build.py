@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 
 from inspection.network.build.network import network
-from inspection.network.build.zone_masking import ClearedGraph, cleared
+from inspection.network.build.zone_masking import MaskedGraph, masked
 from inspection.network.infrastructure import GroundData, Zones
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
@@ -18,13 +18,13 @@ def build(
     progress: Callable[[str, float], None] | None = None,
     *,
     heights: FlownHeights | None = None,
-) -> ClearedGraph:
+) -> MaskedGraph:
     """The network of the ground, cleared of the ground's zones at all heights."""
     notify = progress or (lambda message, fraction: None)
     notify("joining lines and railways", 0.1)
     whole = network(ground, rules)
     notify("clearing the zones", 0.5)
-    return cleared(whole, index_of(ground.zones), rules, heights or FlownHeights(), ground_revision=ground.revision)
+    return masked(whole, index_of(ground.zones), rules, heights or FlownHeights(), ground_revision=ground.revision)
 
 
 def index_of(zones: Zones) -> ZoneIndex:

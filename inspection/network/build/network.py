@@ -9,11 +9,11 @@ from inspection.network.build.edges import Edges, cheapest_per_pair, component_l
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.build.links import bridge_links, crossing_links, railway_crossing_links
 from inspection.network.build.railway_points import railway_points
-from inspection.network.infrastructure import GroundData, Places, Ways
+from inspection.network.infrastructure import GroundData, InfrastructurePlaces, InfrastructureWays
 from inspection.network.inspection_graph import EdgeKind, NodeKind, read_only
 from inspection.network.rules import UNTAGGED_HEIGHT_M, LinkingRules
 
-NO_PLACES = Places(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
+NO_PLACES = InfrastructurePlaces(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
@@ -150,7 +150,7 @@ def _nodes_and_edges(ground: GroundData, rules: LinkingRules) -> tuple[Edges, No
     return without_seam(joined(along_lines, along_railways, crossings, changeovers, between_bridges), nodes.position), nodes
 
 
-def support_heights_m(supports: Places, lines: Ways, on_lines: JoinedVertices) -> FloatArray:
+def support_heights_m(supports: InfrastructurePlaces, lines: InfrastructureWays, on_lines: JoinedVertices) -> FloatArray:
     """As stated; else that of the tallest line on it, if it is taller than supports are otherwise taken to be; NaN where neither tells."""
     heights_m = np.full(len(on_lines.position), UNTAGGED_HEIGHT_M[NodeKind.SUPPORT])
     np.fmax.at(heights_m, on_lines.node_of_vertex, lines.height_m[lines.way_of_vertex])
@@ -159,6 +159,6 @@ def support_heights_m(supports: Places, lines: Ways, on_lines: JoinedVertices) -
     return np.where(np.isnan(supports.height_m), taller_m, supports.height_m)
 
 
-def _edges_along(kind: EdgeKind, ways: Ways, node_of_vertex: IntArray) -> Edges:
+def _edges_along(kind: EdgeKind, ways: InfrastructureWays, node_of_vertex: IntArray) -> Edges:
     start = ways.leg_start
     return edges_of(kind, node_of_vertex[start], node_of_vertex[start + 1], ways.asset[ways.way_of_vertex[start]])

@@ -10,7 +10,7 @@ from inspection.network.build.edges import NO_ASSET, Edges, component_labels, jo
 from inspection.network.build.flown_nodes import FlownNodes
 from inspection.network.build.links import bridge_to_tower_links, railway_to_tower_links
 from inspection.network.build.network import Network, Nodes, put_together
-from inspection.network.build.obstacles import low_ceilings, too_tall_walls, with_walls
+from inspection.network.build.obstacles import low_ceilings, too_tall_obstacles, with_obstacles
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
@@ -19,7 +19,7 @@ NO_VERSION = 0  # until the graph is stored
 
 
 @dataclass(frozen=True)
-class ClearedGraph:
+class MaskedGraph:
     """The graph, and what the zones have taken: nodes, edges (pairs of nodes) and the nearest links that they are in the way of."""
 
     graph: InspectionGraph
@@ -28,9 +28,9 @@ class ClearedGraph:
     excluded_edges: int
 
 
-def cleared(
+def masked(
     network: Network, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights, *, version: int = NO_VERSION, ground_revision: int = 0
-) -> ClearedGraph:
+) -> MaskedGraph:
     """The network without what is within the clearance of a zone at the height flown there; what zones cut off is linked anew.
 
     What cannot be flown over, as it is too tall at all or under a zone, bars every leg but stays as a place. Each bridge, and each
@@ -42,14 +42,14 @@ def cleared(
     edges = Edges(network.edge.astype(np.int64), network.edge_kind, network.edge_asset)
     flown = FlownNodes.of(nodes.position, nodes.kind, nodes.height_m, heights)
     inside = flown.in_zones(zones, rules.zone_clearance_m)
-    walls, ceilings = too_tall_walls(network, heights), low_ceilings(network, zones, heights, rules.zone_clearance_m)
-    barred = with_walls(zones, walls)
+    obstacles, ceilings = too_tall_obstacles(network, heights), low_ceilings(network, zones, heights, rules.zone_clearance_m)
+    barred = with_obstacles(zones, obstacles)
     out = _edges_out(edges, inside, flown, barred, rules)
-    if len(ceilings.walls):
+    if len(ceilings.obstacles):
         hangs_there = np.isin(edges.pair, ceilings.node).any(axis=1)
-        out |= ~hangs_there & flown.legs_in_zones(ceilings.walls, edges.pair[:, 0], edges.pair[:, 1], rules.zone_clearance_m)
-        barred = with_walls(barred, ceilings.walls)
-    wanted = gaps(edges, out, inside | walls.contains(nodes.position, rules.zone_clearance_m), nodes.position)
+        out |= ~hangs_there & flown.legs_in_zones(ceilings.obstacles, edges.pair[:, 0], edges.pair[:, 1], rules.zone_clearance_m)
+        barred = with_obstacles(barred, ceilings.obstacles)
+    wanted = gaps(edges, out, inside | obstacles.contains(nodes.position, rules.zone_clearance_m), nodes.position)
     index = np.cumsum(~inside) - 1
     wanted = [replace(gap, node=index[gap.node]) for gap in wanted]
     excluded_nodes, excluded_edges = int(inside.sum()), int(out.sum())
@@ -67,7 +67,7 @@ def cleared(
         version=version, ground_revision=ground_revision, **vars(whole), zone_wkb=zones.wkb, zone_id=zones.ids, zone_name=zones.names
     )
     components, _ = component_labels(graph.node_count, graph.edge)
-    return ClearedGraph(graph, components, excluded_nodes, excluded_edges + to_tower.blocked + to_railway.blocked)
+    return MaskedGraph(graph, components, excluded_nodes, excluded_edges + to_tower.blocked + to_railway.blocked)
 
 
 def _edges_out(edges: Edges, inside: NDArray[np.bool_], flown: FlownNodes, zones: ZoneIndex, rules: LinkingRules) -> NDArray[np.bool_]:

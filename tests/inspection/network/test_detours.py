@@ -7,7 +7,7 @@ import pytest
 from inspection.network.build.detours import ALL_PAIRS, _pairs
 from inspection.network.build.edges import component_labels
 from inspection.network.build.network import network
-from inspection.network.build.zone_masking import ClearedGraph, cleared
+from inspection.network.build.zone_masking import MaskedGraph, masked
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex, zones_of_graph
@@ -16,9 +16,9 @@ from tests.inspection.network.drawn_ground import Spot, ground, lonlat, places, 
 RULES, HEIGHTS = LinkingRules(zone_clearance_m=5.0), FlownHeights()
 
 
-def clear_of(*zones, rules: LinkingRules = RULES, **drawn) -> ClearedGraph:
+def clear_of(*zones, rules: LinkingRules = RULES, **drawn) -> MaskedGraph:
     index = ZoneIndex(list(zones), range(len(zones)), [f"zone {number}" for number in range(len(zones))])
-    return cleared(network(ground(**drawn), rules), index, rules, HEIGHTS)
+    return masked(network(ground(**drawn), rules), index, rules, HEIGHTS)
 
 
 def line(*spots: Spot) -> dict[str, object]:
@@ -135,7 +135,7 @@ def test_no_edge_of_a_cleared_graph_meets_a_zone_at_the_height_flown():
     polygons = [square(tuple(rng.uniform(-1_000, 2_500, 2)), float(rng.uniform(50, 250))) for _ in range(25)]
     floors = rng.choice([0.0, 60.0, 90.0], 25)
     zones = ZoneIndex(polygons, range(25), [""] * 25, floor_agl_m=floors, ceiling_agl_m=floors + rng.choice([20.0, np.inf], 25))
-    graph = cleared(network(drawn, RULES), zones, RULES, HEIGHTS).graph
+    graph = masked(network(drawn, RULES), zones, RULES, HEIGHTS).graph
     assert (graph.edge_kind == EdgeKind.DETOUR).any()
     height = np.where(graph.node_kind == NodeKind.BEND, 0.0, graph.node_height_m)
     passed = np.maximum(60.0, height + 15.0)[graph.edge]

@@ -21,17 +21,17 @@ from inspection.network.route_index import asset_places, build_route_index, node
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.snapshot_file import (
     CLEARED,
-    KEPT_CLEARED,
     KEPT_NETWORKS,
     MANIFEST,
+    MAX_MASKED_FILES,
     NETWORKS,
     CorruptSnapshot,
     from_bytes,
-    key_of_cleared,
-    read_cleared,
+    key_of_masked,
+    read_masked,
     read_network,
     to_bytes,
-    write_cleared,
+    write_masked,
     write_network,
 )
 from inspection.network.zones.zone_index import ZoneIndex, zones_of_graph
@@ -96,11 +96,11 @@ def test_files_give_the_network_back_read_only(graph, tmp_path: Path):
 
 
 def store(folder: Path, graph: InspectionGraph, key: str = "key", tallest_m: float = math.inf) -> None:
-    write_cleared(folder, graph, key=key, tallest_m=tallest_m)
+    write_masked(folder, graph, key=key, tallest_m=tallest_m)
 
 
 def stored(folder: Path, graph: InspectionGraph, key: str = "key", tallest_m: float = math.inf) -> InspectionGraph | None:
-    return read_cleared(folder, key=key, zones=zones_of_graph(graph), version=1, ground_revision=1, tallest_m=tallest_m)
+    return read_masked(folder, key=key, zones=zones_of_graph(graph), version=1, ground_revision=1, tallest_m=tallest_m)
 
 
 @pytest.mark.parametrize("graph", [GRAPH, EMPTY], ids=["small", "empty"])
@@ -154,7 +154,7 @@ def test_the_key_tells_apart_whatever_the_clearing_reads():
     """But not the zones' names and ids: a zone that is only renamed costs nothing."""
 
     def key(content="abc", some=None, rules=RULES, heights=HEIGHTS, tallest_m=105.0) -> str:
-        return key_of_cleared(content, zones() if some is None else some, rules, heights, tallest_m)
+        return key_of_masked(content, zones() if some is None else some, rules, heights, tallest_m)
 
     others = [
         key(content="other"),
@@ -170,12 +170,12 @@ def test_the_key_tells_apart_whatever_the_clearing_reads():
 
 
 def test_the_files_used_last_are_kept(tmp_path: Path):
-    for number in range(KEPT_CLEARED + 2):
+    for number in range(MAX_MASKED_FILES + 2):
         store(tmp_path, GRAPH, key=f"{number}")
         os.utime(tmp_path / CLEARED / f"{number}", (number, number))
-        if number >= KEPT_CLEARED:
+        if number >= MAX_MASKED_FILES:
             assert stored(tmp_path, GRAPH, key="1") is not None  # now the one used last
-    assert {path.name for path in (tmp_path / CLEARED).iterdir()} == {"1", *map(str, range(3, KEPT_CLEARED + 2))}
+    assert {path.name for path in (tmp_path / CLEARED).iterdir()} == {"1", *map(str, range(3, MAX_MASKED_FILES + 2))}
 
 
 def test_few_networks_are_kept_and_no_files_of_earlier_layouts(tmp_path: Path):
@@ -211,7 +211,7 @@ def read_again(folder: Path, graph: InspectionGraph, tallest_m: float) -> Inspec
 def test_the_index_is_stored_with_the_graph_and_mapped(tmp_path: Path):
     cached = read_again(tmp_path, GRAPH, 100.0)
     made = build_route_index(GRAPH)
-    for stored, expected in ((route_index(cached).condensed, made.condensed), (route_index(cached).labels, made.labels)):
+    for stored, expected in ((route_index(cached).contracted, made.contracted), (route_index(cached).labels, made.labels)):
         for field in fields(stored):
             array = getattr(stored, field.name)
             assert array.tobytes() == getattr(expected, field.name).tobytes()

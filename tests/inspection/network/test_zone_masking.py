@@ -13,7 +13,7 @@ from shapely.geometry.base import BaseGeometry
 
 from inspection.network.build.build import build
 from inspection.network.build.network import Network, network
-from inspection.network.build.zone_masking import cleared
+from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
@@ -53,7 +53,7 @@ def test_the_network_knows_no_zones():
 
 
 def test_a_zone_between_two_towers_takes_the_edge_and_no_node():
-    result = cleared(line_of_four(), index(square((600.0, 0.0), 50.0)), RULES, HEIGHTS)
+    result = masked(line_of_four(), index(square((600.0, 0.0), 50.0)), RULES, HEIGHTS)
     assert pairs(result.graph) == [(100, 101), (102, 103)]
     assert (result.excluded_nodes, result.excluded_edges, result.components) == (0, 1, 2)
 
@@ -67,7 +67,7 @@ def test_heights_decide():
     over = square((600.0, 0.0), 2_000.0)
 
     def left(floor_m: float, ceiling_m: float) -> tuple[list[int], int]:
-        graph = cleared(tall_second, index(over, floor_m=[floor_m], ceiling_m=[ceiling_m]), RULES, HEIGHTS).graph
+        graph = masked(tall_second, index(over, floor_m=[floor_m], ceiling_m=[ceiling_m]), RULES, HEIGHTS).graph
         return assets(graph), graph.edge_count
 
     assert left(-np.inf, 44.9) == ([100, 101, 102, 103], 3)
@@ -86,7 +86,7 @@ def test_a_link_is_flown_between_the_heights_of_its_ends():
     )
     wall = square((-500.0, 0.0), 50.0)
     for floor_m, ceiling_m, linked, blocked in ((85.0, 90.0, 101, 1), (131.0, 140.0, 100, 0), (0.0, 44.0, 100, 0)):
-        result = cleared(network(drawn, RULES), index(wall, floor_m=[floor_m], ceiling_m=[ceiling_m]), RULES, HEIGHTS)
+        result = masked(network(drawn, RULES), index(wall, floor_m=[floor_m], ceiling_m=[ceiling_m]), RULES, HEIGHTS)
         assert (pairs(result.graph), result.excluded_edges) == ([(linked, 400)], blocked)
         assert result.graph.edge_kind.tolist() == [EdgeKind.BRIDGE_TO_TOWER]
 
@@ -95,7 +95,7 @@ def test_building_is_clearing_of_all_the_grounds_zones():
     spots = [(number * STEP_M, 0.0) for number in range(4)]
     wall = square((600.0, 0.0), 50.0)
     drawn = ground(supports=places(spots, first_asset=100), lines=ways(spots, first_asset=200), zones=[wall])
-    built, made = build(drawn, RULES), cleared(line_of_four(), index(wall), RULES, FlownHeights())
+    built, made = build(drawn, RULES), masked(line_of_four(), index(wall), RULES, FlownHeights())
     assert (built.components, built.excluded_nodes, built.excluded_edges) == (made.components, made.excluded_nodes, made.excluded_edges)
     assert (built.graph.edge.tolist(), built.graph.zone_wkb) == (made.graph.edge.tolist(), made.graph.zone_wkb)
 
@@ -136,7 +136,7 @@ def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
     zones = index(*polygons, floor_m=[low for _, (low, _) in drawn], ceiling_m=[high for _, (_, high) in drawn])
     mask = np.array(data.draw(st.lists(st.booleans(), min_size=len(drawn), max_size=len(drawn))))
     rules = LinkingRules(detour_m=0.0, bridge_to_tower_m=0.0)
-    (more, more_nodes), (fewer, fewer_nodes) = (ways_of(cleared(whole, some, rules, HEIGHTS).graph) for some in (zones, zones.where(mask)))
+    (more, more_nodes), (fewer, fewer_nodes) = (ways_of(masked(whole, some, rules, HEIGHTS).graph) for some in (zones, zones.where(mask)))
     assert set(more_nodes) <= set(fewer_nodes)
     place_of = {node: place for place, node in more_nodes.items()}
     for source, costs in nx.all_pairs_dijkstra_path_length(more):
@@ -150,7 +150,7 @@ def test_fewer_zones_never_lengthen_a_way(whole, drawn, data):
 def test_an_edge_is_there_unless_a_zone_is_in_its_way(whole, drawn):
     """Edge by edge, with shapely alone and without an index."""
     zones = index(*[polygon for polygon, _ in drawn], floor_m=[low for _, (low, _) in drawn], ceiling_m=[high for _, (_, high) in drawn])
-    graph = cleared(whole, zones, LinkingRules(detour_m=0.0, bridge_to_tower_m=0.0, zone_clearance_m=0.0), HEIGHTS).graph
+    graph = masked(whole, zones, LinkingRules(detour_m=0.0, bridge_to_tower_m=0.0, zone_clearance_m=0.0), HEIGHTS).graph
     place = whole.position.tolist()
     height = np.where(np.isnan(whole.node_height_m), np.array([45.0, 45.0, 8.0, 30.0])[whole.node_kind], whole.node_height_m)
     passed = np.maximum(60.0, height + 15.0).tolist()
@@ -186,10 +186,10 @@ def test_a_line_is_not_flown_where_it_would_have_to_rise_over_another_into_a_zon
         )
 
     over = index(square((200.0, 0.0), 40.0), floor_m=[90.0])
-    assert pairs(cleared(crossed(40.0), over, RULES, HEIGHTS).graph) == [(100, 101), (101, 102), (103, 104)]
-    assert pairs(cleared(crossed(80.0), index(), RULES, HEIGHTS).graph) == [(100, 101), (101, 102), (103, 104)]
-    assert pairs(cleared(crossed(80.0), over, RULES, HEIGHTS).graph) == [(101, 102)]  # nor is the tall one flown into the zone
-    assert pairs(cleared(crossed(110.0), index(), RULES, HEIGHTS).graph) == [(101, 102)]
+    assert pairs(masked(crossed(40.0), over, RULES, HEIGHTS).graph) == [(100, 101), (101, 102), (103, 104)]
+    assert pairs(masked(crossed(80.0), index(), RULES, HEIGHTS).graph) == [(100, 101), (101, 102), (103, 104)]
+    assert pairs(masked(crossed(80.0), over, RULES, HEIGHTS).graph) == [(101, 102)]  # nor is the tall one flown into the zone
+    assert pairs(masked(crossed(110.0), index(), RULES, HEIGHTS).graph) == [(101, 102)]
 
 
 def test_a_way_leads_round_wires_that_cannot_be_flown_over():
@@ -197,7 +197,7 @@ def test_a_way_leads_round_wires_that_cannot_be_flown_over():
     drawn = ground(
         supports=places([*low, *tall], first_asset=100, heights=[20.0, 20.0, 110.0, 110.0]), lines=ways(low, tall, first_asset=200)
     )
-    graph = cleared(network(drawn, RULES), index(), LinkingRules(), HEIGHTS).graph
+    graph = masked(network(drawn, RULES), index(), LinkingRules(), HEIGHTS).graph
     copy, node = ways_of(graph)
     ends = (place for place in node if place[0] in {100, 101})
     way_m = nx.dijkstra_path_length(copy, *(node[end] for end in ends)) / 2.0
@@ -214,8 +214,8 @@ def test_a_network_that_links_its_bridges_itself_keeps_its_links():
     )
     linked = network(drawn, RULES)
     own = Network(**{field.name: getattr(linked, field.name) for field in fields(Network)} | link(linked, 2, 3, 2_000.0))
-    assert pairs(cleared(own, index(), RULES, HEIGHTS).graph) == [(102, 400)]
-    assert pairs(cleared(own, index(square((1_000.0, 0.0), 50.0)), RULES, HEIGHTS).graph) == [(100, 400)]
+    assert pairs(masked(own, index(), RULES, HEIGHTS).graph) == [(102, 400)]
+    assert pairs(masked(own, index(square((1_000.0, 0.0), 50.0)), RULES, HEIGHTS).graph) == [(100, 400)]
 
 
 def link(graph: Network, one: int, other: int, length_m: float) -> dict[str, np.ndarray]:
@@ -231,10 +231,10 @@ def link(graph: Network, one: int, other: int, length_m: float) -> dict[str, np.
 
 def test_a_wall_with_a_gap_leaves_what_passes_the_gap():
     wall = [zone((550.0, north), (650.0, north), (650.0, north + 900.0), (550.0, north + 900.0)) for north in (-910.0, 10.0)]
-    graph = cleared(line_of_four(), index(*wall), RULES, HEIGHTS).graph
+    graph = masked(line_of_four(), index(*wall), RULES, HEIGHTS).graph
     assert pairs(graph) == [(100, 101), (101, 102), (102, 103)]
     wider = LinkingRules(detour_m=0.0, zone_clearance_m=12.0)
-    assert pairs(cleared(line_of_four(), index(*wall), wider, HEIGHTS).graph) == [(100, 101), (102, 103)]
+    assert pairs(masked(line_of_four(), index(*wall), wider, HEIGHTS).graph) == [(100, 101), (102, 103)]
 
 
 def test_heights_are_compared_with_the_least_and_the_greatest_of_a_leg():

@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inspection.zones.reach import Limits, ZoneTable, agl_band
+from inspection.zones.reach import HeightLimits, ZoneTable, agl_band
 from inspection.zones.schedule import ZoneRules
 
 INF = math.inf
@@ -17,26 +17,26 @@ INF = math.inf
 @pytest.mark.parametrize(
     ("limits", "band"),
     [  # over ground between 100 m and 250 m above the sea
-        (Limits(30.0, "AGL", 120.0, "AGL"), (30.0, 120.0)),
-        (Limits(400.0, "AMSL", 1_000.0, "AMSL"), (150.0, 900.0)),
-        (Limits(0.0, "AGL", 1_000.0, "AMSL"), (0.0, 900.0)),
-        (Limits(None, "", 120.0, "AGL"), (-INF, 120.0)),
-        (Limits(30.0, "AGL", None, ""), (30.0, INF)),
-        (Limits(None, "", None, ""), (-INF, INF)),
-        (Limits(3_000.0, "STD", 5_000.0, "STD"), (-INF, INF)),
-        (Limits(3_000.0, "WGS84", 5_000.0, "WGS84"), (-INF, INF)),
-        (Limits(3_000.0, "", 5_000.0, ""), (-INF, INF)),
-        (Limits(math.nan, "AGL", 120.0, "AGL"), (-INF, 120.0)),
-        (Limits(500.0, "AGL", 300.0, "AMSL"), (-INF, INF)),  # upside down
+        (HeightLimits(30.0, "AGL", 120.0, "AGL"), (30.0, 120.0)),
+        (HeightLimits(400.0, "AMSL", 1_000.0, "AMSL"), (150.0, 900.0)),
+        (HeightLimits(0.0, "AGL", 1_000.0, "AMSL"), (0.0, 900.0)),
+        (HeightLimits(None, "", 120.0, "AGL"), (-INF, 120.0)),
+        (HeightLimits(30.0, "AGL", None, ""), (30.0, INF)),
+        (HeightLimits(None, "", None, ""), (-INF, INF)),
+        (HeightLimits(3_000.0, "STD", 5_000.0, "STD"), (-INF, INF)),
+        (HeightLimits(3_000.0, "WGS84", 5_000.0, "WGS84"), (-INF, INF)),
+        (HeightLimits(3_000.0, "", 5_000.0, ""), (-INF, INF)),
+        (HeightLimits(math.nan, "AGL", 120.0, "AGL"), (-INF, 120.0)),
+        (HeightLimits(500.0, "AGL", 300.0, "AMSL"), (-INF, INF)),  # upside down
     ],
 )
-def test_limits_over_hills(limits: Limits, band: tuple[float, float]) -> None:
+def test_limits_over_hills(limits: HeightLimits, band: tuple[float, float]) -> None:
     assert agl_band(limits, 100.0, 250.0) == band
 
 
 def test_over_ground_that_is_not_known_limits_above_sea_level_reach_everywhere() -> None:
-    assert agl_band(Limits(400.0, "AMSL", 1_000.0, "AMSL")) == (-INF, INF)
-    assert agl_band(Limits(30.0, "AGL", 1_000.0, "AMSL")) == (30.0, INF)
+    assert agl_band(HeightLimits(400.0, "AMSL", 1_000.0, "AMSL")) == (-INF, INF)
+    assert agl_band(HeightLimits(30.0, "AGL", 1_000.0, "AMSL")) == (30.0, INF)
 
 
 heights = st.floats(-400, 4_000)
@@ -47,12 +47,12 @@ def test_no_place_of_a_zone_lies_outside_its_band(
     lower: float, thick: float, ground: tuple[float, float], share: float, above: float
 ) -> None:
     lowest, highest = sorted(ground)
-    floor_m, ceiling_m = agl_band(Limits(lower, "AMSL", lower + thick, "AMSL"), lowest, highest)
+    floor_m, ceiling_m = agl_band(HeightLimits(lower, "AMSL", lower + thick, "AMSL"), lowest, highest)
     here_m = lowest + share * (highest - lowest)
     assert floor_m - 1e-6 <= lower + above * thick - here_m <= ceiling_m + 1e-6
 
 
-def table(*rows: tuple[Limits, object]) -> ZoneTable:
+def table(*rows: tuple[HeightLimits, object]) -> ZoneTable:
     boxes = [shapely.MultiPolygon([shapely.box(number, 0, number + 0.5, 0.5)]) for number in range(len(rows))]
     bands = [agl_band(limits) for limits, _ in rows]
     return ZoneTable(
@@ -68,7 +68,7 @@ def table(*rows: tuple[Limits, object]) -> ZoneTable:
     )
 
 
-EVERYWHERE = Limits(None, "", None, "")
+EVERYWHERE = HeightLimits(None, "", None, "")
 HOURS_8_TO_18 = [
     {
         "startDateTime": None, "endDateTime": None,
@@ -78,7 +78,7 @@ HOURS_8_TO_18 = [
 
 
 def test_a_height_margin_is_kept_below_and_above() -> None:
-    zones = table((Limits(80.0, "AGL", 120.0, "AGL"), None), (EVERYWHERE, None))
+    zones = table((HeightLimits(80.0, "AGL", 120.0, "AGL"), None), (EVERYWHERE, None))
     assert zones.reaching(0.0, 69.0).tolist() == [False, True]
     assert zones.reaching(0.0, 70.0).tolist() == [True, True]
     assert zones.reaching(130.0, 140.0).tolist() == [True, True]
@@ -97,7 +97,7 @@ def test_which_zones_apply_in_a_window_and_through_it() -> None:
 
 
 def test_a_part_of_a_table_has_its_rows() -> None:
-    zones = table((EVERYWHERE, HOURS_8_TO_18), (Limits(30.0, "AGL", None, ""), None), (EVERYWHERE, None))
+    zones = table((EVERYWHERE, HOURS_8_TO_18), (HeightLimits(30.0, "AGL", None, ""), None), (EVERYWHERE, None))
     part = zones.only(np.array([False, True, True]))
     assert part.ids.tolist() == [11, 12]
     assert part.names == ("Zone 1", "Zone 2")

@@ -9,7 +9,7 @@ from rest_framework.exceptions import ValidationError
 
 from missions.serializers.inputs import PlanInputSerializer
 from planning.problem import Objective
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.api import TERN, plan_body
 
 pytestmark = pytest.mark.django_db
@@ -55,7 +55,7 @@ def odd_body(draw: random.Random) -> dict[str, Any]:
 
 
 def test_each_body_is_read_as_by_a_new_serializer() -> None:
-    draw, organisation, taken = random.Random(3), somebody().organisation, 0
+    draw, organisation, taken = random.Random(3), a_user().organisation, 0
     for number in range(1_500):
         body = odd_body(draw)
         with translation.override(("en", "de")[number % 2]):
@@ -73,7 +73,7 @@ def test_what_is_no_request_is_refused(body: Any) -> None:
 
 
 def test_nothing_of_a_body_stays_for_the_next() -> None:
-    organisation = somebody().organisation
+    organisation = a_user().organisation
     PlanInputSerializer.read(
         plan_body({"asset": 3}, objective="makespan", return_to_start=True, charging_w=90.0), organisation=organisation
     )

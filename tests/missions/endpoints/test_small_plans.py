@@ -13,7 +13,7 @@ from django.utils import timezone, translation
 
 from inspection.models import GraphSnapshot
 from missions import services
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
 from tests.workspace.counters import forget_counts
@@ -52,7 +52,7 @@ def status_of(client: Client, here: World, **options: Any) -> int:
 
 
 def test_programs_and_people_get_the_same_plan(here: World) -> None:
-    operator = somebody(Role.OPERATOR)
+    operator = a_user(Role.OPERATOR)
     program, person = program_of(operator), session_of(operator)
     for body in (
         plan_body(here.towers[2], here.towers[4]),
@@ -66,7 +66,7 @@ def test_programs_and_people_get_the_same_plan(here: World) -> None:
 
 
 def test_the_headers_of_a_plan(here: World) -> None:
-    operator = somebody(Role.OPERATOR)
+    operator = a_user(Role.OPERATOR)
     for answer in (
         asked(program_of(operator), plan_body(here.towers[2])),
         asked(session_of(operator), plan_body(here.towers[2]), headers={"X-CSRFToken": CSRF_TOKEN}),
@@ -94,7 +94,7 @@ def test_the_headers_of_a_plan(here: World) -> None:
     ids=["empty", "half", "list", "nan", "no utf-8", "nobody", "north of the pole", "unknown asset", "long"],
 )
 def test_what_is_wrong_is_said_by_its_place(here: World, body: bytes, place: str | None) -> None:
-    answer = asked(program_of(somebody(Role.OPERATOR)), body)
+    answer = asked(program_of(a_user(Role.OPERATOR)), body)
     assert answer.status_code == 400
     error = answer.json()["error"]
     assert error["message"]
@@ -102,7 +102,7 @@ def test_what_is_wrong_is_said_by_its_place(here: World, body: bytes, place: str
 
 
 def test_another_hosts_name_is_refused(here: World) -> None:
-    assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Host": "elsewhere.example"}) == 400
+    assert status_of(program_of(a_user(Role.OPERATOR)), here, headers={"Host": "elsewhere.example"}) == 400
 
 
 def test_a_plan_is_made_in_the_language_that_is_asked_for(here: World) -> None:
@@ -115,29 +115,29 @@ def test_a_plan_is_made_in_the_language_that_is_asked_for(here: World) -> None:
 
     with mock.patch.object(services, "make_plan", noted):
         for language in ("de", "en"):
-            assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Accept-Language": language}) == 200
+            assert status_of(program_of(a_user(Role.OPERATOR)), here, headers={"Accept-Language": language}) == 200
     assert languages == ["de", "en"]
 
 
 def test_what_is_wrong_is_said_in_the_language_of_each_request(here: World) -> None:
-    client, body = program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2], uavs=[{"name": "x" * 101, "position": [10, 56]}])
-    said = [asked(client, body, headers={"Accept-Language": language}).json()["error"]["details"] for language in ("de", "en", "de")]
-    assert said[0] == said[2] != said[1]
-    assert said[1] == {"uavs.0.name": ["Ensure this field has no more than 100 characters."]}
+    client, body = program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2], uavs=[{"name": "x" * 101, "position": [10, 56]}])
+    stated = [asked(client, body, headers={"Accept-Language": language}).json()["error"]["details"] for language in ("de", "en", "de")]
+    assert stated[0] == stated[2] != stated[1]
+    assert stated[1] == {"uavs.0.name": ["Ensure this field has no more than 100 characters."]}
 
 
 def test_requests_are_counted_by_the_address_they_came_to(here: World) -> None:
-    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    answer = asked(program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2]))
     assert answer.resolver_match.route == "api/v1/plans"
 
 
 @pytest.mark.parametrize("role", Role)
 def test_operators_and_administrators_may_plan(here: World, role: Role) -> None:
-    assert status_of(program_of(somebody(role)), here) == (200 if role in (Role.OPERATOR, Role.ADMINISTRATOR) else 403)
+    assert status_of(program_of(a_user(role)), here) == (200 if role in (Role.OPERATOR, Role.ADMINISTRATOR) else 403)
 
 
 def test_no_token_no_plan(here: World) -> None:
-    client = program_of(somebody(Role.OPERATOR))
+    client = program_of(a_user(Role.OPERATOR))
     assert status_of(client, here) == 200
     ApiToken.objects.update(expires_at=timezone.now())
     assert status_of(client, here) == 401
@@ -153,18 +153,18 @@ def test_no_token_no_plan(here: World) -> None:
 
 @pytest.mark.parametrize("token", [None, "", "another" + 25 * "x", 40 * "x"])
 def test_a_session_without_its_csrf_token_is_refused(here: World, token: str | None) -> None:
-    answer = asked(session_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={} if token is None else {"X-CSRFToken": token})
+    answer = asked(session_of(a_user(Role.OPERATOR)), plan_body(here.towers[2]), headers={} if token is None else {"X-CSRFToken": token})
     assert answer.status_code == 403
     assert answer.json()["error"]["code"] == "permission_denied"
 
 
 def test_a_session_of_another_site_is_refused(here: World) -> None:
     headers = {"X-CSRFToken": CSRF_TOKEN, "Origin": "https://elsewhere.example"}
-    assert status_of(session_of(somebody(Role.OPERATOR)), here, headers=headers) == 403
+    assert status_of(session_of(a_user(Role.OPERATOR)), here, headers=headers) == 403
 
 
 def test_a_session_that_may_not_plan_is_refused(here: World) -> None:
-    viewer, operator = somebody(Role.VIEWER), somebody(Role.OPERATOR)
+    viewer, operator = a_user(Role.VIEWER), a_user(Role.OPERATOR)
     left = session_of(operator)
     User.objects.filter(pk=operator.pk).update(is_active=False)
     for client, status in ((session_of(viewer), 403), (left, 401)):
@@ -172,7 +172,7 @@ def test_a_session_that_may_not_plan_is_refused(here: World) -> None:
 
 
 def test_a_key_is_answered_once(here: World) -> None:
-    client, body = program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2])
+    client, body = program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2])
     first, second = (asked(client, body, headers={"Idempotency-Key": "k1"}) for _ in range(2))
     assert (first.status_code, second.status_code) == (200, 200)
     assert second["Idempotency-Replayed"] == "true"
@@ -182,30 +182,30 @@ def test_a_key_is_answered_once(here: World) -> None:
 
 
 def test_a_small_plan_is_waited_for_by_nobody(here: World) -> None:
-    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Prefer": "wait=5"})
+    answer = asked(program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Prefer": "wait=5"})
     assert answer.status_code == 200
     assert "Preference-Applied" not in answer
 
 
 @pytest.mark.parametrize(("accept", "status"), [("text/html", 406), ("", 200), ("application/json;q=0.5, text/html", 200)])
 def test_the_form_of_an_answer_is_agreed_on(here: World, accept: str, status: int) -> None:
-    assert status_of(program_of(somebody(Role.OPERATOR)), here, headers={"Accept": accept}) == status
+    assert status_of(program_of(a_user(Role.OPERATOR)), here, headers={"Accept": accept}) == status
 
 
 @pytest.mark.parametrize("after", ["\xa0", "\x85", "\x1c", "\x1f", "x"])
 def test_a_token_with_anything_after_it_is_another_one_and_blanks_are_nothing(here: World, after: str) -> None:
-    token = create_api_token(user=somebody(Role.OPERATOR), name="load", expires_at=timezone.now() + timedelta(days=1))
+    token = create_api_token(user=a_user(Role.OPERATOR), name="load", expires_at=timezone.now() + timedelta(days=1))
     assert status_of(Client(headers={"Authorization": f"Bearer {token}{after}"}), here) == 401
     assert status_of(Client(headers={"Authorization": f"  bearer   {token}  "}), here) == 200
 
 
 def test_the_use_of_a_token_is_noted(here: World) -> None:
-    asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    asked(program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2]))
     assert ApiToken.objects.get().last_used_at is not None
 
 
 def test_who_asks_too_often_is_told_when_to_ask_again(here: World) -> None:
-    client = program_of(somebody(Role.OPERATOR))
+    client = program_of(a_user(Role.OPERATOR))
     forget_counts()
     with mock.patch.object(ScopedRate, "THROTTLE_RATES", {"plans": "4/hour"}):
         statuses = [status_of(client, here) for _ in range(4)]
@@ -218,13 +218,15 @@ def test_who_asks_too_often_is_told_when_to_ask_again(here: World) -> None:
 
 def test_without_a_network_there_is_no_plan(here: World) -> None:
     GraphSnapshot.objects.all().delete()
-    answer = asked(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    answer = asked(program_of(a_user(Role.OPERATOR)), plan_body(here.towers[2]))
     assert (answer.status_code, answer.json()["error"]["code"]) == (503, "no_graph")
 
 
-@pytest.mark.parametrize("where", ["workspace.api.authentication.prepared_rows", "missions.services.planning.planner.edition_now"])
+@pytest.mark.parametrize(
+    "where", ["workspace.api.authentication.prepared_rows", "missions.services.planning.planner.current_dataset_version"]
+)
 def test_without_the_database_there_is_no_plan(here: World, where: str) -> None:
-    client = program_of(somebody(Role.OPERATOR))
+    client = program_of(a_user(Role.OPERATOR))
     with mock.patch(where, side_effect=OperationalError("away")):
         answer = asked(client, plan_body(here.towers[2]))
     assert (answer.status_code, answer.json()["error"]["code"]) == (503, "database_away")

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import shapely
 
-from inspection.zones.reach import Limits, ZoneTable
+from inspection.zones.reach import HeightLimits, ZoneTable
 from inspection.zones.schedule import ZoneRules
 from planning.clearance.nearby_zones import zones_near
 from planning.clearance.zone_clearance import FlownRoute, Margins, breaches
@@ -30,7 +30,7 @@ def table(*boxes: tuple[float, float, float, float]) -> ZoneTable:
         box=shapely.bounds(shapes).reshape(-1, 4),
         floor_agl_m=np.full(len(boxes), 100.0),
         ceiling_agl_m=np.full(len(boxes), math.inf),
-        limits=(Limits(100.0, "AGL", None, ""),) * len(boxes),
+        limits=(HeightLimits(100.0, "AGL", None, ""),) * len(boxes),
         schedules=(DAILY,) * len(boxes),
         rules=ZoneRules(time_margin_s=300.0),
     )
