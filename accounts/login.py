@@ -87,19 +87,19 @@ def sign_in(request: HttpRequest, response: HttpResponse, user: User) -> None:
 
 
 PROVED_AT = "workspace.proved_at"  # in the session, beside its beginning
-PROOF_S = 15 * 60
+REAUTHENTICATION_S = 15 * 60
 PASSWORD_NEEDED = OpenApiResponse(description="`password_needed`: say it at `/account/proof`.")
 
 
-def note_proof(session: Any) -> None:
+def note_reauthentication(session: Any) -> None:
     """Somebody has just shown their password in this session."""
     session[PROVED_AT] = time.time()
 
 
-def require_proof(request: Request) -> None:
+def require_reauthentication(request: Request) -> None:
     """Raises ApiProblem 403 `password_needed` unless the password was shown within 15 min: by signing in, or by saying it again."""
     row = getattr(request.session, "in_use", None)
-    since_sign_in_s = PROOF_S + 1.0 if row is None else (timezone.now() - row.began_at).total_seconds()
-    since_proof_s = time.time() - request.session.get(PROVED_AT, 0.0)
-    if min(since_sign_in_s, since_proof_s) > PROOF_S:
+    since_sign_in_s = REAUTHENTICATION_S + 1.0 if row is None else (timezone.now() - row.began_at).total_seconds()
+    since_reauthentication_s = time.time() - request.session.get(PROVED_AT, 0.0)
+    if min(since_sign_in_s, since_reauthentication_s) > REAUTHENTICATION_S:
         raise ApiProblem(403, "password_needed", _("Say your password again for this."))

@@ -6,7 +6,7 @@ from uuid import UUID
 
 from django.db.models import QuerySet
 
-from missions.hooks.events import EventKind, MissionEvent, Place, Source
+from missions.hooks.events import EventKind, EventPlace, EventSource, MissionEvent
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from simulation.vehicle_models import reason_words
 from workspace.models import Organisation
@@ -38,7 +38,7 @@ WHERE mission_id = ANY(%(missions)s) AND ended_at IS NOT NULL
 """
 
 
-def _read_changes(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_changes(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = SimulationChange.objects.select_related("vehicle", "created_by").in_bulk([int(place.row) for place in places])
     return {place: _of_change(row) for place in places if (row := rows.get(int(place.row))) is not None}
 
@@ -57,7 +57,7 @@ def _of_change(change: SimulationChange) -> MissionEvent:
     return MissionEvent(kind, words, uav_id, "" if vehicle is None else vehicle.name, is_simulated=True, who=who, values=values)
 
 
-def _read_simulations(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+def _read_simulations(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
     rows = Simulation.objects.select_related("created_by").in_bulk([UUID(place.row) for place in places])
     return {place: _of_simulation(row, place.step) for place in places if (row := rows.get(UUID(place.row))) is not None}
 
@@ -72,4 +72,4 @@ def _of_simulation(simulation: Simulation, step: str) -> MissionEvent:
     return MissionEvent(EventKind.SIMULATION_STARTED, words, is_simulated=True, who=who)
 
 
-EVENT_SOURCES = (Source("simulated", _CHANGES, _read_changes), Source("simulation", _SIMULATIONS, _read_simulations))
+EVENT_SOURCES = (EventSource("simulated", _CHANGES, _read_changes), EventSource("simulation", _SIMULATIONS, _read_simulations))

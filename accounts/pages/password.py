@@ -14,7 +14,7 @@ from django.utils.translation import gettext as _
 
 from accounts.invitations import mail_leaves_here, public_address
 from accounts.services import revoke_tokens
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, remember, take_turn
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, address_of, count_attempt, network_of, remember
 
 logger = logging.getLogger(__name__)
 
@@ -29,9 +29,9 @@ class LostPasswordForm(PasswordResetForm):
     def clean_email(self) -> str:
         email: str = self.cleaned_data["email"]
         try:
-            take_turn("mails to", email)
-            take_turn("mails from", network_of(self.address))
-        except HeldBack as error:
+            count_attempt("mails to", email)
+            count_attempt("mails from", network_of(self.address))
+        except TooManyAttempts as error:
             raise ValidationError(_("Too many mails were asked for. Wait 15 min, then try again."), code="locked") from error
         return email
 
@@ -89,8 +89,8 @@ class ChangePasswordForm(PasswordChangeForm):
 
     def clean_old_password(self) -> str:
         try:
-            take_turn(PASSWORD_CHANGES, str(self.user.pk))
-        except HeldBack as error:
+            count_attempt(PASSWORD_CHANGES, str(self.user.pk))
+        except TooManyAttempts as error:
             raise ValidationError(_("Too many tries. Wait 15 min, then try again."), code="locked") from error
         return str(super().clean_old_password())
 

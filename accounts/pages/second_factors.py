@@ -14,7 +14,7 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
 
 from accounts import second_factors
-from accounts.login import record_sign_in, sign_in, who_is_half_in
+from accounts.login import record_sign_in, sign_in, user_with_mfa_pending
 from accounts.second_factors import TooManyCodes, WrongCode, address_for_apps, new_seed
 from workspace.api.signed_in import SignedInPageRequest
 from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
@@ -70,14 +70,14 @@ class CodePage(FormView):
     form_class = CodeForm
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
-        half_in = who_is_half_in(request)
-        if half_in is None or not second_factors.has_second_factor(half_in.user):
+        mfa_pending = user_with_mfa_pending(request)
+        if mfa_pending is None or not second_factors.has_second_factor(mfa_pending.user):
             return HttpResponseRedirect(resolve_url("sign-in"))
-        self.half_in = half_in
+        self.mfa_pending = mfa_pending
         return super().dispatch(request, *args, **kwargs)
 
     def form_valid(self, form: CodeForm) -> HttpResponse:
-        user = self.half_in.user
+        user = self.mfa_pending.user
         try:
             second_factors.try_code(user=user, code=form.cleaned_data["code"])
         except (WrongCode, TooManyCodes) as error:
@@ -85,7 +85,7 @@ class CodePage(FormView):
             record_sign_in(self.request, outcome, user=user, name=user.username)
             form.add_error("code", words_of(error))
             return self.form_invalid(form)
-        response = HttpResponseRedirect(self.half_in.wanted)
+        response = HttpResponseRedirect(self.mfa_pending.wanted)
         sign_in(self.request, response, user)
         return response
 
@@ -97,29 +97,29 @@ class SetUpPage(AccessMixin, FormView):
     template_name = "account/second_factor.html"
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> Any:
-        self.half_in = None if request.user.is_authenticated else who_is_half_in(request)
-        if self.half_in is not None:
-            self.person = self.half_in.user
+        self.mfa_pending = None if request.user.is_authenticated else user_with_mfa_pending(request)
+        if self.mfa_pending is not None:
+            self.person = self.mfa_pending.user
         elif isinstance(request.user, User):
             self.person = request.user
         else:
             return self.handle_no_permission()
         if second_factors.has_second_factor(self.person):
-            return HttpResponseRedirect(resolve_url("sign-in-code" if self.half_in else "second-factor-codes"))
+            return HttpResponseRedirect(resolve_url("sign-in-code" if self.mfa_pending else "second-factor-codes"))
         return super().dispatch(request, *args, **kwargs)
 
     def get_form_class(self) -> type[CodeForm]:
-        return CodeForm if self.half_in else CodeAndPasswordForm
+        return CodeForm if self.mfa_pending else CodeAndPasswordForm
 
     def get_form_kwargs(self) -> dict[str, Any]:
-        return super().get_form_kwargs() | ({} if self.half_in else {"user": self.person})
+        return super().get_form_kwargs() | ({} if self.mfa_pending else {"user": self.person})
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         text = second_factors.seed_text(self._seed())
         address = address_for_apps(text, self.person.username)
         return super().get_context_data(**kwargs) | {
             "person": self.person,
-            "is_required": self.half_in is not None,
+            "is_required": self.mfa_pending is not None,
             "qr_code": segno.make(address, error="m", micro=False).svg_inline(border=3, light="#fff", omitsize=True),
             "address": address,
             "seed_groups": [text[place : place + 4] for place in range(0, len(text), 4)],
@@ -132,8 +132,8 @@ class SetUpPage(AccessMixin, FormView):
             form.add_error("code", _("This is not the app’s code of now. Wait for the next one. The telephone’s clock has to be right."))
             return self.form_invalid(form)
         del self.request.session[SEED]
-        response = show_codes(self.request, codes, self.half_in.wanted if self.half_in else resolve_url("account"))
-        if self.half_in:
+        response = show_codes(self.request, codes, self.mfa_pending.wanted if self.mfa_pending else resolve_url("account"))
+        if self.mfa_pending:
             sign_in(self.request, response, self.person)
         return response
 

@@ -11,7 +11,7 @@ from django.utils.translation import ngettext
 
 from accounts.login import let_in, record_sign_in
 from workspace.models import SignInOutcome, User
-from workspace.sessions.sign_in_attempts import HeldBack, address_of, mark_of, try_to_sign_in
+from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, mark_of, try_to_sign_in
 
 
 class SignInForm(AuthenticationForm):
@@ -26,7 +26,7 @@ class SignInForm(AuthenticationForm):
             return super().clean()
         try:
             this_try = try_to_sign_in(name=name, address=address_of(request), trusted_device=mark_of(request, name))
-        except HeldBack as held:
+        except TooManyAttempts as held:
             record_sign_in(request, SignInOutcome.HELD_BACK, name=name)
             raise ValidationError(_held_back(held), code="locked") from held
         try:
@@ -38,7 +38,7 @@ class SignInForm(AuthenticationForm):
         return cleaned
 
 
-def _held_back(held: HeldBack) -> str:
+def _held_back(held: TooManyAttempts) -> str:
     if held.name_is_slow:
         return _(
             "Somebody is guessing the password of this name from many places. Use a browser in which you have signed in before, "

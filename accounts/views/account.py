@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.login import PASSWORD_NEEDED, record_sign_in, require_proof
+from accounts.login import PASSWORD_NEEDED, record_sign_in, require_reauthentication
 from accounts.serializers import (
     AccountChangeSerializer,
     AccountSerializer,
@@ -27,14 +27,14 @@ from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.api.schema import PAGE_PARAMETERS
 from workspace.api.signed_in import SignedInRequest
 from workspace.models import SignInOutcome
-from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
+from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, count_attempt
 
 
 def check_password(request: SignedInRequest, name: str, password: str) -> None:
     """Of whoever is signed in. Raises ApiProblem: 400 where it is another one, 429 after too many tries."""
     try:
-        take_turn(PASSWORD_CHANGES, str(request.user.pk))
-    except HeldBack as held:
+        count_attempt(PASSWORD_CHANGES, str(request.user.pk))
+    except TooManyAttempts as held:
         raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
     if not request.user.check_password(password):
         message = _("This is not your password.")
@@ -107,7 +107,7 @@ class AccountTokens(APIView):
         responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )
     def post(self, request: SignedInRequest) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         body = TokenInputSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         try:

@@ -8,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.login import PASSWORD_NEEDED, require_proof
+from accounts.login import PASSWORD_NEEDED, require_reauthentication
 from accounts.serializers import (
     NewTokenSerializer,
     ServiceAccountChangeSerializer,
@@ -128,7 +128,7 @@ class ServiceAccountTokens(APIView):
         responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )
     def post(self, request: SignedInRequest, account_id: int) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         account = _account(request, account_id)
         body = TokenInputSerializer(data=request.data, context={"user": account})
         body.is_valid(raise_exception=True)

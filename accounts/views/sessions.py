@@ -8,8 +8,8 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from accounts import services
-from accounts.login import PASSWORD_NEEDED, note_proof, require_proof
-from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
+from accounts.login import PASSWORD_NEEDED, note_reauthentication, require_reauthentication
+from accounts.serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ReauthenticationSerializer, SessionTimesSerializer
 from accounts.views.account import check_password
 from workspace.api.errors import ApiProblem
 from workspace.api.permissions import EVERYBODY, InTheBrowserAlone
@@ -51,7 +51,7 @@ class ThisSession(APIView):
         return Response({"ends_at": session_ends_at(row), "ends_in_s": seconds_left(request.session)})
 
 
-class Proof(APIView):
+class Reauthentication(APIView):
     write_roles = EVERYBODY
     permission_classes = [InTheBrowserAlone]
 
@@ -59,14 +59,14 @@ class Proof(APIView):
         operation_id="prove_oneself",
         summary="Re-authenticate",
         description="For 15 min this session may then make tokens and end sessions. Five tries in a quarter of an hour.",
-        request=ProofSerializer,
+        request=ReauthenticationSerializer,
         responses={204: OpenApiResponse(description="It is the password.")},
     )
     def post(self, request: SignedInRequest) -> Response:
-        body = ProofSerializer(data=request.data)
+        body = ReauthenticationSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         check_password(request, "password", body.validated_data["password"])
-        note_proof(request.session)
+        note_reauthentication(request.session)
         return Response(status=204)
 
 
@@ -95,7 +95,7 @@ class AccountSession(APIView):
         responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
     def delete(self, request: SignedInRequest, session_id: int) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         row = request.user.browser_sessions.filter(pk=session_id).first()
         if row is None:
             raise ApiProblem(404, "not_found", _("You have no such session."))
@@ -115,7 +115,7 @@ class AccountSessions(APIView):
         responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
     def post(self, request: SignedInRequest) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         services.end_sessions(user=request.user, actor=request.user)
         update_session_auth_hash(request, request.user)
         return Response(status=204)

@@ -9,7 +9,7 @@ from inspection.geodesy import distance_m
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.quality.infrastructure import Gap, GapGround
 from inspection.quality.lines import impossible_voltages, line_ends
-from inspection.quality.network import Network
+from inspection.quality.network import SupportNetwork
 from inspection.quality.supports import lone_towers, long_spans, missing_supports
 
 Position = tuple[float, float]  # lon, lat [deg]
@@ -117,17 +117,17 @@ def bridges_without_way(ground: GapGround) -> list[Gap]:
 
 def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> list[Gap]:
     """Every gap of the ground, the one that cuts off most first; equal grounds give equal lists, each key once."""
-    tell = progress or (lambda message: None)
-    tell("joining lines")
-    network = Network(ground)
+    notify = progress or (lambda message: None)
+    notify("joining lines")
+    network = SupportNetwork(ground)
     found: list[Gap] = []
     for words, detector in (
         ("long spans", long_spans), ("vertices without a tower", missing_supports), ("towers on no line", lone_towers),
         ("ends of lines", line_ends),
     ):  # fmt: skip
-        tell(words)
+        notify(words)
         found += detector(network)
-    tell("bridges and voltages")
+    notify("bridges and voltages")
     found += bridges_without_way(ground) + impossible_voltages(ground)
     by_key = {gap.key: gap for gap in reversed(found)}
     return sorted(by_key.values(), key=lambda gap: (-gap.cut_off_m, -gap.details.get("missing_towers", 0), gap.key))

@@ -8,7 +8,7 @@ from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from accounts.login import PASSWORD_NEEDED, require_proof
+from accounts.login import PASSWORD_NEEDED, require_reauthentication
 from missions import services
 from missions.models import CredentialKind
 from missions.selectors import fleet
@@ -58,7 +58,7 @@ class UavCredentials(APIView):
         responses={201: NewCredentialSerializer, 403: PASSWORD_NEEDED, 409: NEEDED_NOW},
     )
     def post(self, request: SignedInRequest, uav_id: int) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         uav = uav_or_404(request.user, uav_id)
         if uav.twin_of_id is not None:
             raise ApiProblem(409, "simulated_twin", _("The key of a simulated twin is made by the simulation that flies it."))
@@ -84,7 +84,7 @@ class UavCredentialDetail(APIView):
         responses={204: None, 403: PASSWORD_NEEDED, 409: NEEDED_NOW},
     )
     def delete(self, request: SignedInRequest, uav_id: int, credential_id: int) -> Response:
-        require_proof(request)
+        require_reauthentication(request)
         serializer = InsistSerializer(data=request.query_params)
         serializer.is_valid(raise_exception=True)
         credentials = fleet.credentials_of_uav(uav_or_404(request.user, uav_id)).select_related("uav__organisation")

@@ -6,7 +6,7 @@ import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight, FrozenWaypoint
-from simulation.assessment.flown import FloatArray, FlownRoute, FlownTrack, IntArray
+from simulation.assessment.flown import AssessedRoute, FloatArray, FlownTrack, IntArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Following:
     worst_height_waypoint: int | None
 
 
-def following_of(route: FlownRoute) -> Following:
+def following_of(route: AssessedRoute) -> Following:
     """Of all flights between their first and their last waypoint; the columns up and down are left out."""
     across, height, flown_to = [], [], []
     for flown in route.flights:
@@ -102,7 +102,7 @@ class Visit:
     battery_percent: float | None
 
 
-def visits_of(route: FlownRoute, *, within_m: float) -> list[Visit]:
+def visits_of(route: AssessedRoute, *, within_m: float) -> list[Visit]:
     """Of every waypoint of the route at which a UAV flies, in its order."""
     found = []
     for number, flown in enumerate(route.flights):

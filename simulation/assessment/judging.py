@@ -9,13 +9,13 @@ import numpy as np
 from inspection.zones.reach import ZoneTable
 from mavlink.approved_route import FrozenRoute
 from planning.energy.conditions import Conditions
-from simulation.assessment.flown import Ending, FloatArray, FlownRoute
+from simulation.assessment.closest_approach import ClosestApproach, closest_approaches_of
+from simulation.assessment.flown import AssessedRoute, FloatArray, TrackEnding
 from simulation.assessment.following import Following, Visit, following_of, visits_of
-from simulation.assessment.limits import Facts, Finding, Level, Limits, level_of
-from simulation.assessment.meeting import Meeting, meetings_of
+from simulation.assessment.limits import AssessmentLimits, Facts, Finding, Level, level_of
 from simulation.assessment.obstacles import Approach, Standing, ZoneApproach, lowest_of, nearest_standing, zone_approaches
 
-MEETING_STEP_S = 0.2
+APPROACH_STEP_S = 0.2
 AS_PLANNED = 1.05  # of the planned energy
 NEAR_ZONES = 5  # of a route that are told of
 GroundHeights = Callable[[FloatArray], FloatArray]
@@ -41,7 +41,7 @@ class FlightEnergy:
     lowest_percent: float
 
 
-def energy_of(route: FlownRoute) -> list[FlightEnergy]:
+def energy_of(route: AssessedRoute) -> list[FlightEnergy]:
     """Of the flights that were flown."""
     return [
         FlightEnergy(
@@ -69,7 +69,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
-class TargetVerdict:
+class TargetAssessment:
     """One target. `closest_m` is the worst of its waypoints; at_s when the first was reached; battery left then."""
 
     target: int
@@ -84,13 +84,13 @@ class TargetVerdict:
 
 
 @dataclass(frozen=True)
-class RouteVerdict:
+class RouteAssessment:
     """One UAV's route."""
 
     uav: int
     name: str
     level: Level
-    endings: tuple[Ending | None, ...]  # of its flights; None: not begun
+    endings: tuple[TrackEnding | None, ...]  # of its flights; None: not begun
     following: Following
     energy: tuple[FlightEnergy, ...]
     used_wh: float
@@ -102,30 +102,32 @@ class RouteVerdict:
     lowest: Approach | None
     obstacle: Approach | None
     widest_waypoint_m: float | None  # the worst of all waypoints: how near it was passed
-    targets: tuple[TargetVerdict, ...]
+    targets: tuple[TargetAssessment, ...]
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Assessment:
     level: Level
     findings: tuple[Finding, ...]
-    routes: tuple[RouteVerdict, ...]
-    meetings: tuple[Meeting, ...]
+    routes: tuple[RouteAssessment, ...]
+    closest_approaches: tuple[ClosestApproach, ...]
 
 
-def judge(routes: Sequence[FlownRoute], around: Surroundings, limits: Limits, *, known: Sequence[Finding] = ()) -> Verdict:
+def judge(routes: Sequence[AssessedRoute], around: Surroundings, limits: AssessmentLimits, *, known: Sequence[Finding] = ()) -> Assessment:
     """known: findings that were there before the flight, such as a wind that the airframe cannot fly in."""
-    meetings = meetings_of(routes, step_s=MEETING_STEP_S)
-    findings = [*known, *_of_meetings(meetings, limits)]
-    verdicts = []
+    closest_approaches = closest_approaches_of(routes, step_s=APPROACH_STEP_S)
+    findings = [*known, *_of_closest_approaches(closest_approaches, limits)]
+    assessments = []
     for route in routes:
-        reported, verdict = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])
+        reported, assessment = _of_route(route, around, limits, [finding for finding in findings if finding.uav == route.uav])
         findings += reported
-        verdicts.append(verdict)
-    return Verdict(level_of(findings), tuple(findings), tuple(verdicts), tuple(meetings))
+        assessments.append(assessment)
+    return Assessment(level_of(findings), tuple(findings), tuple(assessments), tuple(closest_approaches))
 
 
-def _of_route(route: FlownRoute, around: Surroundings, limits: Limits, met: Sequence[Finding]) -> tuple[list[Finding], RouteVerdict]:
+def _of_route(
+    route: AssessedRoute, around: Surroundings, limits: AssessmentLimits, met: Sequence[Finding]
+) -> tuple[list[Finding], RouteAssessment]:
     visits, energy, following = visits_of(route, within_m=limits.waypoint_fail_m), energy_of(route), following_of(route)
     grounds = [np.zeros(0) if flown.track is None else around.ground_amsl_m(flown.track.position) for flown in route.flights]
     zones = _nearest_zones(route, grounds, around)
@@ -143,9 +145,9 @@ def _of_route(route: FlownRoute, around: Surroundings, limits: Limits, met: Sequ
         *_of_standing(route, standing, limits),
     ]
     reported = [*met, *findings]
-    by_target = [_with_level(verdict, reported) for verdict in targets]
+    by_target = [_with_level(assessment, reported) for assessment in targets]
     passed_m = [visit.closest_m for visit in visits if visit.closest_m is not None]
-    return findings, RouteVerdict(
+    return findings, RouteAssessment(
         uav=route.uav,
         name=route.name,
         level=level_of(reported),
@@ -169,12 +171,12 @@ def _targets(visits: Sequence[Visit]) -> Iterator[int]:
     return (visit.waypoint.target for visit in visits if visit.waypoint.target is not None)
 
 
-def _of_target(target: int, visits: Sequence[Visit], limits: Limits) -> TargetVerdict:
+def _of_target(target: int, visits: Sequence[Visit], limits: AssessmentLimits) -> TargetAssessment:
     own = [visit for visit in visits if visit.waypoint.target == target]
     metres = [visit.closest_m for visit in own]
     is_reached = all(one is not None and one <= limits.waypoint_fail_m for one in metres)
     first = next((visit for visit in own if visit.at_s is not None), None)
-    return TargetVerdict(
+    return TargetAssessment(
         target=target,
         level=Level.PASS,
         is_reached=is_reached,
@@ -191,12 +193,12 @@ def _hold_s(visit: Visit) -> float:
     return 0.0 if visit.waypoint.task is None else visit.waypoint.task.hold_s
 
 
-def _with_level(verdict: TargetVerdict, findings: Sequence[Finding]) -> TargetVerdict:
-    level = level_of(finding for finding in findings if finding.target == verdict.target)
-    return replace(verdict, level=level)
+def _with_level(assessment: TargetAssessment, findings: Sequence[Finding]) -> TargetAssessment:
+    level = level_of(finding for finding in findings if finding.target == assessment.target)
+    return replace(assessment, level=level)
 
 
-def _of_endings(route: FlownRoute) -> Iterator[Finding]:
+def _of_endings(route: AssessedRoute) -> Iterator[Finding]:
     for number, flown in enumerate(route.flights):
         facts: Facts = {"name": route.name, "flight": number + 1, "flights": len(route.flights)}
         if flown.track is None:
@@ -207,7 +209,9 @@ def _of_endings(route: FlownRoute) -> Iterator[Finding]:
             yield Finding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": stated, "at_s": at_s})
 
 
-def _of_energy(route: FlownRoute, energy: Sequence[FlightEnergy], visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+def _of_energy(
+    route: AssessedRoute, energy: Sequence[FlightEnergy], visits: Sequence[Visit], limits: AssessmentLimits
+) -> Iterator[Finding]:
     """What is short is told of the route, and of the last target of the flight: without it the battery would have lasted longer."""
     for one in energy:
         facts: Facts = {
@@ -221,12 +225,12 @@ def _of_energy(route: FlownRoute, energy: Sequence[FlightEnergy], visits: Sequen
             yield Finding(Level.WARNINGS, "reserve-near", route.uav, None, facts)
 
 
-def _is_as_planned(route: FlownRoute, energy: Sequence[FlightEnergy]) -> bool:
+def _is_as_planned(route: AssessedRoute, energy: Sequence[FlightEnergy]) -> bool:
     """Whether it took no more than planned: then what it leaves is what its operator has seen on the plan."""
     return route.planned_wh is not None and sum(one.used_wh for one in energy) <= AS_PLANNED * route.planned_wh
 
 
-def _of_following(route: FlownRoute, following: Following, limits: Limits) -> Iterator[Finding]:
+def _of_following(route: AssessedRoute, following: Following, limits: AssessmentLimits) -> Iterator[Finding]:
     kinds = (
         ("across", following.across, following.worst_across_waypoint, limits.across_warn_m, limits.across_fail_m),
         ("height", following.height, following.worst_height_waypoint, limits.height_warn_m, limits.height_fail_m),
@@ -239,7 +243,7 @@ def _of_following(route: FlownRoute, following: Following, limits: Limits) -> It
             yield Finding(level, code, route.uav, facts=facts)
 
 
-def _of_visits(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+def _of_visits(route: AssessedRoute, visits: Sequence[Visit], limits: AssessmentLimits) -> Iterator[Finding]:
     for visit in visits:
         facts: Facts = {"name": route.name, "waypoint": visit.waypoint.sequence}
         target = visit.waypoint.target
@@ -255,7 +259,7 @@ def _of_visits(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> It
             yield Finding(Level.FAIL, "not-held", route.uav, target, facts | {"held_s": visit.held_s, "hold_s": _hold_s(visit)})
 
 
-def _of_times(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> Iterator[Finding]:
+def _of_times(route: AssessedRoute, visits: Sequence[Visit], limits: AssessmentLimits) -> Iterator[Finding]:
     """The waypoint farthest from its time."""
     late = max((visit for visit in visits if visit.late_s is not None), key=lambda visit: abs(visit.late_s or 0.0), default=None)
     if late is not None and late.late_s is not None and abs(late.late_s) > limits.late_warn_s:
@@ -264,7 +268,7 @@ def _of_times(route: FlownRoute, visits: Sequence[Visit], limits: Limits) -> Ite
         yield Finding(Level.WARNINGS, code, route.uav, facts=facts)
 
 
-def _nearest_zones(route: FlownRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
+def _nearest_zones(route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
     """The nearest that any flight of the route came to each zone, the nearest first."""
     found: dict[int, ZoneApproach] = {}
     for flown, ground_m in zip(route.flights, grounds, strict=True):
@@ -276,11 +280,11 @@ def _nearest_zones(route: FlownRoute, grounds: Sequence[FloatArray], around: Sur
     return sorted(found.values(), key=lambda zone: zone.away_m)
 
 
-def _is_near(zone: ZoneApproach, limits: Limits) -> bool:
+def _is_near(zone: ZoneApproach, limits: AssessmentLimits) -> bool:
     return zone.beside_m < limits.zone_beside_m and zone.height_m < limits.zone_height_m
 
 
-def _zone_finding(route: FlownRoute, zone: ZoneApproach, limits: Limits) -> Finding:
+def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLimits) -> Finding:
     facts: Facts = {"name": route.name, "zone": zone.name, "at_s": zone.t_s, "waypoint": zone.waypoint, "metres": zone.away_m}
     if zone.is_inside:
         return Finding(Level.FAIL, "zone-entered", route.uav, facts=facts)
@@ -289,7 +293,7 @@ def _zone_finding(route: FlownRoute, zone: ZoneApproach, limits: Limits) -> Find
 
 
 def _nearest(
-    route: FlownRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: Limits
+    route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: AssessmentLimits
 ) -> tuple[Approach | None, tuple[Approach | None, Approach | None]]:
     """The lowest, and the nearest to what stands: on the way, and in the columns."""
 
@@ -308,7 +312,7 @@ def _nearest(
     return lowest, (on_way, in_column)
 
 
-def _of_ground(route: FlownRoute, lowest: Approach | None, limits: Limits) -> Iterator[Finding]:
+def _of_ground(route: AssessedRoute, lowest: Approach | None, limits: AssessmentLimits) -> Iterator[Finding]:
     if lowest is None or lowest.away_m >= limits.ground_warn_m:
         return
     level = Level.FAIL if lowest.away_m < limits.ground_fail_m else Level.WARNINGS
@@ -317,7 +321,7 @@ def _of_ground(route: FlownRoute, lowest: Approach | None, limits: Limits) -> It
     yield Finding(level, "low", route.uav, facts=facts)
 
 
-def _of_standing(route: FlownRoute, standing: tuple[Approach | None, Approach | None], limits: Limits) -> Iterator[Finding]:
+def _of_standing(route: AssessedRoute, standing: tuple[Approach | None, Approach | None], limits: AssessmentLimits) -> Iterator[Finding]:
     for one in standing:
         if one is None or one.away_m >= limits.obstacle_warn_m:
             continue
@@ -327,13 +331,13 @@ def _of_standing(route: FlownRoute, standing: tuple[Approach | None, Approach | 
         yield Finding(level, "obstacle-column" if one.is_column else "obstacle", route.uav, facts=facts)
 
 
-def _of_meetings(meetings: Sequence[Meeting], limits: Limits) -> Iterator[Finding]:
+def _of_closest_approaches(closest_approaches: Sequence[ClosestApproach], limits: AssessmentLimits) -> Iterator[Finding]:
     """Each is told of both UAVs."""
-    for meeting in meetings:
-        is_hit = meeting.away_m < limits.apart_fail_m
-        if not is_hit and not (meeting.beside_m < limits.apart_warn_beside_m and meeting.height_m < limits.apart_warn_height_m):
+    for closest in closest_approaches:
+        is_hit = closest.away_m < limits.apart_fail_m
+        if not is_hit and not (closest.beside_m < limits.apart_warn_beside_m and closest.height_m < limits.apart_warn_height_m):
             continue
         limit_m = limits.apart_fail_m if is_hit else limits.apart_warn_beside_m
-        for uav, other in (meeting.uavs, meeting.uavs[::-1]):
-            facts: Facts = {"metres": meeting.away_m, "limit_m": limit_m, "at_s": meeting.t_s, "other": other}
+        for uav, other in (closest.uavs, closest.uavs[::-1]):
+            facts: Facts = {"metres": closest.away_m, "limit_m": limit_m, "at_s": closest.t_s, "other": other}
             yield Finding(Level.FAIL if is_hit else Level.WARNINGS, "apart", uav, facts=facts)

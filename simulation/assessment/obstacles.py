@@ -8,7 +8,7 @@ import shapely
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.zones.reach import Limits, ZoneTable
+from inspection.zones.reach import HeightLimits, ZoneTable
 from simulation.assessment.flown import BoolArray, FloatArray, FlownFlight, FlownTrack
 
 LOOK_M = 60.0  # across the ground: what is farther is not told of
@@ -188,7 +188,7 @@ def _in_force(table: ZoneTable, t_s: FloatArray, departs_s: float | None) -> Boo
     return found
 
 
-def _outside_m(limits: Limits, amsl_m: FloatArray, agl_m: FloatArray) -> FloatArray:
+def _outside_m(limits: HeightLimits, amsl_m: FloatArray, agl_m: FloatArray) -> FloatArray:
     """(n,): how far below the lower or above the upper limit; a limit that cannot be compared reaches everywhere."""
     below = np.zeros(len(amsl_m))
     above = np.zeros(len(amsl_m))

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
+from simulation.assessment.closest_approach import ClosestApproach
 from simulation.assessment.flown import FlownTrack
 from simulation.assessment.following import Error
-from simulation.assessment.judging import RouteVerdict, TargetVerdict, Verdict
+from simulation.assessment.judging import Assessment, RouteAssessment, TargetAssessment
 from simulation.assessment.limits import Finding
-from simulation.assessment.meeting import Meeting
 from simulation.assessment.obstacles import Approach, ZoneApproach
 
 METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS, ANGLE_DIGITS = 2, 1, 1, 7, 1
@@ -15,12 +15,12 @@ ANGLES = ("roll_deg", "pitch_deg", "heading_deg")
 TRACK_STEP_S = 1.0
 
 
-def verdict_to_json(verdict: Verdict) -> dict[str, Any]:
+def assessment_to_json(assessment: Assessment) -> dict[str, Any]:
     return {
-        "level": str(verdict.level),
-        "findings": [finding_to_json(finding) for finding in verdict.findings],
-        "routes": [_route(route) for route in verdict.routes],
-        "meetings": [_meeting(meeting) for meeting in verdict.meetings],
+        "level": str(assessment.level),
+        "findings": [finding_to_json(finding) for finding in assessment.findings],
+        "routes": [_route(route) for route in assessment.routes],
+        "meetings": [_closest_approach(closest) for closest in assessment.closest_approaches],
     }
 
 
@@ -56,7 +56,7 @@ def _column(values: list[float], digits: int) -> list[float]:
     return [round(value, digits) for value in values]
 
 
-def _route(route: RouteVerdict) -> dict[str, Any]:
+def _route(route: RouteAssessment) -> dict[str, Any]:
     return {
         "uav": route.uav,
         "name": route.name,
@@ -86,7 +86,7 @@ def _route(route: RouteVerdict) -> dict[str, Any]:
     }
 
 
-def _target(target: TargetVerdict) -> dict[str, Any]:
+def _target(target: TargetAssessment) -> dict[str, Any]:
     return {
         "target": target.target,
         "level": str(target.level),
@@ -123,12 +123,12 @@ def _approach(approach: Approach | None) -> dict[str, Any] | None:
     }
 
 
-def _meeting(meeting: Meeting) -> dict[str, Any]:
+def _closest_approach(closest: ClosestApproach) -> dict[str, Any]:
     return {
-        "uavs": list(meeting.uavs),
-        "beside_m": _rounded(meeting.beside_m),
-        "height_m": _rounded(meeting.height_m),
-        "at_s": _rounded(meeting.t_s, SECOND_DIGITS),
+        "uavs": list(closest.uavs),
+        "beside_m": _rounded(closest.beside_m),
+        "height_m": _rounded(closest.height_m),
+        "at_s": _rounded(closest.t_s, SECOND_DIGITS),
     }
 
 

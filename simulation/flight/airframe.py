@@ -78,8 +78,8 @@ class OwnAction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Heights are metres above the take-off, shares percent of a full battery. `return_adds_to_haven`: over a rally point the height of
-    returns counts from that point's own height, as PX4 has it; else the higher of both is flown, as ArduPilot does.
+    """Heights are metres above the take-off, shares percent of a full battery. `return_adds_to_rally_point`: over a rally point the
+    height of returns counts from that point's own height, as PX4 has it; else the higher of both is flown, as ArduPilot does.
 
     Defaults as PX4 v1.15 has them where it has them: MIS_TAKEOFF_ALT 2.5, RTL_RETURN_ALT 60 (30 here: UAVs inspect low), RTL_MIN_DIST 10
     (0 here, with RTL_CONE_ANG 0: it climbs however near home it is), BAT_LOW_THR 15 %, BAT_CRIT_THR 7 %, NAV_ACC_RAD 10 (2 here: a target
@@ -90,7 +90,7 @@ class Settings:
     take_off_height_m: float = 2.5
     return_height_m: float = 30.0
     return_near_m: float = 0.0
-    return_adds_to_haven: bool = True
+    return_adds_to_rally_point: bool = True
     acceptance_m: float = 2.0
     battery_warn_percent: float = 25.0
     battery_low_percent: float = 15.0

@@ -7,11 +7,11 @@ from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import Hold, Land, Manoeuvre, Return
-from simulation.flight.mission import Mission
+from simulation.flight.mission import MissionManoeuvre
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
-from simulation.flight.states import Mode, Severity
+from simulation.flight.states import FlightMode, Severity
 
-STRENGTH = {Mode.RETURN: 1, Mode.LAND: 2}  # what is under way is not given up for less
+STRENGTH = {FlightMode.RETURN: 1, FlightMode.LAND: 2}  # what is under way is not given up for less
 SETTLES_S = 2.0  # on the ground, until the model rests
 
 
@@ -23,12 +23,12 @@ class Failsafes:
         self._gps_lost_since_s: float | None = None
         self._has_acted_on_gps = False
 
-    def step(self, context: ManoeuvreContext, mode: Mode, battery_percent: float, *, is_gps_lost: bool) -> Manoeuvre | None:
+    def step(self, context: ManoeuvreContext, mode: FlightMode, battery_percent: float, *, is_gps_lost: bool) -> Manoeuvre | None:
         """What to do from now on; None: as before."""
         manoeuvre = self._gps(context, mode, is_gps_lost=is_gps_lost)
         return self._battery(context, mode, battery_percent) or manoeuvre
 
-    def _battery(self, context: ManoeuvreContext, mode: Mode, percent: float) -> Manoeuvre | None:
+    def _battery(self, context: ManoeuvreContext, mode: FlightMode, percent: float) -> Manoeuvre | None:
         settings = context.settings
         thresholds = (settings.battery_warn_percent, settings.battery_low_percent, settings.battery_critical_percent)
         level = sum(percent <= threshold for threshold in thresholds)
@@ -43,7 +43,7 @@ class Failsafes:
         severity = Severity.WARNING if level == 2 else Severity.CRITICAL
         return _act(context, mode, action, f"Battery {'low' if level == 2 else 'critical'}: {percent:.0f} %", severity)
 
-    def _gps(self, context: ManoeuvreContext, mode: Mode, *, is_gps_lost: bool) -> Manoeuvre | None:
+    def _gps(self, context: ManoeuvreContext, mode: FlightMode, *, is_gps_lost: bool) -> Manoeuvre | None:
         if not is_gps_lost:
             if self._gps_lost_since_s is not None:
                 context.report("GPS fix again")
@@ -58,7 +58,7 @@ class Failsafes:
         return _act(context, mode, context.settings.gps_lost_action, "GPS lost", Severity.CRITICAL)
 
 
-def _act(context: ManoeuvreContext, mode: Mode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
+def _act(context: ManoeuvreContext, mode: FlightMode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
     manoeuvre = _manoeuvre(action)
     if manoeuvre is None or not context.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
         context.report(why, severity)
@@ -238,7 +238,7 @@ class Autopilot:
             self.body.plant.set_grounded(True)
             context.camera.stop()
             context.heading_deg = context.looks_at = None
-            if self.manoeuvre.mode is not Mode.HOLD:
+            if self.manoeuvre.mode is not FlightMode.HOLD:
                 self.begin(Hold(), is_own=True)
         self.revision += 1
 
@@ -254,5 +254,5 @@ class Autopilot:
     def _take_photo(self) -> None:
         context, motion = self.context, self.body.motion
         position = context.position_of(context.here)
-        item = self.manoeuvre.index if isinstance(self.manoeuvre, Mission) else None
+        item = self.manoeuvre.index if isinstance(self.manoeuvre, MissionManoeuvre) else None
         context.events.append(PhotoTaken(self.now_s, context.camera.number, position, motion.altitude_amsl_m, context.facing_deg, item))

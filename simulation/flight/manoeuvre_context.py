@@ -8,12 +8,12 @@ from inspection.geodesy.local_frame import LocalFrame
 from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.camera import Camera
 from simulation.flight.course import Vector, Via, course
-from simulation.flight.events import Event, StatusText
+from simulation.flight.events import Event, StatusTextSent
 from simulation.flight.faults import Faults
 from simulation.flight.guidance import Gate, Guidance
-from simulation.flight.orders import Above, Place
-from simulation.flight.plant import Ground
-from simulation.flight.states import Haven, Severity
+from simulation.flight.orders import Above, OrderPlace
+from simulation.flight.plant import TerrainHeights
+from simulation.flight.states import RallyPoint, Severity
 
 
 @dataclass
@@ -25,7 +25,7 @@ class ManoeuvreContext:
 
     airframe: Airframe
     settings: Settings
-    ground: Ground
+    ground: TerrainHeights
     home: LonLat
     home_amsl_m: float
     frame: LocalFrame
@@ -38,7 +38,7 @@ class ManoeuvreContext:
     velocity: Vector = (0.0, 0.0, 0.0)
     agl_m: float = 0.0
     facing_deg: float = 0.0
-    havens: tuple[Haven, ...] = ()
+    rally_points: tuple[RallyPoint, ...] = ()
     flown_m: float = 0.0
     is_armed: bool = False
     is_in_air: bool = False
@@ -47,7 +47,7 @@ class ManoeuvreContext:
     events: list[Event] = field(default_factory=list)
 
     def report(self, text: str, severity: Severity = Severity.INFO) -> None:
-        self.events.append(StatusText(self.now_s, text, severity))
+        self.events.append(StatusTextSent(self.now_s, text, severity))
 
     def level_of(self, position: LonLat) -> tuple[float, float]:
         """East and north of home [m]."""
@@ -58,7 +58,7 @@ class ManoeuvreContext:
         lon = self.home.lon + place[0] / self.frame.metres_per_degree_east
         return LonLat(lon, self.home.lat + place[1] / self.frame.metres_per_degree_north)
 
-    def vector_of(self, place: Place) -> Vector:
+    def vector_of(self, place: OrderPlace) -> Vector:
         """Where a mission's place is; what it leaves open is where the UAV is."""
         east_m, north_m = self.here[:2] if place.position is None else self.level_of(place.position)
         if place.height_m is None:
@@ -70,9 +70,9 @@ class ManoeuvreContext:
         ground_m = self.ground.elevation_m(self.position_of((east_m, north_m, 0.0)))
         return east_m, north_m, place.height_m + (ground_m - self.home_amsl_m if math.isfinite(ground_m) else 0.0)
 
-    def nearest_haven(self) -> Vector:
+    def nearest_rally_point(self) -> Vector:
         """Where a return leads: home, or the rally point that is nearer; its height is the point's own."""
-        points = [(*self.level_of(haven.position), haven.height_relative_m) for haven in self.havens]
+        points = [(*self.level_of(rally_point.position), rally_point.height_relative_m) for rally_point in self.rally_points]
         return min([(0.0, 0.0, 0.0), *points], key=lambda point: math.dist(point[:2], self.here[:2]))
 
     def fly_through(self, vias: list[Via], gates: dict[int, Gate] | None = None) -> None:

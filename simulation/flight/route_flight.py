@@ -14,11 +14,11 @@ from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
 from planning.trajectory.waypoints import WaypointKind
 from simulation.flight.airframe import Airframe
-from simulation.flight.events import ItemReached, ModeChanged, StatusText
+from simulation.flight.events import ItemReached, ModeChanged, StatusTextSent
 from simulation.flight.faults import Weather
-from simulation.flight.flown import Ending, Flown, fly_mission
+from simulation.flight.flown import Ending, FlownFlightLog, fly_mission
 from simulation.flight.orders import FlyTo, orders
-from simulation.flight.states import Mode, Severity
+from simulation.flight.states import FlightMode, Severity
 from simulation.flight.uav import SimulatedUav
 
 MAX_WAYPOINTS = 9_000
@@ -136,7 +136,7 @@ def _beside_m(points: FloatArray, start: LonLat, end: LonLat) -> FloatArray:
 class RouteFlight:
     """`cross_track_m` (n,) of each step between the first and the last waypoint."""
 
-    flown: Flown
+    flown: FlownFlightLog
     cross_track_m: np.ndarray[Any, np.dtype[np.float64]]
     reasons: tuple[str, ...]
 
@@ -173,7 +173,7 @@ def fly_route(
     return RouteFlight(flown, beside, tuple(_reasons(flown, route, weather, airframe, beside, missed)))
 
 
-def _beside(flown: Flown, route: RouteFile, passed_s: list[float]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _beside(flown: FlownFlightLog, route: RouteFile, passed_s: list[float]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """From when the first waypoint was passed to when the last was, or to the end of a flight that did not come so far."""
     if not passed_s:
         return np.zeros(0)
@@ -187,7 +187,12 @@ def _beside(flown: Flown, route: RouteFile, passed_s: list[float]) -> np.ndarray
 
 
 def _reasons(
-    flown: Flown, route: RouteFile, weather: Weather, airframe: Airframe, beside: np.ndarray[Any, np.dtype[np.float64]], missed: list[int]
+    flown: FlownFlightLog,
+    route: RouteFile,
+    weather: Weather,
+    airframe: Airframe,
+    beside: np.ndarray[Any, np.dtype[np.float64]],
+    missed: list[int],
 ) -> list[str]:
     reasons = []
     if flown.refusal is not None:
@@ -202,12 +207,14 @@ def _reasons(
     if missed:
         words = f"waypoint {missed[0] + 1}" if len(missed) == 1 else f"{len(missed)} waypoints, waypoint {missed[0] + 1} the first,"
         reasons.append(f"Not reached: {words} of {len(route.positions)}.")
-    own = next((event for event in flown.events if isinstance(event, ModeChanged) and event.is_own and event.mode is not Mode.HOLD), None)
+    own = next(
+        (event for event in flown.events if isinstance(event, ModeChanged) and event.is_own and event.mode is not FlightMode.HOLD), None
+    )
     if own is not None:
         why = [
             stated.text
             for stated in flown.events
-            if isinstance(stated, StatusText) and stated.severity is not Severity.INFO and stated.at_s <= own.at_s
+            if isinstance(stated, StatusTextSent) and stated.severity is not Severity.INFO and stated.at_s <= own.at_s
         ]
         reasons.append(f"The UAV gave the mission up after {own.at_s:.0f} s. {why[-1] if why else ''}".strip())
     if flown.ending is Ending.FLYING:

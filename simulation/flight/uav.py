@@ -12,12 +12,23 @@ from simulation.flight.camera import Camera
 from simulation.flight.events import Event
 from simulation.flight.faults import Faults, Weather
 from simulation.flight.guidance import Guidance
-from simulation.flight.manoeuvre_context import Cockpit
-from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOff
-from simulation.flight.mission import Mission, first_to_fly
+from simulation.flight.manoeuvre_context import ManoeuvreContext
+from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOffManoeuvre
+from simulation.flight.mission import MissionManoeuvre, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
-from simulation.flight.plant import FlatGround, Ground
-from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, Severity, UavState
+from simulation.flight.plant import FlatGround, TerrainHeights
+from simulation.flight.states import (
+    DONE,
+    FlightMode,
+    Gps,
+    Landed,
+    MissionItemState,
+    OrderRefused,
+    Outcome,
+    RallyPoint,
+    Severity,
+    SimulatedState,
+)
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
 SETTLES_S = 2.0  # on the ground, until the model rests
@@ -25,21 +36,28 @@ MIN_SPEED_MPS = 0.2
 
 
 def reported(
-    body: Body, cockpit: Cockpit, manoeuvre: Manoeuvre, *, current_item: int, mission: MissionState, is_crashed: bool, is_gps_lost: bool
-) -> UavState:
+    body: Body,
+    context: ManoeuvreContext,
+    manoeuvre: Manoeuvre,
+    *,
+    current_item: int,
+    mission: MissionItemState,
+    is_crashed: bool,
+    is_gps_lost: bool,
+) -> SimulatedState:
     motion = body.motion
     volts, amperes = body.volts_and_amperes()
-    return UavState(
-        at_s=cockpit.now_s,
-        position=cockpit.position_of(cockpit.here),
+    return SimulatedState(
+        at_s=context.now_s,
+        position=context.position_of(context.here),
         true_position=body.position,
         altitude_amsl_m=motion.altitude_amsl_m,
-        altitude_relative_m=cockpit.here[2],
+        altitude_relative_m=context.here[2],
         altitude_agl_m=body.agl_m,
         velocity_ned_mps=(motion.north_mps, motion.east_mps, motion.down_mps),
         roll_deg=math.degrees(motion.roll_rad),
         pitch_deg=math.degrees(motion.pitch_rad),
-        heading_deg=cockpit.facing_deg,
+        heading_deg=context.facing_deg,
         roll_rate_dps=math.degrees(motion.roll_rad_s),
         pitch_rate_dps=math.degrees(motion.pitch_rad_s),
         yaw_rate_dps=math.degrees(motion.yaw_rad_s),
@@ -50,26 +68,26 @@ def reported(
         battery_used_wh=body.used_wh,
         battery_v=volts,
         battery_a=amperes,
-        is_armed=cockpit.is_armed,
-        is_in_air=cockpit.is_in_air,
-        landed=_landed(cockpit, manoeuvre),
+        is_armed=context.is_armed,
+        is_in_air=context.is_in_air,
+        landed=_landed(context, manoeuvre),
         mode=manoeuvre.mode,
         is_crashed=is_crashed,
         gps=NO_FIX if is_gps_lost else FIX,
         current_item=current_item,
         mission_state=mission,
-        home=cockpit.home,
-        home_amsl_m=cockpit.home_amsl_m,
-        target_speed_mps=cockpit.speed_mps,
+        home=context.home,
+        home_amsl_m=context.home_amsl_m,
+        target_speed_mps=context.speed_mps,
     )
 
 
-def _landed(cockpit: Cockpit, manoeuvre: Manoeuvre) -> Landed:
-    if not cockpit.is_in_air:
-        return Landed.TAKING_OFF if cockpit.is_armed and manoeuvre.lifts_off else Landed.ON_GROUND
+def _landed(context: ManoeuvreContext, manoeuvre: Manoeuvre) -> Landed:
+    if not context.is_in_air:
+        return Landed.TAKING_OFF if context.is_armed and manoeuvre.lifts_off else Landed.ON_GROUND
     if manoeuvre.is_landing:
         return Landed.LANDING
-    return Landed.TAKING_OFF if manoeuvre.mode is Mode.TAKE_OFF else Landed.IN_AIR
+    return Landed.TAKING_OFF if manoeuvre.mode is FlightMode.TAKE_OFF else Landed.IN_AIR
 
 
 class SimulatedUav:
@@ -85,7 +103,7 @@ class SimulatedUav:
         airframe: Airframe,
         home: LonLat,
         *,
-        ground: Ground | None = None,
+        ground: TerrainHeights | None = None,
         weather: Weather | None = None,
         seed: int = 0,
         heading_deg: float = 0.0,
@@ -108,7 +126,7 @@ class SimulatedUav:
             battery_percent=battery_percent,
             physics_hz=physics_hz,
         )
-        self._cockpit = Cockpit(
+        self._context = ManoeuvreContext(
             airframe=airframe,
             settings=settings or Settings(),
             ground=ground,
@@ -123,10 +141,10 @@ class SimulatedUav:
         self.items: tuple[MissionItem, ...] = ()
         self._orders: tuple[Order, ...] = ()
         self._first = 0
-        self._mission: Mission | None = None
-        self._pilot = Autopilot(body, self._cockpit)
-        self._state: UavState | None = None
-        self._told_at = -1
+        self._mission: MissionManoeuvre | None = None
+        self._pilot = Autopilot(body, self._context)
+        self._state: SimulatedState | None = None
+        self._reported_at = -1
         self.faults = faults or Faults()
 
     # --- what it is told -----------------------------------------------------------------------------------------------------------
@@ -141,35 +159,35 @@ class SimulatedUav:
 
     @property
     def settings(self) -> Settings:
-        return self._cockpit.settings
+        return self._context.settings
 
     @settings.setter
     def settings(self, settings: Settings) -> None:
-        self._cockpit.settings = settings
+        self._context.settings = settings
 
     @property
-    def havens(self) -> tuple[Haven, ...]:
+    def rally_points(self) -> tuple[RallyPoint, ...]:
         """Rally points: a return leads to the nearest of them, or home where that is nearer."""
-        return self._cockpit.havens
+        return self._context.rally_points
 
-    @havens.setter
-    def havens(self, havens: tuple[Haven, ...]) -> None:
-        self._cockpit.havens = havens
+    @rally_points.setter
+    def rally_points(self, rally_points: tuple[RallyPoint, ...]) -> None:
+        self._context.rally_points = rally_points
 
     @property
     def faults(self) -> Faults:
-        return self._cockpit.faults
+        return self._context.faults
 
     @faults.setter
     def faults(self, faults: Faults) -> None:
-        before = self._cockpit.faults
+        before = self._context.faults
         if faults.motor_failed != before.motor_failed:
             self._body.plant.fail_motor(faults.motor_failed)
             if faults.motor_failed is not None:
-                self._cockpit.report(f"Motor {faults.motor_failed + 1} has failed", Severity.CRITICAL)
+                self._context.report(f"Motor {faults.motor_failed + 1} has failed", Severity.CRITICAL)
         if faults.battery_wh_left is not None and faults.battery_wh_left != before.battery_wh_left:
             self._body.weaken(faults.battery_wh_left)
-        self._cockpit.faults = faults
+        self._context.faults = faults
         self._pilot.revision += 1
 
     def load(self, items: Sequence[MissionItem], *, is_home_first: bool = False) -> Outcome:
@@ -180,11 +198,11 @@ class SimulatedUav:
         try:
             read = orders(items, is_home_first=is_home_first)
         except CannotFly as error:
-            return Refused(error.code, str(error))
+            return OrderRefused(error.code, str(error))
         self.items, self._orders, self._first = tuple(items), read, first_to_fly(read, is_home_first=is_home_first)
-        self._mission = Mission(read, self._first) if len(read) > self._first else None
+        self._mission = MissionManoeuvre(read, self._first) if len(read) > self._first else None
         self._pilot.revision += 1
-        if self._pilot.manoeuvre.mode is Mode.MISSION:
+        if self._pilot.manoeuvre.mode is FlightMode.MISSION:
             self._pilot.begin(self._mission or Hold())
         return DONE
 
@@ -193,19 +211,19 @@ class SimulatedUav:
 
     def arm(self) -> Outcome:
         if self.is_crashed:
-            return Refused("crashed", "The UAV has crashed.")
-        if self._cockpit.is_armed:
+            return OrderRefused("crashed", "The UAV has crashed.")
+        if self._context.is_armed:
             return DONE
         if self.battery_percent <= self.settings.battery_critical_percent:
-            return Refused("battery", f"The battery holds {self.battery_percent:.0f} %.")
+            return OrderRefused("battery", f"The battery holds {self.battery_percent:.0f} %.")
         if self.is_gps_lost:
-            return Refused("gps", "There is no GPS fix.")
+            return OrderRefused("gps", "There is no GPS fix.")
         self._pilot.arm()
         return DONE
 
     def disarm(self, *, force: bool = False) -> Outcome:
-        if self._cockpit.is_in_air and not force:
-            return Refused("in-air", "The UAV is in the air.")
+        if self._context.is_in_air and not force:
+            return OrderRefused("in-air", "The UAV is in the air.")
         self._pilot.disarm()
         return DONE
 
@@ -213,71 +231,75 @@ class SimulatedUav:
         """Straight up; a UAV that is not armed yet does so once it is. None: as high as the settings have it."""
         height_m = self.settings.take_off_height_m if height_relative_m is None else height_relative_m
         if not (math.isfinite(height_m) and 0.5 <= height_m <= 1_000.0):
-            return Refused("height", f"A take-off to {height_m:g} m is not flown.")
-        return self._order(TakeOff(height_m))
+            return OrderRefused("height", f"A take-off to {height_m:g} m is not flown.")
+        return self._order(TakeOffManoeuvre(height_m))
 
-    def set_mode(self, mode: Mode) -> Outcome:
-        if mode is Mode.MISSION:
+    def set_mode(self, mode: FlightMode) -> Outcome:
+        if mode is FlightMode.MISSION:
             return self._fly_mission()
-        if mode is Mode.TAKE_OFF:
+        if mode is FlightMode.TAKE_OFF:
             return self.take_off()
-        if mode is Mode.GO_TO:
-            return self._order(Hold()) if self._pilot.manoeuvre.mode is not Mode.GO_TO else DONE
-        return self._order(Return() if mode is Mode.RETURN else Land() if mode is Mode.LAND else Hold())
+        if mode is FlightMode.GO_TO:
+            return self._order(Hold()) if self._pilot.manoeuvre.mode is not FlightMode.GO_TO else DONE
+        return self._order(Return() if mode is FlightMode.RETURN else Land() if mode is FlightMode.LAND else Hold())
 
     def hold(self) -> Outcome:
-        return self.set_mode(Mode.HOLD)
+        return self.set_mode(FlightMode.HOLD)
 
     def land(self) -> Outcome:
-        return self.set_mode(Mode.LAND)
+        return self.set_mode(FlightMode.LAND)
 
     def return_home(self) -> Outcome:
-        return self.set_mode(Mode.RETURN)
+        return self.set_mode(FlightMode.RETURN)
 
     def go_to(self, position: LonLat, altitude_relative_m: float, heading_deg: float | None = None) -> Outcome:
         if not (abs(position.lon) <= 180.0 and abs(position.lat) <= 90.0 and abs(altitude_relative_m) <= 10_000.0):
-            return Refused("place", "That is no place to fly to.")
-        if not self._cockpit.is_in_air:
-            return Refused("on-ground", "The UAV is on the ground.")
-        east_m, north_m = self._cockpit.level_of(position)
+            return OrderRefused("place", "That is no place to fly to.")
+        if not self._context.is_in_air:
+            return OrderRefused("on-ground", "The UAV is on the ground.")
+        east_m, north_m = self._context.level_of(position)
         outcome = self._order(GoTo((east_m, north_m, altitude_relative_m)))
         if outcome.is_done and heading_deg is not None and math.isfinite(heading_deg):
-            self._cockpit.heading_deg = heading_deg % 360.0
+            self._context.heading_deg = heading_deg % 360.0
         return outcome
 
     def change_speed(self, speed_mps: float) -> Outcome:
         """Over ground, until a mission item says otherwise."""
         if not (math.isfinite(speed_mps) and speed_mps > 0.0):
-            return Refused("speed", "A speed is above 0.")
-        self._cockpit.speed_mps = min(max(speed_mps, MIN_SPEED_MPS), self.airframe.max_speed_mps)
+            return OrderRefused("speed", "A speed is above 0.")
+        self._context.speed_mps = min(max(speed_mps, MIN_SPEED_MPS), self.airframe.max_speed_mps)
         self._pilot.revision += 1
-        if self._cockpit.is_in_air and not self._pilot.manoeuvre.is_landing and self._pilot.manoeuvre.mode in (Mode.MISSION, Mode.GO_TO):
-            self._pilot.manoeuvre.begin(self._cockpit)
+        if (
+            self._context.is_in_air
+            and not self._pilot.manoeuvre.is_landing
+            and self._pilot.manoeuvre.mode in (FlightMode.MISSION, FlightMode.GO_TO)
+        ):
+            self._pilot.manoeuvre.begin(self._context)
         return DONE
 
     def set_current(self, index: int) -> Outcome:
         """The item to be flown next."""
         if not self._first <= index < len(self._orders):
-            return Refused("index", f"There is no item {index} to fly.")
-        self._mission = Mission(self._orders, index)
+            return OrderRefused("index", f"There is no item {index} to fly.")
+        self._mission = MissionManoeuvre(self._orders, index)
         self._pilot.revision += 1
-        if self._pilot.manoeuvre.mode is Mode.MISSION:
+        if self._pilot.manoeuvre.mode is FlightMode.MISSION:
             self._pilot.begin(self._mission)
         return DONE
 
     def _fly_mission(self) -> Outcome:
         if self._mission is None:
-            return Refused("no-mission", "There is no mission.")
+            return OrderRefused("no-mission", "There is no mission.")
         if self._mission.is_done:
-            if self._cockpit.is_in_air:
-                return Refused("complete", "The mission is complete.")
-            self._mission = Mission(self._orders, self._first)
+            if self._context.is_in_air:
+                return OrderRefused("complete", "The mission is complete.")
+            self._mission = MissionManoeuvre(self._orders, self._first)
         return self._order(self._mission)
 
     def _order(self, manoeuvre: Manoeuvre) -> Outcome:
         if self.is_crashed:
-            return Refused("crashed", "The UAV has crashed.")
-        self._cockpit.heading_deg = self._cockpit.looks_at = None
+            return OrderRefused("crashed", "The UAV has crashed.")
+        self._context.heading_deg = self._context.looks_at = None
         self._pilot.begin(manoeuvre)
         return DONE
 
@@ -302,15 +324,15 @@ class SimulatedUav:
 
     def take_events(self) -> list[Event]:
         """What happened since the last call."""
-        events, self._cockpit.events = self._cockpit.events, []
+        events, self._context.events = self._context.events, []
         return events
 
     @property
     def is_armed(self) -> bool:
-        return self._cockpit.is_armed
+        return self._context.is_armed
 
     @property
-    def mission_state(self) -> MissionState:
+    def mission_state(self) -> MissionItemState:
         return self._mission_state()
 
     @property
@@ -320,17 +342,17 @@ class SimulatedUav:
     @property
     def true_place(self) -> tuple[float, float, float, float, float]:
         """What a long record of a flight is made of, cheaper than `state`: seconds, lon, lat, height above home and above ground."""
-        motion, cockpit = self._body.motion, self._cockpit
-        return self.now_s, motion.lon_deg, motion.lat_deg, cockpit.here[2], cockpit.agl_m
+        motion, context = self._body.motion, self._context
+        return self.now_s, motion.lon_deg, motion.lat_deg, context.here[2], context.agl_m
 
     @property
-    def state(self) -> UavState:
+    def state(self) -> SimulatedState:
         """Of this step; made when it is asked for."""
-        if self._state is None or self._told_at != self._pilot.revision:
-            self._told_at = self._pilot.revision
+        if self._state is None or self._reported_at != self._pilot.revision:
+            self._reported_at = self._pilot.revision
             self._state = reported(
                 self._body,
-                self._cockpit,
+                self._context,
                 self._pilot.manoeuvre,
                 current_item=self._current_item(),
                 mission=self._mission_state(),
@@ -343,12 +365,12 @@ class SimulatedUav:
         mission = self._mission
         return 0 if mission is None else min(mission.index, len(self._orders) - 1)
 
-    def _mission_state(self) -> MissionState:
+    def _mission_state(self) -> MissionItemState:
         mission = self._mission
         if mission is None:
-            return MissionState.NONE
+            return MissionItemState.NONE
         if mission.is_done:
-            return MissionState.COMPLETE
+            return MissionItemState.COMPLETE
         if self._pilot.manoeuvre is mission:
-            return MissionState.ACTIVE
-        return MissionState.NOT_STARTED if mission.index == self._first else MissionState.PAUSED
+            return MissionItemState.ACTIVE
+        return MissionItemState.NOT_STARTED if mission.index == self._first else MissionItemState.PAUSED

@@ -16,26 +16,26 @@ from inspection.selectors.planning import PlanningGround, heights_at, planning_r
 from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
-from missions.services.commands.refused import Reason, Refused
+from missions.services.commands.refused import RefusalReason, Refused
 from missions.services.missions import note
-from simulation.assessment.flown import FlownRoute
-from simulation.assessment.judging import Verdict, judge, wind_finding
-from simulation.assessment.limits import Finding, Level, Limits, limits_to_json, worst
-from simulation.assessment.stored import track_to_json, verdict_to_json
+from simulation.assessment.flown import AssessedRoute
+from simulation.assessment.judging import Assessment, judge, wind_finding
+from simulation.assessment.limits import AssessmentLimits, Finding, Level, limits_to_json, worst
+from simulation.assessment.stored import assessment_to_json, track_to_json
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.events import Crashed, StatusText
-from simulation.flight.states import Mode, Outcome, Severity, UavState
+from simulation.flight.events import Crashed, StatusTextSent
+from simulation.flight.states import FlightMode, Outcome, Severity, SimulatedState
 from simulation.flight.uav import SimulatedUav
 from simulation.models import Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack, VerdictLevel
-from simulation.rehearsing.flying import MakeVehicle, Start, Vehicle, fly
+from simulation.rehearsing.flying import MakeVehicle, RehearsedVehicle, Start, fly
 from simulation.rehearsing.ground import BlockedGround, Heights
-from simulation.rehearsing.sky_weather import weather_of
-from simulation.rehearsing.weather_scenario import Named, Sky, named_sky, sky_from_json, sky_to_json
+from simulation.rehearsing.scenario_weather import weather_of
+from simulation.rehearsing.weather_scenario import Named, WeatherScenario, named_scenario, scenario_from_json, scenario_to_json
 from simulation.selectors import newest_finished, rehearsals_of_mission, requires_green
 from simulation.services.fleet import StandIn, stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan, surroundings_of
-from simulation.vehicle_protocol.fence import havens_of
+from simulation.vehicle_protocol.fence import rally_points_of
 from workspace.audit import record_change
 from workspace.jobs.services import cancel_job, create_job_within, finish_job
 from workspace.models import Job, Organisation, User
@@ -57,14 +57,14 @@ class RehearsedUav:
         return self._uav.now_s
 
     @property
-    def state(self) -> UavState:
+    def state(self) -> SimulatedState:
         return self._uav.state
 
     def step(self) -> None:
         self._uav.step()
 
     def load(self, items: Sequence[MissionItem], rally: Sequence[MissionItem]) -> Outcome:
-        self._uav.havens = havens_of(rally, self._uav.state.home_amsl_m)
+        self._uav.rally_points = rally_points_of(rally, self._uav.state.home_amsl_m)
         return self._uav.load(items)
 
     def arm(self) -> Outcome:
@@ -74,29 +74,29 @@ class RehearsedUav:
         return self._uav.take_off(height_relative_m)
 
     def start_mission(self) -> Outcome:
-        return self._uav.set_mode(Mode.MISSION)
+        return self._uav.set_mode(FlightMode.MISSION)
 
     def take_texts(self) -> list[str]:
         """What it has said of trouble since it was last asked. Why it has crashed is told once."""
         events = self._uav.take_events()
         reasons = [event.reason for event in events if isinstance(event, Crashed)]
-        stated = [event.text for event in events if isinstance(event, StatusText) and event.severity is not Severity.INFO]
+        stated = [event.text for event in events if isinstance(event, StatusTextSent) and event.severity is not Severity.INFO]
         return [text for text in stated if not any(text.endswith(reason) for reason in reasons)] + reasons
 
 
-def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
+def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terrain: Heights | None) -> MakeVehicle:
     """Makes the UAV for each flight: its airframe with the battery of the UAV that it stands in for, as full as the conditions say."""
     by_uav = {stand_in.uav: stand_in for stand_in in stand_ins}
-    weather = weather_of(sky)
+    weather = weather_of(scenario)
 
-    def make(start: Start) -> Vehicle:
+    def make(start: Start) -> RehearsedVehicle:
         stand_in = by_uav[start.uav]
         airframe = replace(AIRFRAMES[stand_in.airframe], battery_wh=stand_in.battery_wh)
         home_m = 0.0 if start.ground_amsl_m is None else start.ground_amsl_m
         ground = BlockedGround(None if start.ground_amsl_m is None else terrain, home_m)
         uav = SimulatedUav(
             airframe, start.home, ground=ground, weather=weather, seed=start.seed, heading_deg=start.heading_deg,
-            battery_percent=sky.battery_percent,
+            battery_percent=scenario.battery_percent,
         )  # fmt: skip
         return RehearsedUav(uav)
 
@@ -142,7 +142,9 @@ class GroundChanged(Exception):
     """Some of it was flown over other ground than there is now."""
 
 
-def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed: int = 7, afresh: bool = False) -> Rehearsal:
+def start_rehearsal(
+    *, mission: Mission, actor: User, scenarios: Sequence[WeatherScenario], seed: int = 7, afresh: bool = False
+) -> Rehearsal:
     """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs.
 
     What was flown alike lately is taken over and not flown again, unless `afresh`.
@@ -163,7 +165,7 @@ def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed
             job=job,
             content_sha256=plan.content_sha256,
             mission_revision=mission.revision,
-            ground_revision=ground.edition[0],
+            ground_revision=ground.dataset_version[0],
             ground_sha256=ground_of_plan(plan, ground),
             uavs=[stand_in_to_json(stand_in) for stand_in in plan.stand_ins],
             seed=seed,
@@ -171,10 +173,15 @@ def start_rehearsal(*, mission: Mission, actor: User, skies: Sequence[Sky], seed
             created_by=actor,
         )
         RehearsalRun.objects.bulk_create(
-            RehearsalRun(rehearsal=rehearsal, sequence=number, conditions=sky_to_json(sky)) for number, sky in enumerate(skies)
+            RehearsalRun(rehearsal=rehearsal, sequence=number, conditions=scenario_to_json(scenario))
+            for number, scenario in enumerate(scenarios)
         )
         _forget_old(mission)
-        facts = {"rehearsal": str(rehearsal.pk), "conditions": [str(sky.code) for sky in skies], "sha256": plan.content_sha256}
+        facts = {
+            "rehearsal": str(rehearsal.pk),
+            "conditions": [str(scenario.code) for scenario in scenarios],
+            "sha256": plan.content_sha256,
+        }
         note(mission, actor, "rehearse", before=None, after=facts)
     return rehearsal
 
@@ -213,12 +220,12 @@ def _stand_on(rehearsal: Rehearsal, plan: PlanToFly, ground: PlanningGround) -> 
             if known != now:
                 raise GroundChanged
             return
-        held.ground_revision, held.ground_sha256 = ground.edition[0], now
+        held.ground_revision, held.ground_sha256 = ground.dataset_version[0], now
         held.save(update_fields=["ground_revision", "ground_sha256"])
 
 
-def limits_of_settings() -> Limits:
-    return Limits.of(
+def limits_of_settings() -> AssessmentLimits:
+    return AssessmentLimits.of(
         settings.FLIGHT_RULES,
         settings.SEPARATION_RULES,
         zone_beside_m=settings.GRAPH_RULES.zone_clearance_m,
@@ -235,36 +242,36 @@ def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], N
 
 def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: int, on_progress: Callable[[float], None]) -> None:
     began_s = time.monotonic()
-    sky = sky_from_json(run.conditions)
-    maker = vehicle_maker(plan.stand_ins, sky, heights_at(ground.edition))
+    scenario = scenario_from_json(run.conditions)
+    maker = vehicle_maker(plan.stand_ins, scenario, heights_at(ground.dataset_version))
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
     around = surroundings_of(plan, ground)
-    verdict = judge(flown, around, limits_of_settings(), known=[*_too_windy(plan, sky), *_begun_in_air(plan)])
+    verdict = judge(flown, around, limits_of_settings(), known=[*_too_windy(plan, scenario), *_mid_air_starts(plan)])
     _store(run, flown, verdict, time.monotonic() - began_s)
 
 
-def _too_windy(plan: PlanToFly, sky: Sky) -> list[Finding]:
+def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[Finding]:
     """For the UAV, or for the airframe that flies for it: the one that flies slower."""
     found = (
-        wind_finding(route.uav, route.route, sky.conditions, min(route.limit_mps, AIRFRAMES[stand_in.airframe].max_airspeed_mps))
+        wind_finding(route.uav, route.route, scenario.conditions, min(route.limit_mps, AIRFRAMES[stand_in.airframe].max_airspeed_mps))
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
     )
     return [finding for finding in found if finding is not None]
 
 
-def _begun_in_air(plan: PlanToFly) -> list[Finding]:
+def _mid_air_starts(plan: PlanToFly) -> list[Finding]:
     """Of those that take over in the air: there they have no take-off of their own, and what is left of a battery."""
     return [Finding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
 
 
-def _store(run: RehearsalRun, flown: Sequence[FlownRoute], verdict: Verdict, took_s: float) -> None:
+def _store(run: RehearsalRun, flown: Sequence[AssessedRoute], verdict: Assessment, took_s: float) -> None:
     """Once, whole or not at all: another worker that has taken over finds either all of it or nothing."""
     with transaction.atomic():
         held = RehearsalRun.objects.select_for_update(of=("self",)).select_related("rehearsal").get(pk=run.pk)
         if held.finished_at is not None or held.rehearsal.ground_sha256 != run.rehearsal.ground_sha256:
             return
-        held.verdict, held.level, held.took_s = verdict_to_json(verdict), str(verdict.level), took_s
+        held.verdict, held.level, held.took_s = assessment_to_json(verdict), str(verdict.level), took_s
         held.finished_at = timezone.now()
         held.save()
         RehearsalTrack.objects.bulk_create(RehearsalTrack(run=held, uav=route.uav, flights=track_to_json(route.tracks)) for route in flown)
@@ -286,7 +293,7 @@ def _forget_old(mission: Mission) -> None:
         old.delete()
 
 
-def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
+def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
     """Why a mission may not be approved yet, and what to do; none where nobody asks for a rehearsal."""
     if not requires_green(mission.organisation_id):
         return []
@@ -298,20 +305,20 @@ def reasons_without_rehearsal(mission: Mission) -> list[Reason]:
     if newest is None:
         if rehearsals_of_mission(mission.organisation, mission.pk).exclude(level="").exists():
             words = _("The plan has changed since it was rehearsed. Rehearse it again: your organisation approves only what has passed.")
-            return [Reason("rehearsal_outdated", words)]
-        return [Reason("not_rehearsed", _("Rehearse the mission first: your organisation approves only what has passed."))]
+            return [RefusalReason("rehearsal_outdated", words)]
+        return [RefusalReason("not_rehearsed", _("Rehearse the mission first: your organisation approves only what has passed."))]
     if newest.level == VerdictLevel.FAIL:
         words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
-        return [Reason("rehearsal_failed", words)]
+        return [RefusalReason("rehearsal_failed", words)]
     if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
         words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")
-        return [Reason("rehearsal_without_planned_conditions", words)]
-    if not newest.runs.filter(conditions=sky_to_json(named_sky(Named.AS_PLANNED, plan.conditions))).exists():
+        return [RefusalReason("rehearsal_without_planned_conditions", words)]
+    if not newest.runs.filter(conditions=scenario_to_json(named_scenario(Named.AS_PLANNED, plan.conditions))).exists():
         words = _("The mission is planned for other wind or temperature than it was rehearsed in. Rehearse it again.")
-        return [Reason("rehearsal_in_other_air", words)]
+        return [RefusalReason("rehearsal_in_other_air", words)]
     if not _is_on_this_ground(newest, plan):
         words = _("Zones, terrain, towers or wires about the routes have changed since the mission was rehearsed. Rehearse it again.")
-        return [Reason("rehearsal_on_other_ground", words)]
+        return [RefusalReason("rehearsal_on_other_ground", words)]
     return []
 
 

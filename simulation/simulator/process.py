@@ -16,28 +16,28 @@ from inspection.geodesy import LonLat
 from inspection.selectors.planning import heights_at, planning_read
 from missions.models import CredentialKind, Uav
 from missions.services.fleet.credentials import mavlink_signing_key
-from operation import pulse
-from operation.snapshots import Described, Snapshot, Values
-from simulation.flight.faults import WrongFaults, faults_told
+from operation import loop_heartbeats
+from operation.snapshots import Described, SnapshotCollector, Values
+from simulation.flight.faults import WrongFaults, faults_from
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from simulation.rehearsing.ground import BlockedGround
-from simulation.rehearsing.sky_weather import weather_of
-from simulation.rehearsing.weather_scenario import sky_from_json
+from simulation.rehearsing.scenario_weather import weather_of
+from simulation.rehearsing.weather_scenario import scenario_from_json
 from simulation.services.simulator_leases import (
     end_single_ones,
     end_those_over,
     fail_simulation,
+    notify,
     release_simulations,
     renew_simulations,
     take_changes,
     take_simulation,
-    tell,
 )
 from simulation.simulator.flight import RunningSimulation, flight_of
 from simulation.simulator.options import SimulatorOptions
 from simulation.vehicle_endpoint.fleet import InvalidSpeed, VehicleChange
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.leases import held_until_s
 
@@ -56,19 +56,19 @@ def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Simula
     """Over the stored terrain; a ground height that was said holds where it is known from nowhere else. Raises NoGateway."""
     if vehicle.uav is not None and options.gateway is None:
         raise NoGateway
-    position, sky = LonLat(*vehicle.position.coords), sky_from_json(vehicle.conditions)
+    position, scenario = LonLat(*vehicle.position.coords), scenario_from_json(vehicle.conditions)
     return Launch(
         system=vehicle.system_id,
         home=position,
         airframe=vehicle.airframe,
         battery_wh=vehicle.battery_wh,
-        flavour=Flavour(vehicle.flavour),
+        autopilot_type=SimulatedAutopilot(vehicle.flavour),
         key=None if vehicle.uav is None else _key_of(vehicle.uav),
         seed=simulation.seed + vehicle.sequence,
         heading_deg=vehicle.heading_deg,
-        battery_percent=sky.battery_percent,
-        ground=BlockedGround(heights_at(planning_read().edition), vehicle.ground_amsl_m or 0.0),
-        weather=weather_of(sky),
+        battery_percent=scenario.battery_percent,
+        ground=BlockedGround(heights_at(planning_read().dataset_version), vehicle.ground_amsl_m or 0.0),
+        weather=weather_of(scenario),
         talks_to=[] if vehicle.uav is None or options.gateway is None else [options.gateway],
         listens_at=None if vehicle.port is None else (options.host, vehicle.port),
     )
@@ -86,21 +86,21 @@ class Simulator:
     options: SimulatorOptions
     flights: dict[UUID, RunningSimulation] = field(default_factory=dict)
     _stop: threading.Event = field(default_factory=threading.Event)
-    _told_s: float = 0.0
+    _reported_s: float = 0.0
     _quiet_until_s: float = -UNAVAILABLE_INTERVAL_S
 
     def run(self) -> None:
         logger.info("simulator %s has begun", self.options.holder)
         while not self._stop.is_set():
-            pulse.beat(LOOP, within_s=HANGS_AFTER_S)
+            loop_heartbeats.send_heartbeat(LOOP, within_s=HANGS_AFTER_S)
             try:
                 close_old_connections()
                 self.round()
             except DATABASE_UNAVAILABLE as error:
                 self._go_on_without_database(error)
             self._stop.wait(INTERVAL_S)
-        pulse.rest(LOOP)
-        self._give_back()
+        loop_heartbeats.stop(LOOP)
+        self._release()
 
     def stop(self) -> None:
         self._stop.set()
@@ -112,10 +112,10 @@ class Simulator:
         self._take()
         for change in take_changes(ids=list(self.flights)) if self.flights else ():
             self._pass_on(change)
-        if time.monotonic() - self._told_s >= REPORT_INTERVAL_S:
-            self._told_s = time.monotonic()
+        if time.monotonic() - self._reported_s >= REPORT_INTERVAL_S:
+            self._reported_s = time.monotonic()
             for key, flight in self.flights.items():
-                tell(simulation_id=key, holder=self.options.holder, pace=flight.pace(), vehicles=flight.told())
+                notify(simulation_id=key, holder=self.options.holder, pace=flight.pace(), vehicles=flight.reported())
 
     @property
     def load(self) -> float:
@@ -179,8 +179,8 @@ class Simulator:
             flight.post(
                 VehicleChange(
                     system=None if change.vehicle is None else change.vehicle.system_id,
-                    weather=None if change.conditions is None else weather_of(sky_from_json(change.conditions)),
-                    faults=None if change.faults is None else faults_told(change.faults),
+                    weather=None if change.conditions is None else weather_of(scenario_from_json(change.conditions)),
+                    faults=None if change.faults is None else faults_from(change.faults),
                     speed=change.speed,
                 )
             )
@@ -195,7 +195,7 @@ class Simulator:
             logger.warning("the database is away, no simulation is taken or changed: %s", type(error).__name__)
         self._let_go()
 
-    def _give_back(self) -> None:
+    def _release(self) -> None:
         self._end_all()
         try:
             release_simulations(holder=self.options.holder)
@@ -220,9 +220,9 @@ DESCRIBED = (
 )
 
 
-def figures_of(simulator: Simulator) -> Snapshot:
+def figures_of(simulator: Simulator) -> SnapshotCollector:
     """To be told for as long as it is entered."""
-    return Snapshot(DESCRIBED, _Reading(simulator).read)
+    return SnapshotCollector(DESCRIBED, _Reading(simulator).read)
 
 
 class _Reading:
@@ -240,16 +240,16 @@ class _Reading:
             self._before.update(self._done.pop(gone))
             self._seen.pop(gone, None)
         shares = [share for key, flight in flights.items() if (share := self._share(key, flight, now_s)) is not None]
-        told = sum(self._done.values(), self._before.copy())
+        reported = sum(self._done.values(), self._before.copy())
         return {
             UAVS: {(): sum(len(flight.vehicles) for flight in flights.values())},
             SPEED: {(): sum(flight.load for flight in flights.values())},
             KEPT: {(): min(shares, default=1.0)},
-            STEPS: {("on-time",): told["steps"] - told["late"], ("late",): told["late"]},
-            SLIPPED: {(): told["slipped_ms"] / 1_000},
+            STEPS: {("on-time",): reported["steps"] - reported["late"], ("late",): reported["late"]},
+            SLIPPED: {(): reported["slipped_ms"] / 1_000},
         }
 
-    def _share(self, key: UUID, flight: Flight, now_s: float) -> float | None:
+    def _share(self, key: UUID, flight: RunningSimulation, now_s: float) -> float | None:
         report = flight.fleet.report()
         self._done[key] = Counter(steps=report.steps, late=report.late_steps, slipped_ms=round(report.slipped_s * 1_000))
         before_s, at_s = self._seen.get(key, (report.simulated_s, now_s))

@@ -9,7 +9,7 @@ from simulation.flight.faults import Faults, Weather
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_endpoint.radio import Radio
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.signed_link import SignedLink
 from simulation.vehicle_protocol.streams import Outgoing, Station
 
@@ -21,7 +21,7 @@ class FlyingUav:
     uav: SimulatedUav
     system: int
     radio: Radio
-    flavour: Flavour = Flavour.PX4
+    autopilot_type: SimulatedAutopilot = SimulatedAutopilot.PX4
     key: bytes | None = field(default=None, repr=False)
     sent: int = 0
     received_count: int = 0
@@ -30,7 +30,9 @@ class FlyingUav:
     _signed: SignedLink = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        self.endpoint = Endpoint(self.uav, flavour=self.flavour, system=self.system, unix_at_zero_s=time.time() - time.monotonic())
+        self.endpoint = Endpoint(
+            self.uav, autopilot_type=self.autopilot_type, system=self.system, unix_at_zero_s=time.time() - time.monotonic()
+        )
         self._signed = SignedLink(self.system, self.key, self.uav.faults.clock_offset_s)
 
     def step(self) -> None:

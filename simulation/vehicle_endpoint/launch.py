@@ -12,7 +12,7 @@ from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
 MAX_SYSTEM_ID = 250  # those above are ground stations
 METRES_PER_DEGREE = 111_195.0
@@ -26,7 +26,7 @@ class Launch:
     home: LonLat
     airframe: str = "iris"
     battery_wh: float | None = None
-    flavour: Flavour = Flavour.PX4
+    autopilot_type: SimulatedAutopilot = SimulatedAutopilot.PX4
     key: bytes | None = field(default=None, repr=False)
     seed: int = 0
     heading_deg: float = 0.0
@@ -53,7 +53,7 @@ def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
                 battery_percent=launch.battery_percent,
                 faults=launch.faults,
             )
-            uavs.append(FlyingUav(uav, launch.system, Radio(launch.talks_to, launch.listens_at), launch.flavour, launch.key))
+            uavs.append(FlyingUav(uav, launch.system, Radio(launch.talks_to, launch.listens_at), launch.autopilot_type, launch.key))
     except BaseException:
         for flying in uavs:
             flying.radio.close()

@@ -14,15 +14,15 @@ from mavlink.mission_items import position_e7
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight import events
 from simulation.flight.airframe import Settings
-from simulation.flight.states import Refused, Severity, UavState
+from simulation.flight.states import OrderRefused, Severity, SimulatedState
 from simulation.vehicle_protocol import requests
-from simulation.vehicle_protocol.command_door import NotFinite, acknowledgement, command_of
-from simulation.vehicle_protocol.fence import MODES, FenceAction, FenceWatch, fence_of, havens_of
+from simulation.vehicle_protocol.command_endpoint import NotFinite, acknowledgement, command_of
+from simulation.vehicle_protocol.fence import MODES, FenceAction, FenceWatch, fence_of, rally_points_of
 from simulation.vehicle_protocol.mission_server import MissionServer
-from simulation.vehicle_protocol.mode_numbers import AUTO, Flavour
+from simulation.vehicle_protocol.mode_numbers import AUTO, SimulatedAutopilot
 from simulation.vehicle_protocol.parameters import parameters_of, settings_at_start
 from simulation.vehicle_protocol.pilot import DENIED, FAILED, UNSUPPORTED, Pilot
-from simulation.vehicle_protocol.reports import REPORTS, Report, heartbeat, mission_current
+from simulation.vehicle_protocol.reports import REPORTS, SimulatedReport, heartbeat, mission_current
 from simulation.vehicle_protocol.requests import Requests
 from simulation.vehicle_protocol.streams import Outgoing, Station, Streams, is_for
 from simulation.vehicle_protocol.vehicle import Vehicle
@@ -50,19 +50,19 @@ def text_messages(text: str, severity: int, number: int) -> list[Message]:
 class Endpoint:
     """Times are monotonic seconds of the wall; `unix_at_zero_s` is the time of day when they were 0, by the vehicle's own clock."""
 
-    def __init__(self, vehicle: Vehicle, *, flavour: Flavour, system: int, unix_at_zero_s: float) -> None:
+    def __init__(self, vehicle: Vehicle, *, autopilot_type: SimulatedAutopilot, system: int, unix_at_zero_s: float) -> None:
         self.vehicle = vehicle
-        self.flavour = flavour
+        self.autopilot_type = autopilot_type
         self.system = system
         self.unix_at_zero_s = unix_at_zero_s
-        settings = settings_at_start(vehicle.settings, flavour)
+        settings = settings_at_start(vehicle.settings, autopilot_type)
         vehicle.settings = settings
-        self.pilot = Pilot(vehicle, flavour)
-        self.parameters = parameters_of(flavour, system, settings, self._configure)
-        self.streams = Streams(flavour, phase=float(system))
-        self.missions = MissionServer(flavour, self._replace, self._home_item, self._current_item)
-        self._fence = FenceWatch(flavour, self.parameters)
-        self._requests = Requests(flavour, system, self.streams, self._report)
+        self.pilot = Pilot(vehicle, autopilot_type)
+        self.parameters = parameters_of(autopilot_type, system, settings, self._configure)
+        self.streams = Streams(autopilot_type, phase=float(system))
+        self.missions = MissionServer(autopilot_type, self._replace, self._home_item, self._current_item)
+        self._fence = FenceWatch(autopilot_type, self.parameters)
+        self._requests = Requests(autopilot_type, system, self.streams, self._report)
         self._now_s = 0.0
         self._heartbeat_due_s = -math.inf
         self._reported: tuple[int, bool] | None = None  # mode and arming of the last heartbeat
@@ -146,21 +146,21 @@ class Endpoint:
         if kind is MissionType.FENCE:
             self._fence.fence = fence_of(items)
         if kind is MissionType.RALLY:
-            self.vehicle.havens = havens_of(items, self.vehicle.state.home_amsl_m)
+            self.vehicle.rally_points = rally_points_of(items, self.vehicle.state.home_amsl_m)
         if kind is not MissionType.MISSION:
             self.parameters.show(f"{kind.name}_TOTAL", float(len(items)))
             return int(mavlink.MAV_MISSION_ACCEPTED)
         is_flown = self.vehicle.state.is_armed and self.pilot.custom_mode == AUTO
-        if self.flavour is Flavour.ARDUPILOT and not items and is_flown:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and not items and is_flown:
             return int(mavlink.MAV_MISSION_ERROR)
         outcome = self.vehicle.load(items)
         self.streams.send_now(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
-        if isinstance(outcome, Refused):
+        if isinstance(outcome, OrderRefused):
             self.pilot.refusal = outcome.words
             return int(mavlink.MAV_MISSION_DENIED)
         return int(mavlink.MAV_MISSION_ACCEPTED)
 
-    def _mind_fence(self, state: UavState) -> list[Message]:
+    def _mind_fence(self, state: SimulatedState) -> list[Message]:
         action = self._fence.check(state.position, state.at_s, is_in_air=state.is_in_air)
         if action is FenceAction.NONE:
             return []
@@ -170,10 +170,10 @@ class Endpoint:
 
     # What is told
 
-    def _report(self) -> Report:
-        return Report(
+    def _report(self) -> SimulatedReport:
+        return SimulatedReport(
             state=self.vehicle.state,
-            flavour=self.flavour,
+            autopilot_type=self.autopilot_type,
             custom_mode=self.pilot.custom_mode,
             current_item=self._current_item(),
             item_count=len(self.vehicle.items),
@@ -184,7 +184,7 @@ class Endpoint:
     def _current_item(self) -> int:
         """Of a list that is done the last."""
         count = len(self.vehicle.items)
-        return min(self.vehicle.state.current_item, count - 1) + self.flavour.first_item if count else 0
+        return min(self.vehicle.state.current_item, count - 1) + self.autopilot_type.first_item if count else 0
 
     def _home_item(self) -> MissionItem:
         state = self.vehicle.state
@@ -192,7 +192,7 @@ class Endpoint:
         nothing = (0.0, 0.0, 0.0, 0.0)
         return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL, nothing, longitude_e7, latitude_e7, state.home_amsl_m)
 
-    def _heartbeat(self, report: Report, now_s: float) -> list[Outgoing]:
+    def _heartbeat(self, report: SimulatedReport, now_s: float) -> list[Outgoing]:
         """Each second, and as soon as the mode or the arming is another."""
         shows = (report.custom_mode, report.state.is_armed)
         if now_s < self._heartbeat_due_s and shows == self._reported:
@@ -215,13 +215,13 @@ class Endpoint:
 
     def _reached(self, event: events.ItemReached) -> list[Message]:
         """Before the heartbeat that tells of a landing, so that nobody takes the flight for broken off."""
-        reached = mavlink.MAVLink_mission_item_reached_message(event.index + self.flavour.first_item)
+        reached = mavlink.MAVLink_mission_item_reached_message(event.index + self.autopilot_type.first_item)
         return [reached, mission_current(self._report())]
 
     def _ended(self, event: events.MissionEnded) -> list[Message]:
         return [mission_current(self._report())]
 
-    def _stated(self, event: events.StatusText) -> list[Message]:
+    def _stated(self, event: events.StatusTextSent) -> list[Message]:
         return self._text(event.text, SEVERITIES[event.severity])
 
     def _landed(self, event: events.Event) -> list[Message]:
@@ -278,7 +278,7 @@ _HANDLERS: dict[str, Callable[[Endpoint, Any, Station, float], list[Outgoing]]] 
 _REPORTED: dict[type, Callable[[Endpoint, Any], list[Message]]] = {
     events.ItemReached: Endpoint._reached,
     events.MissionEnded: Endpoint._ended,
-    events.StatusText: Endpoint._stated,
+    events.StatusTextSent: Endpoint._stated,
     events.TookOff: Endpoint._landed,
     events.LandedAt: Endpoint._landed,
     events.Crashed: Endpoint._crashed,

@@ -9,9 +9,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
-from simulation.flight.states import Haven, Mode
+from simulation.flight.states import FlightMode, RallyPoint
 from simulation.vehicle_protocol.item_rules import ABOVE_SEA, CIRCLES, POLYGONS
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.parameters import Parameters
 
 E7 = 1e7
@@ -49,7 +49,7 @@ class _Circle:
 
 
 @dataclass(frozen=True)
-class Fence:
+class SimulatedFence:
     """A UAV is to be in all inclusions and in no exclusion."""
 
     areas: tuple[_Polygon | _Circle, ...] = ()
@@ -58,7 +58,7 @@ class Fence:
         return any(area.covers(place) == area.is_exclusion for area in self.areas)
 
 
-def fence_of(items: Sequence[MissionItem]) -> Fence:
+def fence_of(items: Sequence[MissionItem]) -> SimulatedFence:
     """Of items that were taken as a fence (see item_rules)."""
     areas: list[_Polygon | _Circle] = []
     place = 0
@@ -73,7 +73,7 @@ def fence_of(items: Sequence[MissionItem]) -> Fence:
         if item.command in CIRCLES:
             areas.append(_Circle(LonLat(item.longitude_e7 / E7, item.latitude_e7 / E7), item.parameters[0], is_exclusion))
         place += 1
-    return Fence(tuple(areas))
+    return SimulatedFence(tuple(areas))
 
 
 INTERVAL_S = 0.4  # of simulated time
@@ -87,7 +87,7 @@ class FenceAction(StrEnum):
     RETURN = "return"
 
 
-MODES = {FenceAction.HOLD: Mode.HOLD, FenceAction.LAND: Mode.LAND, FenceAction.RETURN: Mode.RETURN}
+MODES = {FenceAction.HOLD: FlightMode.HOLD, FenceAction.LAND: FlightMode.LAND, FenceAction.RETURN: FlightMode.RETURN}
 PX4_ACTIONS = {0: FenceAction.NONE, 1: FenceAction.WARN, 2: FenceAction.HOLD, 3: FenceAction.RETURN}
 COPTER_ACTIONS = {
     0: FenceAction.WARN, 1: FenceAction.RETURN, 2: FenceAction.LAND, 3: FenceAction.RETURN, 4: FenceAction.HOLD,
@@ -98,13 +98,13 @@ COPTER_ACTIONS = {
 class FenceWatch:
     """Asked with where the UAV flies; tells the action to be taken now."""
 
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     parameters: Parameters
-    fence: Fence = field(default_factory=Fence)
+    fence: SimulatedFence = field(default_factory=SimulatedFence)
     is_broken: bool = False
     _next_s: float = 0.0
 
-    def look(self, place: LonLat, at_s: float, *, is_in_air: bool) -> FenceAction:
+    def check(self, place: LonLat, at_s: float, *, is_in_air: bool) -> FenceAction:
         """at_s: simulated seconds."""
         if at_s < self._next_s:
             return FenceAction.NONE
@@ -115,7 +115,7 @@ class FenceWatch:
 
     def switch(self, wanted: int | None) -> int:
         """As DO_FENCE_ENABLE asks: a MAV_RESULT. PX4 knows no such command."""
-        if self.flavour is Flavour.PX4:
+        if self.autopilot_type is SimulatedAutopilot.PX4:
             return int(mavlink.MAV_RESULT_UNSUPPORTED)
         if wanted not in (0, 1):
             return int(mavlink.MAV_RESULT_DENIED)
@@ -124,21 +124,21 @@ class FenceWatch:
 
     @property
     def is_enabled(self) -> bool:
-        if self.flavour is Flavour.PX4:
+        if self.autopilot_type is SimulatedAutopilot.PX4:
             return self.action is not FenceAction.NONE
         return bool(self.parameters["FENCE_ENABLE"])
 
     @property
     def action(self) -> FenceAction:
-        if self.flavour is Flavour.PX4:
+        if self.autopilot_type is SimulatedAutopilot.PX4:
             return PX4_ACTIONS.get(int(self.parameters["GF_ACTION"]), FenceAction.WARN)
         return COPTER_ACTIONS.get(int(self.parameters["FENCE_ACTION"]), FenceAction.WARN)
 
 
-def havens_of(items: Sequence[MissionItem], home_amsl_m: float) -> tuple[Haven, ...]:
+def rally_points_of(items: Sequence[MissionItem], home_amsl_m: float) -> tuple[RallyPoint, ...]:
     """Of items that were taken as rally points (see item_rules)."""
     return tuple(
-        Haven(
+        RallyPoint(
             LonLat(item.longitude_e7 / E7, item.latitude_e7 / E7),
             item.altitude_m - home_amsl_m if item.frame in ABOVE_SEA else item.altitude_m,
         )

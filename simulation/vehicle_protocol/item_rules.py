@@ -7,11 +7,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight.orders import MAX_HEIGHT_M, CannotFly, orders
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
 MAX_ITEMS = {
-    Flavour.PX4: {MissionType.MISSION: 2_000, MissionType.FENCE: 64, MissionType.RALLY: 32},
-    Flavour.ARDUPILOT: {MissionType.MISSION: 649, MissionType.FENCE: 84, MissionType.RALLY: 50},  # without home
+    SimulatedAutopilot.PX4: {MissionType.MISSION: 2_000, MissionType.FENCE: 64, MissionType.RALLY: 32},
+    SimulatedAutopilot.ARDUPILOT: {MissionType.MISSION: 649, MissionType.FENCE: 84, MissionType.RALLY: 50},  # without home
 }
 ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
 RELATIVE = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})

@@ -15,7 +15,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.frames import Message
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.item_rules import MAX_ITEMS, refusal_of, refusal_of_list
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Outgoing, Station
 
 E7 = 1e7
@@ -48,7 +48,7 @@ def item_of(message: Any) -> MissionItem:
 
 def item_message(item: MissionItem, number: int, kind: MissionType, to: Station, *, is_current: bool) -> Message:
     return mavlink.MAVLink_mission_item_int_message(
-        *to.ends, number, item.frame, item.command, int(is_current), 1, *item.parameters,
+        *to.target, number, item.frame, item.command, int(is_current), 1, *item.parameters,
         item.latitude_e7, item.longitude_e7, item.altitude_m, int(kind),
     )  # fmt: skip
 
@@ -56,14 +56,14 @@ def item_message(item: MissionItem, number: int, kind: MissionType, to: Station,
 def float_item_message(item: MissionItem, number: int, kind: MissionType, to: Station, *, is_current: bool) -> Message:
     """For who asks by MISSION_REQUEST, as stations did before places became whole numbers."""
     return mavlink.MAVLink_mission_item_message(
-        *to.ends, number, item.frame, item.command, int(is_current), 1, *item.parameters,
+        *to.target, number, item.frame, item.command, int(is_current), 1, *item.parameters,
         item.latitude_e7 / E7, item.longitude_e7 / E7, item.altitude_m, int(kind),
     )  # fmt: skip
 
 
-def as_kept(item: MissionItem, kind: MissionType, flavour: Flavour) -> MissionItem:
+def as_kept(item: MissionItem, kind: MissionType, autopilot_type: SimulatedAutopilot) -> MissionItem:
     """What is stored, flown and given back. PX4 keeps all; ArduPilot cuts altitudes to whole centimetres and forgets parameters."""
-    if flavour is Flavour.PX4:
+    if autopilot_type is SimulatedAutopilot.PX4:
         return item
     parameters = [0.0 if math.isnan(value) else value for value in item.parameters]
     kept = KEPT_BY_ARDUPILOT.get(item.command)
@@ -105,7 +105,7 @@ class MissionServer:
     `home` is item 0 of what ArduPilot gives back, `current` the number of the item that is being flown, as the flavour counts.
     """
 
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     replace: Replace
     home: Callable[[], MissionItem]
     current: Callable[[], int]
@@ -146,7 +146,7 @@ class MissionServer:
             return [_ack(DENIED, kind, station)]
         self._upload = self._done = None
         flown = max(message.count - self._first(kind), 0)
-        if flown > MAX_ITEMS[self.flavour][kind]:
+        if flown > MAX_ITEMS[self.autopilot_type][kind]:
             return [_ack(mavlink.MAV_MISSION_NO_SPACE, kind, station)]
         if message.count == 0:
             return [_ack(self.put(kind, ()), kind, station)]
@@ -168,7 +168,7 @@ class MissionServer:
         if refusal is not None:
             self._upload = None
             return [_ack(refusal, kind, station)]
-        upload.items.append(as_kept(item, kind, self.flavour) if is_flown else item)
+        upload.items.append(as_kept(item, kind, self.autopilot_type) if is_flown else item)
         upload.requests = 1
         return self._ask(upload, now_s) if len(upload.items) < upload.count else self._complete(upload)
 
@@ -192,9 +192,9 @@ class MissionServer:
         """ArduPilot asks by the older message, and takes the newer items for an answer."""
         upload.asked_s = now_s
         message: type[Message] = mavlink.MAVLink_mission_request_int_message
-        if self.flavour is Flavour.ARDUPILOT:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
             message = mavlink.MAVLink_mission_request_message
-        return [Outgoing(message(*upload.station.ends, len(upload.items), int(upload.kind)), upload.station)]
+        return [Outgoing(message(*upload.station.target, len(upload.items), int(upload.kind)), upload.station)]
 
     def _acknowledged(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
         upload = self._upload
@@ -214,7 +214,7 @@ class MissionServer:
     # A list goes out
 
     def _listed(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
-        return [Outgoing(mavlink.MAVLink_mission_count_message(*station.ends, len(self._reported(kind)), int(kind)), station)]
+        return [Outgoing(mavlink.MAVLink_mission_count_message(*station.target, len(self._reported(kind)), int(kind)), station)]
 
     def _requested(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
         reported = self._reported(kind)
@@ -232,7 +232,7 @@ class MissionServer:
         return [_ack(mavlink.MAV_MISSION_UNSUPPORTED, kind, station)]
 
     def _first(self, kind: MissionType) -> int:
-        return self.flavour.first_item if kind is MissionType.MISSION else 0
+        return self.autopilot_type.first_item if kind is MissionType.MISSION else 0
 
 
 _HANDLERS = {
@@ -253,4 +253,4 @@ def _kind_of(message: Any) -> MissionType | None:
 
 
 def _ack(result: int, kind: int, to: Station) -> Outgoing:
-    return Outgoing(mavlink.MAVLink_mission_ack_message(*to.ends, int(result), int(kind)), to)
+    return Outgoing(mavlink.MAVLink_mission_ack_message(*to.target, int(result), int(kind)), to)

@@ -8,10 +8,10 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 
 
-class Flavour(StrEnum):
+class SimulatedAutopilot(StrEnum):
     """PX4 flies item 0 of its list; on ArduPilot item 0 is home, and is not flown."""
 
     PX4 = "px4"
@@ -20,25 +20,34 @@ class Flavour(StrEnum):
     @property
     def autopilot(self) -> int:
         """MAV_AUTOPILOT."""
-        return int(mavlink.MAV_AUTOPILOT_PX4 if self is Flavour.PX4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA)
+        return int(mavlink.MAV_AUTOPILOT_PX4 if self is SimulatedAutopilot.PX4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA)
 
     @property
     def first_item(self) -> int:
         """The number of the first item that is flown."""
-        return 0 if self is Flavour.PX4 else 1
+        return 0 if self is SimulatedAutopilot.PX4 else 1
 
 
 PX4_AUTO, PX4_POSITION = 4, 3
-PX4_SUB_MODES = {Mode.TAKE_OFF: 2, Mode.HOLD: 3, Mode.GO_TO: 3, Mode.MISSION: 4, Mode.RETURN: 5, Mode.LAND: 6}
-PX4_ORDERED = {2: Mode.TAKE_OFF, 3: Mode.HOLD, 4: Mode.MISSION, 5: Mode.RETURN, 6: Mode.LAND}
+PX4_SUB_MODES = {
+    FlightMode.TAKE_OFF: 2,
+    FlightMode.HOLD: 3,
+    FlightMode.GO_TO: 3,
+    FlightMode.MISSION: 4,
+    FlightMode.RETURN: 5,
+    FlightMode.LAND: 6,
+}
+PX4_ORDERED = {2: FlightMode.TAKE_OFF, 3: FlightMode.HOLD, 4: FlightMode.MISSION, 5: FlightMode.RETURN, 6: FlightMode.LAND}
 
 STABILIZE, AUTO, GUIDED, LOITER, BRAKE = 0, 3, 4, 5, 17
 COPTER_MODES = {
-    Mode.TAKE_OFF: GUIDED, Mode.HOLD: BRAKE, Mode.GO_TO: GUIDED, Mode.MISSION: AUTO, Mode.RETURN: 6, Mode.LAND: 9,
+    FlightMode.TAKE_OFF: GUIDED, FlightMode.HOLD: BRAKE, FlightMode.GO_TO: GUIDED, FlightMode.MISSION: AUTO,
+    FlightMode.RETURN: 6, FlightMode.LAND: 9,
 }  # fmt: skip
 COPTER_ORDERED = {
-    STABILIZE: Mode.HOLD, 2: Mode.HOLD, AUTO: Mode.MISSION, GUIDED: Mode.HOLD, LOITER: Mode.HOLD, 6: Mode.RETURN, 9: Mode.LAND,
-    16: Mode.HOLD, BRAKE: Mode.HOLD,
+    STABILIZE: FlightMode.HOLD, 2: FlightMode.HOLD, AUTO: FlightMode.MISSION, GUIDED: FlightMode.HOLD, LOITER: FlightMode.HOLD,
+    6: FlightMode.RETURN, 9: FlightMode.LAND,
+    16: FlightMode.HOLD, BRAKE: FlightMode.HOLD,
 }  # fmt: skip
 COPTER_BY_HAND = frozenset({STABILIZE, 2})  # fall without a pilot: only on the ground
 COPTER_NOT_ARMABLE = frozenset({AUTO, 6, 9, BRAKE})
@@ -48,36 +57,38 @@ def px4_number(main: int, sub: int = 0) -> int:
     return main << 16 | sub << 24
 
 
-def usual_number(flavour: Flavour, mode: Mode) -> int:
+def usual_number(autopilot_type: SimulatedAutopilot, mode: FlightMode) -> int:
     """The custom mode that shows a mode nobody asked for by a number."""
-    return px4_number(PX4_AUTO, PX4_SUB_MODES[mode]) if flavour is Flavour.PX4 else COPTER_MODES[mode]
+    return px4_number(PX4_AUTO, PX4_SUB_MODES[mode]) if autopilot_type is SimulatedAutopilot.PX4 else COPTER_MODES[mode]
 
 
-def ordered_mode(flavour: Flavour, number: int) -> Mode | None:
+def ordered_mode(autopilot_type: SimulatedAutopilot, number: int) -> FlightMode | None:
     """What a custom mode asks for; None for one that a simulated UAV does not fly, as nobody holds its sticks."""
-    if flavour is Flavour.ARDUPILOT:
+    if autopilot_type is SimulatedAutopilot.ARDUPILOT:
         return COPTER_ORDERED.get(number)
     main, sub = number >> 16 & 0xFF, number >> 24 & 0xFF
     if main == PX4_AUTO:
         return PX4_ORDERED.get(sub)
-    return Mode.HOLD if main == PX4_POSITION else None
+    return FlightMode.HOLD if main == PX4_POSITION else None
 
 
 @dataclass
 class ShownMode:
     """The number in the heartbeat: the one that was asked for, as long as the vehicle still does what it means."""
 
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     asked: int
 
     @classmethod
-    def at_start(cls, flavour: Flavour) -> "ShownMode":
-        return cls(flavour, STABILIZE if flavour is Flavour.ARDUPILOT else usual_number(flavour, Mode.HOLD))
+    def at_start(cls, autopilot_type: SimulatedAutopilot) -> "ShownMode":
+        return cls(
+            autopilot_type, STABILIZE if autopilot_type is SimulatedAutopilot.ARDUPILOT else usual_number(autopilot_type, FlightMode.HOLD)
+        )
 
-    def number(self, mode: Mode, *, is_in_air: bool) -> int:
+    def number(self, mode: FlightMode, *, is_in_air: bool) -> int:
         """ArduPilot stands in a mode from which it can be armed, as if its switch had been put back after the landing."""
-        if ordered_mode(self.flavour, self.asked) is mode:
+        if ordered_mode(self.autopilot_type, self.asked) is mode:
             return self.asked
-        if self.flavour is Flavour.ARDUPILOT and mode is Mode.HOLD and not is_in_air:
+        if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and mode is FlightMode.HOLD and not is_in_air:
             return LOITER
-        return usual_number(self.flavour, mode)
+        return usual_number(self.autopilot_type, mode)

@@ -11,7 +11,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.flight.airframe import Settings
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Outgoing, Station
 
 BY_NAME = -1
@@ -81,13 +81,13 @@ ARDUPILOT = (
 )
 
 
-def settings_at_start(settings: Settings, flavour: Flavour) -> Settings:
+def settings_at_start(settings: Settings, autopilot_type: SimulatedAutopilot) -> Settings:
     """What no parameter sets, and each flavour does in its own way."""
-    return replace(settings, return_adds_to_haven=flavour is Flavour.PX4)
+    return replace(settings, return_adds_to_rally_point=autopilot_type is SimulatedAutopilot.PX4)
 
 
-def parameters_of(flavour: Flavour, system: int, settings: Settings, configure: Configure) -> "Parameters":
-    if flavour is Flavour.PX4:
+def parameters_of(autopilot_type: SimulatedAutopilot, system: int, settings: Settings, configure: Configure) -> "Parameters":
+    if autopilot_type is SimulatedAutopilot.PX4:
         return Parameters([*PX4, fixed("MAV_SYS_ID", float(system))], settings, configure)
     return Parameters([*ARDUPILOT, fixed("SYSID_THISMAV", float(system))], settings, configure)
 
@@ -159,4 +159,4 @@ def _shown(parameter: Parameter, settings: Settings) -> float:
 
 def _error(name: str, number: int, error: int, station: Station) -> Outgoing:
     identity = name.encode(errors="replace")[:NAME_LENGTH]
-    return Outgoing(mavlink.MAVLink_param_error_message(*station.ends, identity, number, error), station)
+    return Outgoing(mavlink.MAVLink_param_error_message(*station.target, identity, number, error), station)

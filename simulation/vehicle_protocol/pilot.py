@@ -17,13 +17,12 @@ from simulation.vehicle_protocol.mode_numbers import (
     COPTER_BY_HAND,
     COPTER_NOT_ARMABLE,
     GUIDED,
-    Flavour,
     ShownMode,
+    SimulatedAutopilot,
     ordered_mode,
     px4_number,
     usual_number,
 )
-from simulation.vehicle_protocol.simulated_autopilot import SimulatedAutopilot
 from simulation.vehicle_protocol.vehicle import Vehicle
 
 ACCEPTED, DENIED, FAILED = int(mavlink.MAV_RESULT_ACCEPTED), int(mavlink.MAV_RESULT_DENIED), int(mavlink.MAV_RESULT_FAILED)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
-from simulation.flight.states import Landed, MissionState, UavState
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.flight.states import Landed, MissionItemState, SimulatedState
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
 E7 = 1e7
 UNKNOWN_U16 = 65_535
@@ -32,21 +32,21 @@ LANDED = {
     Landed.IN_AIR: mavlink.MAV_LANDED_STATE_IN_AIR, Landed.LANDING: mavlink.MAV_LANDED_STATE_LANDING,
 }  # fmt: skip
 MISSION_STATES = {
-    MissionState.NONE: mavlink.MISSION_STATE_NO_MISSION, MissionState.NOT_STARTED: mavlink.MISSION_STATE_NOT_STARTED,
-    MissionState.ACTIVE: mavlink.MISSION_STATE_ACTIVE, MissionState.PAUSED: mavlink.MISSION_STATE_PAUSED,
-    MissionState.COMPLETE: mavlink.MISSION_STATE_COMPLETE,
+    MissionItemState.NONE: mavlink.MISSION_STATE_NO_MISSION, MissionItemState.NOT_STARTED: mavlink.MISSION_STATE_NOT_STARTED,
+    MissionItemState.ACTIVE: mavlink.MISSION_STATE_ACTIVE, MissionItemState.PAUSED: mavlink.MISSION_STATE_PAUSED,
+    MissionItemState.COMPLETE: mavlink.MISSION_STATE_COMPLETE,
 }  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
+class SimulatedReport:
     """What messages are written from: the UAV's state, and what the MAVLink side adds to it.
 
     `current_item` and `item_count` are as the flavour counts; `unix_s` is the vehicle's idea of the time of day.
     """
 
-    state: UavState
-    flavour: Flavour
+    state: SimulatedState
+    autopilot_type: SimulatedAutopilot
     custom_mode: int
     current_item: int
     item_count: int
@@ -58,19 +58,21 @@ class Report:
         return int(self.state.at_s * 1_000) & 0xFFFFFFFF
 
 
-def heartbeat(report: Report) -> Message:
+def heartbeat(report: SimulatedReport) -> Message:
     state = report.state
     mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_AUTO_ENABLED | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED
     mode |= mavlink.MAV_MODE_FLAG_GUIDED_ENABLED | (mavlink.MAV_MODE_FLAG_SAFETY_ARMED if state.is_armed else 0)
     status = mavlink.MAV_STATE_STANDBY
     if state.is_crashed:
         status = mavlink.MAV_STATE_EMERGENCY
-    elif state.is_armed and (state.is_in_air or report.flavour is Flavour.PX4):  # ArduPilot tells by it whether it flies
+    elif state.is_armed and (state.is_in_air or report.autopilot_type is SimulatedAutopilot.PX4):  # ArduPilot tells by it whether it flies
         status = mavlink.MAV_STATE_ACTIVE
-    return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, report.flavour.autopilot, mode, report.custom_mode, status, 3)
+    return mavlink.MAVLink_heartbeat_message(
+        mavlink.MAV_TYPE_QUADROTOR, report.autopilot_type.autopilot, mode, report.custom_mode, status, 3
+    )
 
 
-def system_status(report: Report) -> Message:
+def system_status(report: SimulatedReport) -> Message:
     state = report.state
     health = SENSORS
     if state.gps.fix < mavlink.GPS_FIX_TYPE_3D_FIX:
@@ -84,7 +86,7 @@ def system_status(report: Report) -> Message:
     return mavlink.MAVLink_sys_status_message(SENSORS, SENSORS, health, 300, voltage_mv, current_ca, percent, 0, 0, 0, 0, 0, 0)
 
 
-def battery(report: Report) -> Message:
+def battery(report: SimulatedReport) -> Message:
     state = report.state
     current_ca = _whole(state.battery_a * 100, 0, UNKNOWN_I16)
     voltages = [_whole(state.battery_v * 1_000, 0, UNKNOWN_U16 - 1), *[UNKNOWN_U16] * 9]
@@ -94,7 +96,7 @@ def battery(report: Report) -> Message:
     )  # fmt: skip
 
 
-def position(report: Report) -> Message:
+def position(report: SimulatedReport) -> Message:
     state = report.state
     velocity_cms = (_whole(value * 100, -UNKNOWN_I16, UNKNOWN_I16) for value in state.velocity_ned_mps)
     return mavlink.MAVLink_global_position_int_message(
@@ -103,19 +105,19 @@ def position(report: Report) -> Message:
     )  # fmt: skip
 
 
-def attitude(report: Report) -> Message:
+def attitude(report: SimulatedReport) -> Message:
     angles = _attitude_rad(report.state)
     return mavlink.MAVLink_attitude_message(report.boot_ms, *angles, *_rates_rad(report.state))
 
 
-def attitude_quaternion(report: Report) -> Message:
+def attitude_quaternion(report: SimulatedReport) -> Message:
     roll, pitch, yaw = (angle / 2 for angle in _attitude_rad(report.state))
     (sr, cr), (sp, cp), (sy, cy) = ((math.sin(half), math.cos(half)) for half in (roll, pitch, yaw))
     q = (cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy)
     return mavlink.MAVLink_attitude_quaternion_message(report.boot_ms, *q, *_rates_rad(report.state))
 
 
-def local_position(report: Report) -> Message:
+def local_position(report: SimulatedReport) -> Message:
     """From home, north, east and down."""
     state = report.state
     north_m = (state.position.lat - state.home.lat) * METRES_PER_DEGREE
@@ -123,7 +125,7 @@ def local_position(report: Report) -> Message:
     return mavlink.MAVLink_local_position_ned_message(report.boot_ms, north_m, east_m, -state.altitude_relative_m, *state.velocity_ned_mps)
 
 
-def hud(report: Report) -> Message:
+def hud(report: SimulatedReport) -> Message:
     state = report.state
     climb_mps = -state.velocity_ned_mps[2]
     heading_deg = _whole(state.heading_deg, 0, 360) % 360
@@ -132,7 +134,7 @@ def hud(report: Report) -> Message:
     )
 
 
-def gps(report: Report) -> Message:
+def gps(report: SimulatedReport) -> Message:
     state = report.state
     north_mps, east_mps, _ = state.velocity_ned_mps
     course_cdeg = round(math.degrees(math.atan2(east_mps, north_mps)) * 100) % 36_000
@@ -144,47 +146,47 @@ def gps(report: Report) -> Message:
     )  # fmt: skip
 
 
-def landed(report: Report) -> Message:
+def landed(report: SimulatedReport) -> Message:
     return mavlink.MAVLink_extended_sys_state_message(mavlink.MAV_VTOL_STATE_UNDEFINED, LANDED[report.state.landed])
 
 
-def mission_current(report: Report) -> Message:
+def mission_current(report: SimulatedReport) -> Message:
     """The number of items leaves out ArduPilot's home, as its autopilot counts here."""
     return mavlink.MAVLink_mission_current_message(report.current_item, report.item_count, MISSION_STATES[report.state.mission_state])
 
 
-def system_time(report: Report) -> Message:
+def system_time(report: SimulatedReport) -> Message:
     return mavlink.MAVLink_system_time_message(max(int(report.unix_s * 1e6), 0), report.boot_ms)
 
 
-def home(report: Report) -> Message:
+def home(report: SimulatedReport) -> Message:
     state = report.state
     return mavlink.MAVLink_home_position_message(
         round(state.home.lat * E7), round(state.home.lon * E7), _millimetres(state.home_amsl_m), 0, 0, 0, [1, 0, 0, 0], 0, 0, 0
     )
 
 
-def origin(report: Report) -> Message:
+def origin(report: SimulatedReport) -> Message:
     state = report.state
     return mavlink.MAVLink_gps_global_origin_message(
         round(state.home.lat * E7), round(state.home.lon * E7), _millimetres(state.home_amsl_m), int(state.at_s * 1e6)
     )
 
 
-def wind(report: Report) -> Message:
+def wind(report: SimulatedReport) -> Message:
     """ArduPilot's: from where it blows."""
     north_mps, east_mps, down_mps = report.state.wind_ned_mps
     from_deg = math.degrees(math.atan2(-east_mps, -north_mps)) % 360
     return mavlink.MAVLink_wind_message(from_deg, math.hypot(north_mps, east_mps), down_mps)
 
 
-def wind_estimate(report: Report) -> Message:
+def wind_estimate(report: SimulatedReport) -> Message:
     """PX4's: to where the air moves."""
     state = report.state
     return mavlink.MAVLink_wind_cov_message(int(state.at_s * 1e6), *state.wind_ned_mps, 0.0, 0.0, state.altitude_amsl_m, 0.5, 0.5)
 
 
-REPORTS: dict[int, Callable[[Report], Message]] = {
+REPORTS: dict[int, Callable[[SimulatedReport], Message]] = {
     mavlink.MAVLINK_MSG_ID_HEARTBEAT: heartbeat,
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: system_status,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: battery,
@@ -204,12 +206,12 @@ REPORTS: dict[int, Callable[[Report], Message]] = {
 }
 
 
-def _attitude_rad(state: UavState) -> tuple[float, float, float]:
+def _attitude_rad(state: SimulatedState) -> tuple[float, float, float]:
     yaw_deg = (state.heading_deg + 180) % 360 - 180
     return (math.radians(state.roll_deg), math.radians(state.pitch_deg), math.radians(yaw_deg))
 
 
-def _rates_rad(state: UavState) -> tuple[float, float, float]:
+def _rates_rad(state: SimulatedState) -> tuple[float, float, float]:
     return (math.radians(state.roll_rate_dps), math.radians(state.pitch_rate_dps), math.radians(state.yaw_rate_dps))
 
 

@@ -7,10 +7,10 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
-from simulation.vehicle_protocol.command_door import Command
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.command_endpoint import ReceivedCommand
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.pilot import ACCEPTED, DENIED, UNSUPPORTED
-from simulation.vehicle_protocol.reports import REPORTS, Report, home
+from simulation.vehicle_protocol.reports import REPORTS, SimulatedReport, home
 from simulation.vehicle_protocol.streams import Outgoing, Station, Streams
 
 CAPABILITIES = (
@@ -20,7 +20,7 @@ CAPABILITIES = (
     | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
 )  # fmt: skip
 DEVELOPMENT = 0  # of the firmware's types: one that is no release is not compared with the latest release
-VERSIONS = {Flavour.PX4: (1, 15, 0), Flavour.ARDUPILOT: (4, 6, 0)}
+VERSIONS = {SimulatedAutopilot.PX4: (1, 15, 0), SimulatedAutopilot.ARDUPILOT: (4, 6, 0)}
 VENDOR, PRODUCT = 0x5350, 0x5349
 NO_NETWORK = 0
 HEADER, PAYLOAD = 12, 251
@@ -32,9 +32,9 @@ _MAX_NS = 2**63 - 1
 Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
 
 
-def version(flavour: Flavour, system: int) -> Message:
+def version(autopilot_type: SimulatedAutopilot, system: int) -> Message:
     """Its unique id is its system id, with letters before it that tell a simulated UAV."""
-    major, minor, patch = VERSIONS[flavour]
+    major, minor, patch = VERSIONS[autopilot_type]
     firmware = major << 24 | minor << 16 | patch << 8 | DEVELOPMENT
     nothing = [0] * 8
     unique = int.from_bytes(b"SIMUAV\0\0", "big") | system
@@ -58,7 +58,7 @@ def refused(message: Any, station: Station) -> list[Outgoing]:
     else:
         answer[3], answer[4] = NAK, 1
         answer[HEADER] = FILE_NOT_FOUND if opcode in OPENING else UNKNOWN_COMMAND
-    return [Outgoing(mavlink.MAVLink_file_transfer_protocol_message(NO_NETWORK, *station.ends, list(answer)), station)]
+    return [Outgoing(mavlink.MAVLink_file_transfer_protocol_message(NO_NETWORK, *station.target, list(answer)), station)]
 
 
 def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoing]:
@@ -73,41 +73,41 @@ def ping_answer(message: Any, station: Station) -> list[Outgoing]:
     """A ping to everybody is answered to who sent it; one that names somebody is the answer to a ping."""
     if (message.target_system, message.target_component) != (0, 0):
         return []
-    return [Outgoing(mavlink.MAVLink_ping_message(message.time_usec, message.seq, *station.ends), station)]
+    return [Outgoing(mavlink.MAVLink_ping_message(message.time_usec, message.seq, *station.target), station)]
 
 
 @dataclass
 class Requests:
     """`report` is the vehicle's state of this moment."""
 
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     system: int
     streams: Streams
-    report: Callable[[], Report]
+    report: Callable[[], SimulatedReport]
 
-    def answer(self, command: Command) -> Answer | None:
+    def answer(self, command: ReceivedCommand) -> Answer | None:
         """None for a command that asks for nothing."""
         asked = _ANSWERS.get(command.number)
         return None if asked is None else asked(self, command)
 
-    def _message(self, command: Command) -> Answer:
+    def _message(self, command: ReceivedCommand) -> Answer:
         number = command.whole(1)
         if number == mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION:
-            return ACCEPTED, [version(self.flavour, self.system)]
+            return ACCEPTED, [version(self.autopilot_type, self.system)]
         if number == mavlink.MAVLINK_MSG_ID_MESSAGE_INTERVAL:
             return self._reported_interval(command.whole(2))
         if number is None or number not in REPORTS:
             return UNSUPPORTED, []
         return ACCEPTED, [REPORTS[number](self.report())]
 
-    def _set_interval(self, command: Command) -> Answer:
+    def _set_interval(self, command: ReceivedCommand) -> Answer:
         """Heartbeats go by the wall's clock, whatever anybody wants."""
         number = command.whole(1)
         if number is None or number not in REPORTS or number == mavlink.MAVLINK_MSG_ID_HEARTBEAT:
             return UNSUPPORTED, []
         return (ACCEPTED if self.streams.set_interval(number, command[2]) else DENIED), []
 
-    def _interval(self, command: Command) -> Answer:
+    def _interval(self, command: ReceivedCommand) -> Answer:
         return self._reported_interval(command.whole(1))
 
     def _reported_interval(self, number: int | None) -> Answer:
@@ -115,14 +115,14 @@ class Requests:
             return DENIED, []
         return ACCEPTED, [mavlink.MAVLink_message_interval_message(number, self.streams.interval_us(number))]
 
-    def _version(self, command: Command) -> Answer:
-        return ACCEPTED, [version(self.flavour, self.system)]
+    def _version(self, command: ReceivedCommand) -> Answer:
+        return ACCEPTED, [version(self.autopilot_type, self.system)]
 
-    def _home(self, command: Command) -> Answer:
+    def _home(self, command: ReceivedCommand) -> Answer:
         return ACCEPTED, [home(self.report())]
 
 
-_ANSWERS: dict[int, Callable[[Requests, Command], Answer]] = {
+_ANSWERS: dict[int, Callable[[Requests, ReceivedCommand], Answer]] = {
     mavlink.MAV_CMD_REQUEST_MESSAGE: Requests._message,
     mavlink.MAV_CMD_SET_MESSAGE_INTERVAL: Requests._set_interval,
     mavlink.MAV_CMD_GET_MESSAGE_INTERVAL: Requests._interval,

@@ -8,7 +8,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
 # Seconds of simulated time. What MAVSDK, MAVProxy and a gateway need without asking.
 INTERVALS_S = {
@@ -26,7 +26,7 @@ INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_HOME_POSITION: 2.0,
 }
 WIND_INTERVAL_S = 2.0
-WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
+WIND = {SimulatedAutopilot.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, SimulatedAutopilot.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
 MIN_DURATION_S = 0.04  # a step of the flight
 MAX_DURATION_S = 3_600.0
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # multiples of it lie evenly, however many there are
@@ -35,8 +35,8 @@ GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # multiples of it lie evenly, however man
 class Streams:
     """Intervals by message. `phase` (any number) spreads the messages of one vehicle, and those of many, over their intervals."""
 
-    def __init__(self, flavour: Flavour, phase: float = 0.0) -> None:
-        self._usual = {**INTERVALS_S, WIND[flavour]: WIND_INTERVAL_S}
+    def __init__(self, autopilot_type: SimulatedAutopilot, phase: float = 0.0) -> None:
+        self._usual = {**INTERVALS_S, WIND[autopilot_type]: WIND_INTERVAL_S}
         self._intervals_s: dict[int, float] = dict(self._usual)
         self._due_s = {
             message: interval_s * ((phase + place) * GOLDEN % 1.0) for place, (message, interval_s) in enumerate(self._usual.items())
@@ -94,7 +94,7 @@ class Station:
     link: int = 0
 
     @property
-    def ends(self) -> tuple[int, int]:
+    def target(self) -> tuple[int, int]:
         """As messages name whom they are for."""
         return (self.system, self.component)
 

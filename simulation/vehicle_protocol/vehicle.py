@@ -7,7 +7,7 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import Settings
 from simulation.flight.events import Event
-from simulation.flight.states import Haven, Mode, Outcome, UavState
+from simulation.flight.states import FlightMode, Outcome, RallyPoint, SimulatedState
 
 
 class Vehicle(Protocol):
@@ -15,10 +15,10 @@ class Vehicle(Protocol):
 
     settings: Settings
     items: tuple[MissionItem, ...]
-    havens: tuple[Haven, ...]
+    rally_points: tuple[RallyPoint, ...]
 
     @property
-    def state(self) -> UavState: ...
+    def state(self) -> SimulatedState: ...
 
     def take_events(self) -> Iterable[Event]: ...
 
@@ -30,7 +30,7 @@ class Vehicle(Protocol):
 
     def take_off(self, height_relative_m: float) -> Outcome: ...
 
-    def set_mode(self, mode: Mode) -> Outcome: ...
+    def set_mode(self, mode: FlightMode) -> Outcome: ...
 
     def go_to(self, position: LonLat, altitude_relative_m: float, heading_deg: float | None = None) -> Outcome: ...
 

@@ -20,7 +20,7 @@ from missions.views.problems import refusals
 from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
 from simulation import selectors
 from simulation.models import Rehearsal
-from simulation.rehearsing.weather_scenario import Named, Sky, named_sky, own_sky
+from simulation.rehearsing.weather_scenario import Named, WeatherScenario, named_scenario, own_scenario
 from simulation.serializers import shapes
 from simulation.serializers.representations import planned_points, rehearsal_detail_json, rehearsal_json, track_json
 from simulation.services.plan_to_fly import plan_to_fly
@@ -36,15 +36,15 @@ from workspace.models import User
 from workspace.tasks import send_job_on_commit
 
 
-def skies_of(asked: Sequence[Any], planned: Conditions) -> list[Sky]:
+def scenarios_of(asked: Sequence[Any], planned: Conditions) -> list[WeatherScenario]:
     """Names and own figures, given the conditions that were planned with. Raises ApiProblem."""
-    return [sky_of(entry, planned, f"conditions.{number}") for number, entry in enumerate(asked)]
+    return [scenario_of(entry, planned, f"conditions.{number}") for number, entry in enumerate(asked)]
 
 
-def sky_of(entry: Any, planned: Conditions, place: str = "conditions") -> Sky:
+def scenario_of(entry: Any, planned: Conditions, place: str = "conditions") -> WeatherScenario:
     """Raises ApiProblem, with `place` as where the fault stands."""
     try:
-        return named_sky(Named(entry), planned) if isinstance(entry, str) else own_sky(entry, planned)
+        return named_scenario(Named(entry), planned) if isinstance(entry, str) else own_scenario(entry, planned)
     except InvalidConditions as error:
         raise invalid(f"{place}.{error.place}", f"{error.place} {error.message}.") from error
     except ValueError as error:
@@ -97,10 +97,12 @@ class MissionRehearsals(APIView):
         body = shapes.RehearsalInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         values = body.validated_data
-        skies = skies_of(values.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
+        scenarios = scenarios_of(values.get("conditions") or list(USUAL), conditions_from_json(mission.conditions or None))
         try:
             with refusals(), transaction.atomic():
-                rehearsal = start_rehearsal(mission=mission, actor=request.user, skies=skies, seed=values["seed"], afresh=values["afresh"])
+                rehearsal = start_rehearsal(
+                    mission=mission, actor=request.user, scenarios=scenarios, seed=values["seed"], afresh=values["afresh"]
+                )
                 send_job_on_commit(rehearsal.job)
         except TooManyJobs as error:
             raise ApiProblem(429, "too_many_jobs", str(error), retry_after_s=RETRY_AFTER_S) from error

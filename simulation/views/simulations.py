@@ -35,7 +35,7 @@ from simulation.services.simulations import (
 )
 from simulation.simulation_selectors import simulations_of_mission, simulations_of_organisation, vehicles_of_organisation
 from simulation.vehicle_models import PRESENT
-from simulation.views.rehearsals import sky_of
+from simulation.views.rehearsals import scenario_of
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.paging import asked_choice, page_of
@@ -114,7 +114,7 @@ def _flown(request: SignedInRequest, mission: Mission, fly: Callable[..., Simula
             simulation = fly(
                 mission=mission,
                 actor=request.user,
-                sky=sky_of(values["conditions"], conditions_from_json(mission.conditions or None)),
+                scenario=scenario_of(values["conditions"], conditions_from_json(mission.conditions or None)),
                 speed=float(values["speed"]),
                 flavour=VehicleFlavour(values["flavour"]),
                 seed=values["seed"],
@@ -161,7 +161,7 @@ class Simulations(APIView):
                 actor=request.user,
                 uavs=[PoolUav(**uav) for uav in values["uavs"]],
                 lifetime_s=values["lifetime_s"],
-                sky=sky_of(values["conditions"], CALM),
+                scenario=scenario_of(values["conditions"], CALM),
                 airframe=values["airframe"],
                 flavour=VehicleFlavour(values["flavour"]),
                 speed=float(values["speed"]),
@@ -272,7 +272,7 @@ def _change(user: User, simulation: Simulation, vehicle: SimulatedVehicle | None
             actor=user,
             vehicle=vehicle,
             speed=None if speed is None else float(speed),
-            sky=sky_of(values["conditions"], planned) if "conditions" in values else None,
+            scenario=scenario_of(values["conditions"], planned) if "conditions" in values else None,
             faults=values.get("faults"),
         )
     except IsOver as error:

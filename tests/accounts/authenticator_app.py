@@ -7,7 +7,7 @@ from django.test import Client
 from django.utils import timezone
 
 from accounts.second_factors import STEP_S, code_of, set_up
-from workspace.field_encryption import unseal
+from workspace.field_encryption import decrypt
 from workspace.models import SecondFactor, User
 
 SEED = b"0123456789abcdefghij"
@@ -25,7 +25,7 @@ def with_app(user: User) -> list[str]:
 
 
 def seed_of(user: User) -> bytes:
-    return unseal(user.second_factor.sealed_seed, of=f"second factor of {user.pk}")
+    return decrypt(user.second_factor.sealed_seed, of=f"second factor of {user.pk}")
 
 
 def shown_seed(page: str) -> str:

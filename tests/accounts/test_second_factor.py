@@ -11,16 +11,16 @@ from django.core.management import CommandError, call_command
 from django.test import Client, override_settings
 from django.utils import timezone
 
-from accounts.login import HALF_IN, HALF_IN_S
+from accounts.login import MFA_PENDING, MFA_PENDING_S
 from accounts.second_factors import (
     TRIES,
     TooManyCodes,
     WrongCode,
     bare,
     code_of,
+    encrypt_with_current_key,
     matching_step,
     new_recovery_codes,
-    seal_with_the_key_of_today,
     try_code,
 )
 from tests.accounts.authenticator_app import (
@@ -33,7 +33,7 @@ from tests.accounts.authenticator_app import (
     type_password,
     with_app,
 )
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.api_tokens import create_api_token
 from workspace.models import AuditEntry, Organisation, RecoveryCode, Role, SecondFactor, SignInEntry, SignInOutcome, User
 
@@ -50,7 +50,7 @@ def _no_tries_yet(settings: Any) -> None:
 
 @pytest.fixture
 def ida() -> User:
-    user = somebody()
+    user = a_user()
     user.set_password(PASSWORD)
     user.save()
     return user
@@ -129,7 +129,7 @@ def test_the_password_counts_for_ten_minutes_and_while_it_is_the_password(ida: U
     for client in (late, changed):
         type_password(client, ida, PASSWORD)
     session = late.session
-    session[HALF_IN] = session[HALF_IN] | {"at": session[HALF_IN]["at"] - HALF_IN_S - 1}
+    session[MFA_PENDING] = session[MFA_PENDING] | {"at": session[MFA_PENDING]["at"] - MFA_PENDING_S - 1}
     session.save()
     assert not answer_code(late, code_now())
     ida.set_password("another-one-altogether")
@@ -179,7 +179,7 @@ def test_neither_seed_nor_recovery_codes_can_be_read_in_the_database(ida: User) 
 
 def test_a_sealed_seed_of_somebody_else_makes_no_codes(ida: User) -> None:
     with_app(ida)
-    other = somebody()
+    other = a_user()
     with_app(other)
     SecondFactor.objects.filter(user=other).update(sealed_seed=ida.second_factor.sealed_seed)
     with pytest.raises(WrongCode):
@@ -262,7 +262,7 @@ def test_it_is_not_asked_of_programs(ida: User) -> None:
 
 
 def test_administrators_who_have_one_ask_everybody_for_it() -> None:
-    boss = somebody(Role.ADMINISTRATOR)
+    boss = a_user(Role.ADMINISTRATOR)
     client = client_of(boss)
 
     def ask(required: bool) -> int:
@@ -271,14 +271,14 @@ def test_administrators_who_have_one_ask_everybody_for_it() -> None:
     assert ask(True) == 409
     with_app(boss)
     assert ask(True) == 200
-    assert client_of(somebody()).get("/api/v1/second-factor-rule").json()["required"] is True
+    assert client_of(a_user()).get("/api/v1/second-factor-rule").json()["required"] is True
     assert ask(False) == 200
     rules = AuditEntry.objects.filter(action="second factor rule").values_list("after", flat=True)
     assert list(rules) == [{"requires_second_factor": False}, {"requires_second_factor": True}]
 
 
 def test_a_token_does_not_change_the_rule_or_reset_anybody(ida: User) -> None:
-    boss = somebody(Role.ADMINISTRATOR)
+    boss = a_user(Role.ADMINISTRATOR)
     with_app(boss)
     with_app(ida)
     token = create_api_token(user=boss, name="script", expires_at=timezone.now() + timedelta(days=1))
@@ -288,7 +288,7 @@ def test_a_token_does_not_change_the_rule_or_reset_anybody(ida: User) -> None:
 
 
 def test_an_administrator_resets_it_of_their_own_people_and_not_of_themselves(ida: User) -> None:
-    boss, stranger = somebody(Role.ADMINISTRATOR), somebody(organisation=Organisation.objects.create(name="Others"))
+    boss, stranger = a_user(Role.ADMINISTRATOR), a_user(organisation=Organisation.objects.create(name="Others"))
     for user in (boss, stranger, ida):
         with_app(user)
     client, hers = client_of(boss), client_of(ida)
@@ -301,7 +301,7 @@ def test_an_administrator_resets_it_of_their_own_people_and_not_of_themselves(id
 
 
 def test_the_last_administrator_is_helped_at_the_machine() -> None:
-    boss = somebody(Role.ADMINISTRATOR)
+    boss = a_user(Role.ADMINISTRATOR)
     with_app(boss)
     call_command("reset_second_factor", boss.username, stdout=StringIO())
     assert not SecondFactor.objects.exists()
@@ -323,7 +323,7 @@ def test_seeds_outlive_a_change_of_the_secret_key(ida: User) -> None:
     with override_settings(SECRET_KEY="the-key-of-before", SECRET_KEY_FALLBACKS=[]):
         with_app(ida)
     with override_settings(SECRET_KEY="the-key-of-today", SECRET_KEY_FALLBACKS=["the-key-of-before"]):
-        assert seal_with_the_key_of_today() == 1
+        assert encrypt_with_current_key() == 1
     with override_settings(SECRET_KEY="the-key-of-today", SECRET_KEY_FALLBACKS=[]):
         try_code(user=ida, code=code_now())
 

@@ -10,7 +10,7 @@ from django.test import Client
 from django.utils import timezone
 
 from accounts.login import forget_old_sign_ins
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from workspace.api_tokens import create_api_token
 from workspace.models import ApiToken, AuditEntry, Organisation, Role, SignInEntry, User
 
@@ -26,7 +26,7 @@ def _no_tries_yet(settings: Any) -> None:
 @pytest.fixture
 def administrator() -> User:
     User.objects.all().delete()
-    return somebody(Role.ADMINISTRATOR)
+    return a_user(Role.ADMINISTRATOR)
 
 
 @pytest.fixture
@@ -36,7 +36,7 @@ def client(administrator: User) -> Client:
 
 @pytest.fixture
 def person() -> User:
-    user = somebody(Role.OPERATOR)
+    user = a_user(Role.OPERATOR)
     user.first_name, user.last_name, user.email = "Opal", "Field", "opal@example.org"
     user.save()
     return user
@@ -56,7 +56,7 @@ def test_somebody_is_found_by_name_and_address(client: Client, administrator: Us
 
 
 def test_people_are_found_by_role_and_access(client: Client, administrator: User, person: User) -> None:
-    kept_out = somebody(Role.VIEWER)
+    kept_out = a_user(Role.VIEWER)
     User.objects.filter(pk=kept_out.pk).update(is_active=False)
     User.objects.filter(pk=person.pk).update(last_seen_at=timezone.now() - timedelta(minutes=6))
     assert found(client) == {administrator.username, person.username, kept_out.username}
@@ -68,7 +68,7 @@ def test_people_are_found_by_role_and_access(client: Client, administrator: User
 
 
 def test_people_of_another_organisation_are_not_there(client: Client, administrator: User) -> None:
-    other = somebody(Role.VIEWER, Organisation.objects.create(name="Others"))
+    other = a_user(Role.VIEWER, Organisation.objects.create(name="Others"))
     SignInEntry.objects.create(user=other, outcome="wrong")
     assert other.username not in found(client)
     assert client.get(f"/api/v1/people/{other.pk}").status_code == 404
@@ -145,7 +145,7 @@ def test_an_administrator_ends_somebodys_sessions_and_tokens(client: Client, adm
 
 def test_people_come_page_by_page(client: Client, administrator: User) -> None:
     for _ in range(4):
-        somebody(Role.VIEWER)
+        a_user(Role.VIEWER)
     first = client.get("/api/v1/people?limit=3").json()
     rest = client.get(first["next"]).json()
     names = [row["username"] for row in first["results"] + rest["results"]]

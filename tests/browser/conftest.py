@@ -19,7 +19,7 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
 from playwright.sync_api import Error as PlaywrightError
 
-from accounts.login import PROOF_S
+from accounts.login import REAUTHENTICATION_S
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES, save_picture
@@ -70,7 +70,7 @@ with connection.cursor() as cursor:
 
 @dataclass(frozen=True)
 class Site:
-    """Where it is, and who came in when, with their cookies: only the first of their tests within PROOF_S goes through the door.
+    """Where it is, and who came in when, with their cookies: only the first of their tests within REAUTHENTICATION_S goes through the door.
 
     `does(code)` runs Python in the installation, for what no page can bring about. Vehicles speak to its gateway by UDP.
     """
@@ -263,7 +263,7 @@ class Visitor:
         """A page of this user, empty unless it is named; by signing in, or with the session of an earlier test that is still open."""
         since_s, cookies = self.site.came_in.get(name, (-math.inf, []))
         page = self.opens(EMPTY_PAGE, cookies=cookies, **how)
-        is_recent = time.monotonic() - since_s < PROOF_S - MAX_TEST_S  # what wants the password again some minutes later
+        is_recent = time.monotonic() - since_s < REAUTHENTICATION_S - MAX_TEST_S  # what wants the password again some minutes later
         if not is_recent or not page.request.get("/api/v1/account").ok:
             since_s = time.monotonic()
             page.context.clear_cookies()
@@ -295,11 +295,11 @@ def contexts(site: Site, chromium: Browser) -> ContextPool:
 
 @pytest.fixture
 def visitor(site: Site, contexts: ContextPool) -> Iterator[Visitor]:
-    somebody = Visitor(site, contexts)
-    yield somebody
-    somebody.leaves()
-    assert somebody.complaints == []
-    assert somebody.requests_outside == []
+    a_user = Visitor(site, contexts)
+    yield a_user
+    a_user.leaves()
+    assert a_user.complaints == []
+    assert a_user.requests_outside == []
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -10,22 +10,22 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import Settings
 from simulation.flight.events import Armed, Disarmed, Event, ItemReached, LandedAt, MissionEnded, ModeChanged, TookOff
-from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, UavState
+from simulation.flight.states import DONE, FlightMode, Gps, Landed, MissionItemState, OrderRefused, Outcome, RallyPoint, SimulatedState
 
 STEP_S = 0.04
 METRES_PER_DEGREE = 111_195.0
 HOME = LonLat(10.0, 55.0)
 HOME_AMSL_M = 30.0
-GOING = frozenset({Mode.MISSION, Mode.GO_TO, Mode.RETURN, Mode.TAKE_OFF, Mode.LAND})
+GOING = frozenset({FlightMode.MISSION, FlightMode.GO_TO, FlightMode.RETURN, FlightMode.TAKE_OFF, FlightMode.LAND})
 
 
-def resting(home: LonLat = HOME, home_amsl_m: float = HOME_AMSL_M) -> UavState:
-    return UavState(
+def resting(home: LonLat = HOME, home_amsl_m: float = HOME_AMSL_M) -> SimulatedState:
+    return SimulatedState(
         at_s=0.0, position=home, true_position=home, altitude_amsl_m=home_amsl_m, altitude_relative_m=0.0, altitude_agl_m=0.0,
         velocity_ned_mps=(0.0, 0.0, 0.0), roll_deg=0.0, pitch_deg=0.0, heading_deg=0.0, roll_rate_dps=0.0, pitch_rate_dps=0.0,
         yaw_rate_dps=0.0, airspeed_mps=0.0, ground_speed_mps=0.0, wind_ned_mps=(0.0, 0.0, 0.0), battery_percent=100.0, battery_used_wh=0.0,
-        battery_v=12.6, battery_a=0.5, is_armed=False, is_in_air=False, landed=Landed.ON_GROUND, mode=Mode.HOLD, is_crashed=False,
-        gps=Gps(3, 14, 0.8), current_item=0, mission_state=MissionState.NONE, home=home, home_amsl_m=home_amsl_m, target_speed_mps=5.0,
+        battery_v=12.6, battery_a=0.5, is_armed=False, is_in_air=False, landed=Landed.ON_GROUND, mode=FlightMode.HOLD, is_crashed=False,
+        gps=Gps(3, 14, 0.8), current_item=0, mission_state=MissionItemState.NONE, home=home, home_amsl_m=home_amsl_m, target_speed_mps=5.0,
     )  # fmt: skip
 
 
@@ -33,10 +33,10 @@ def resting(home: LonLat = HOME, home_amsl_m: float = HOME_AMSL_M) -> UavState:
 class KinematicUav:
     """Items that are not flown to are done at once. `load` refuses while `refuses_lists`."""
 
-    state: UavState = field(default_factory=resting)
+    state: SimulatedState = field(default_factory=resting)
     items: tuple[MissionItem, ...] = ()
     refuses_lists: bool = False
-    havens: tuple[Haven, ...] = ()
+    rally_points: tuple[RallyPoint, ...] = ()
     settings: Settings = field(default_factory=Settings)
     _events: list[Event] = field(default_factory=list)
     _goal: tuple[LonLat, float] | None = None
@@ -46,7 +46,7 @@ class KinematicUav:
         self.state = state
         if not state.is_armed or state.mode not in GOING:
             return
-        if state.mode is Mode.MISSION:
+        if state.mode is FlightMode.MISSION:
             self._fly_item()
         if self._goal is not None and self.state.mode in GOING:
             self._move(*self._goal)
@@ -57,9 +57,9 @@ class KinematicUav:
 
     def load(self, items: Sequence[MissionItem]) -> Outcome:
         if self.refuses_lists:
-            return Refused("busy", "No list is taken now")
+            return OrderRefused("busy", "No list is taken now")
         self.items = tuple(items)
-        self.state = replace(self.state, current_item=0, mission_state=MissionState.NOT_STARTED if items else MissionState.NONE)
+        self.state = replace(self.state, current_item=0, mission_state=MissionItemState.NOT_STARTED if items else MissionItemState.NONE)
         self._goal = None
         return DONE
 
@@ -71,35 +71,35 @@ class KinematicUav:
 
     def disarm(self, *, force: bool = False) -> Outcome:
         if self.state.is_in_air and not force:
-            return Refused("in-air", "It flies")
+            return OrderRefused("in-air", "It flies")
         self._events.append(Disarmed(self.state.at_s))
-        self.state = replace(self.state, is_armed=False, mode=Mode.HOLD)
+        self.state = replace(self.state, is_armed=False, mode=FlightMode.HOLD)
         return DONE
 
     def take_off(self, height_relative_m: float) -> Outcome:
-        self._enter(Mode.TAKE_OFF)
+        self._enter(FlightMode.TAKE_OFF)
         self._goal = (self.state.position, height_relative_m)
         return DONE
 
-    def set_mode(self, mode: Mode) -> Outcome:
+    def set_mode(self, mode: FlightMode) -> Outcome:
         state = self.state
-        if mode is Mode.MISSION and not self.items:
-            return Refused("no-mission", "There is no mission")
+        if mode is FlightMode.MISSION and not self.items:
+            return OrderRefused("no-mission", "There is no mission")
         self._enter(mode)
         self._goal = None
-        if mode is Mode.MISSION:
-            current = 0 if state.mission_state is MissionState.COMPLETE else state.current_item
-            self.state = replace(self.state, mission_state=MissionState.ACTIVE, current_item=current)
-        elif state.mission_state is MissionState.ACTIVE:
-            self.state = replace(self.state, mission_state=MissionState.PAUSED)
-        if mode is Mode.RETURN:
+        if mode is FlightMode.MISSION:
+            current = 0 if state.mission_state is MissionItemState.COMPLETE else state.current_item
+            self.state = replace(self.state, mission_state=MissionItemState.ACTIVE, current_item=current)
+        elif state.mission_state is MissionItemState.ACTIVE:
+            self.state = replace(self.state, mission_state=MissionItemState.PAUSED)
+        if mode is FlightMode.RETURN:
             self._goal = (state.home, 0.0)
-        if mode is Mode.LAND:
+        if mode is FlightMode.LAND:
             self._goal = (state.position, 0.0)
         return DONE
 
     def go_to(self, position: LonLat, altitude_relative_m: float, heading_deg: float | None = None) -> Outcome:
-        self._enter(Mode.GO_TO)
+        self._enter(FlightMode.GO_TO)
         self._goal = (position, altitude_relative_m)
         return DONE
 
@@ -109,11 +109,11 @@ class KinematicUav:
 
     def set_current(self, index: int) -> Outcome:
         if not 0 <= index < len(self.items):
-            return Refused("no-item", "There is no such item")
+            return OrderRefused("no-item", "There is no such item")
         self.state = replace(self.state, current_item=index)
         return DONE
 
-    def _enter(self, mode: Mode) -> None:
+    def _enter(self, mode: FlightMode) -> None:
         if mode is not self.state.mode:
             self._events.append(ModeChanged(self.state.at_s, mode, is_own=False))
             self.state = replace(self.state, mode=mode)
@@ -131,10 +131,10 @@ class KinematicUav:
                 state = self._reach()
         if self._goal is None:
             self._events.append(MissionEnded(state.at_s))
-            self.state = replace(state, mission_state=MissionState.COMPLETE)
-            self._enter(Mode.HOLD)
+            self.state = replace(state, mission_state=MissionItemState.COMPLETE)
+            self._enter(FlightMode.HOLD)
 
-    def _reach(self) -> UavState:
+    def _reach(self) -> SimulatedState:
         self._events.append(ItemReached(self.state.at_s, self.state.current_item))
         self.state = replace(self.state, current_item=self.state.current_item + 1)
         return self.state
@@ -165,13 +165,13 @@ class KinematicUav:
         self.state = replace(self.state, velocity_ned_mps=(0.0, 0.0, 0.0))
         if not is_up:
             self._events.append(LandedAt(self.state.at_s, self.state.position))
-        if self.state.mode is Mode.MISSION:
+        if self.state.mode is FlightMode.MISSION:
             self._reach()
             if self.state.current_item == len(self.items):
                 self._events.append(MissionEnded(self.state.at_s))
-                self.state = replace(self.state, mission_state=MissionState.COMPLETE)
-                self._enter(Mode.HOLD)
-        elif self.state.mode in (Mode.TAKE_OFF, Mode.RETURN, Mode.LAND):
-            self._enter(Mode.HOLD)
+                self.state = replace(self.state, mission_state=MissionItemState.COMPLETE)
+                self._enter(FlightMode.HOLD)
+        elif self.state.mode in (FlightMode.TAKE_OFF, FlightMode.RETURN, FlightMode.LAND):
+            self._enter(FlightMode.HOLD)
         if not is_up:
             self.disarm()

@@ -30,7 +30,7 @@ from simulation.models import SimulatedVehicle, Simulation
 from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.rehearsals import set_rule
 from simulation.services.simulations import end_now
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import patch, post
 from tests.missions.commands.outbox import give
 from tests.missions.flights import carry, fleet, ground, planned
@@ -42,7 +42,7 @@ pytestmark = pytest.mark.django_db
 
 @pytest.fixture
 def person() -> User:
-    return somebody()
+    return a_user()
 
 
 @pytest.fixture
@@ -143,7 +143,7 @@ def test_twins_of_copies_that_are_over_are_retired_and_come_back(client, person,
 
 def test_twins_are_not_offered_among_the_fleet_and_stay_simulated(real, client):
     flies_copy(client, real)
-    administrator = client_of(somebody(Role.ADMINISTRATOR))
+    administrator = client_of(a_user(Role.ADMINISTRATOR))
     listed = administrator.get("/api/v1/uavs").json()
     assert {uav["properties"]["name"] for uav in listed["features"]} == {"Tern", "Kite"}
     assert listed["numbers"]["active"] == 2
@@ -202,8 +202,8 @@ def test_a_copy_is_in_nobodys_way(client, person, real):
 
 def test_who_may_not_fly_or_is_of_another_organisation_is_refused(client, person, real):
     path = f"missions/{real.pk}/simulated-copy"
-    assert post(client_of(somebody(Role.VIEWER)), path).status_code == 403
-    stranger = client_of(somebody(organisation=Organisation.objects.create(name="Others")))
+    assert post(client_of(a_user(Role.VIEWER)), path).status_code == 403
+    stranger = client_of(a_user(organisation=Organisation.objects.create(name="Others")))
     assert post(stranger, path).status_code == 404
     Mission.objects.filter(pk=real.pk).update(state=MissionState.PLANNED)
     assert post(client, path).json()["error"]["code"] == "not_approved"

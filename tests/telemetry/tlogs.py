@@ -13,7 +13,7 @@ from mavlink.mission_items import flight_loads
 from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from tests.telemetry.estimation.simulated import simulated_flight
 
 BEGUN_UNIX_S = 1_790_000_000.0
@@ -69,7 +69,7 @@ def _reports_of_flight() -> Iterator[tuple[float, Any]]:
     """Yield seconds since the log began, and the messages of a vehicle that stands, is armed, and flies its mission."""
     case = simulated_flight(3)
     uav = SimulatedUav(case.airframe, case.flight.take_off.position, weather=case.weather, seed=3, physics_hz=100)
-    endpoint = Endpoint(uav, flavour=Flavour.ARDUPILOT, system=1, unix_at_zero_s=BEGUN_UNIX_S)
+    endpoint = Endpoint(uav, autopilot_type=SimulatedAutopilot.ARDUPILOT, system=1, unix_at_zero_s=BEGUN_UNIX_S)
     assert uav.load(flight_loads(case.route)[case.flight.number].mission).is_done
     has_fix = False
     for step in range(round(ENDS_AT_S / STEP_S)):

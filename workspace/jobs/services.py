@@ -215,7 +215,7 @@ def forget_old_idempotency_keys() -> int:
     return deleted
 
 
-TURNS_LOCK = 0x05A7_0030  # advisory lock: one worker at a time chooses
+FAIR_QUEUE_LOCK = 0x05A7_0030  # advisory lock: one worker at a time chooses
 REMEMBERED = timedelta(hours=1)  # for which it counts who was served
 
 
@@ -226,7 +226,7 @@ def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
     ends. A job whose worker was lost goes on before any other.
     """
     with transaction.atomic():
-        lock_until_end(TURNS_LOCK)
+        lock_until_end(FAIR_QUEUE_LOCK)
         job = Job.objects.filter(pk=job_id).first()
         if job is None:
             return None

@@ -22,7 +22,7 @@ from redis.exceptions import RedisError
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.api.authentication import bearer_token, reader_of_token
-from workspace.live.graceful_shutdown import farewell_here
+from workspace.live.graceful_shutdown import shutdown_here
 from workspace.models import User
 from workspace.sessions.browser_sessions import note_session
 from workspace.sessions.preferences import visitor_address
@@ -89,7 +89,7 @@ class SocketPlaces:
             self._renewing = asyncio.create_task(self._renew())
         return member
 
-    async def give_back(self, member: str) -> None:
+    async def release(self, member: str) -> None:
         places = self._forget(member)
         with suppress(*REDIS_ERRORS):  # it ends by itself
             pipeline = self._redis.pipeline(transaction=False)
@@ -154,23 +154,23 @@ class SignedInSocket(AsyncWebsocketConsumer):
         self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._place: str | None = None  # among the open websockets of its user and its network
         with about(**_facts_of(scope)):  # whatever is begun here knows it, too
-            spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
+            answering = asyncio.ensure_future(super().__call__(scope, receive, send))
         try:
-            await asyncio.wait({spoken, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
-            if spoken.done():
-                return await spoken
-            spoken.cancel()
+            await asyncio.wait({answering, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
+            if answering.done():
+                return await answering
+            answering.cancel()
             with suppress(asyncio.CancelledError):
-                await spoken
+                await answering
             await send({"type": "websocket.close", "code": self._hung_up.result()})
         finally:
-            for task in (spoken, *self._tasks):
+            for task in (answering, *self._tasks):
                 task.cancel()
             if self._counted_as is not None:
-                farewell_here().forget(self)
+                shutdown_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
             if self._place is not None:
-                await socket_places_here().give_back(self._place)
+                await socket_places_here().release(self._place)
 
     def kind(self) -> str:
         """What its page follows, one of a few words."""
@@ -190,7 +190,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
         await super().accept(*arguments, **named)
         self._counted_as = self.kind()
         WEBSOCKETS.labels(self._counted_as).inc()
-        farewell_here().expect(self)
+        shutdown_here().expect(self)
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
 
     async def is_one_too_many(self, user: User) -> bool:

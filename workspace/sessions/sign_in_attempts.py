@@ -143,7 +143,7 @@ def _count(counts: BaseCache, key: str, most: int) -> int:
 COOKIE = f"{settings.COOKIE_PREFIX}spanwise_known"
 SALT = "workspace.known_browsers"
 KEPT_S = 180 * 24 * 3_600
-MAX_PEOPLE = 5  # of one browser
+MAX_USERS = 5  # of one browser
 
 
 def mark_of(request: HttpRequest, name: str) -> str | None:
@@ -155,7 +155,7 @@ def remember(request: HttpRequest, response: HttpResponse, name: str) -> None:
     """Somebody has shown to be who they say, with this browser."""
     mine = _digest(name)
     others = [entry for entry in _entries(request) if entry[0] != mine]
-    entries = [(mine, secrets.token_urlsafe(12)), *others][:MAX_PEOPLE]
+    entries = [(mine, secrets.token_urlsafe(12)), *others][:MAX_USERS]
     response.set_cookie(
         COOKIE,
         signing.dumps(entries, salt=SALT),

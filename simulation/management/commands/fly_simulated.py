@@ -18,8 +18,8 @@ from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, InvalidSpeed
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
-from simulation.vehicle_endpoint.radio import WrongAddress, address_of
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_endpoint.radio import InvalidStationAddress, address_of
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
 MAX_UAVS = 200
 KEY_LENGTH = 32
@@ -49,7 +49,7 @@ class Command(BaseCommand):
         parser.add_argument("--listen", metavar="HOST:PORT", help="where the first UAV listens; the others at the ports that follow")
         parser.add_argument("--first-system", type=int, default=1, help="MAVLink system id of the first UAV; the others follow")
         parser.add_argument("--keys", type=Path, help='JSON file {"system id": "64 hexadecimal digits"} of the signing keys')
-        parser.add_argument("--flavour", choices=[flavour.value for flavour in Flavour], default=Flavour.PX4.value)
+        parser.add_argument("--flavour", choices=[flavour.value for flavour in SimulatedAutopilot], default=SimulatedAutopilot.PX4.value)
         parser.add_argument("--airframe", choices=sorted(AIRFRAMES), default="iris")
         parser.add_argument("--battery", type=float, default=100.0, metavar="PERCENT")
         parser.add_argument("--wind", default="0,0", metavar="SPEED_MPS,FROM_DEG")
@@ -63,14 +63,14 @@ class Command(BaseCommand):
     def handle(self, **options: Any) -> None:
         try:
             fleet = fleet_of(_launches(options), speed=options["pace"])
-        except (WrongAddress, WrongOrder, InvalidSpeed, ValueError) as error:
+        except (InvalidStationAddress, WrongOrder, InvalidSpeed, ValueError) as error:
             raise CommandError(str(error)) from error
         except OSError as error:
             raise CommandError(f"No socket: {error}") from error
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: fleet.end())
         for flying in fleet.uavs:
-            self.stdout.write(json.dumps({"system": flying.system, "port": flying.radio.port, "flavour": flying.flavour.value}))
+            self.stdout.write(json.dumps({"system": flying.system, "port": flying.radio.port, "flavour": flying.autopilot_type.value}))
         self.stdout.flush()
         if options["orders"]:
             threading.Thread(target=self._take_orders, args=(fleet,), daemon=True).start()
@@ -110,7 +110,7 @@ def _launches(options: dict[str, Any]) -> list[Launch]:
             system=first + number,
             home=place,
             airframe=options["airframe"],
-            flavour=Flavour(options["flavour"]),
+            autopilot_type=SimulatedAutopilot(options["flavour"]),
             key=keys.get(first + number),
             seed=options["seed"] + number,
             battery_percent=options["battery"],

@@ -12,7 +12,7 @@ from django.core.management.base import BaseCommand, CommandError
 from operation.program import program_begins
 from simulation.simulator.options import options_of_settings
 from simulation.simulator.process import Simulator, figures_of
-from simulation.vehicle_endpoint.radio import WrongAddress
+from simulation.vehicle_endpoint.radio import InvalidStationAddress
 
 ENDS_WITHIN_S = 9.5
 SWITCH_S = 0.001  # between threads: a step of ten times real time is due every 4 ms
@@ -33,7 +33,7 @@ class Command(BaseCommand):
     def handle(self, *_: Any, name: str | None, most_uavs: int | None, gateway: str | None, **__: Any) -> None:
         try:
             simulator = Simulator(options_of_settings(name=name, most_uavs=most_uavs, gateway=gateway))
-        except WrongAddress as error:
+        except InvalidStationAddress as error:
             raise CommandError(str(error)) from error
 
         def stop(*_: Any) -> None:

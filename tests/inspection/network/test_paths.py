@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from inspection.network.legs import Attachment, DirectLeg, NoWay
 from inspection.network.paths.along_paths import BEND, passed_on
-from inspection.network.paths.contracted_graph import CORE, condense
+from inspection.network.paths.contracted_graph import CORE, contract
 from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import route_index
 from tests.inspection.network import search_oracle
@@ -177,22 +177,22 @@ def test_ways_equal_those_of_a_search_over_the_whole_graph(planning):
 @given(plannings())
 def test_condensing_keeps_every_edge_and_node_once(planning):
     graph, _, _ = planning
-    condensed = condense(graph.node_count, graph.edge, graph.cost, graph.length_m)
+    contracted = contract(graph.node_count, graph.edge, graph.cost, graph.length_m)
     degree = np.bincount(graph.edge.ravel(), minlength=graph.node_count)
-    within = condensed.node_chain != CORE
+    within = contracted.node_chain != CORE
     assert (degree[within] == 2).all()
-    assert sorted(condensed.core_node.tolist()) == np.flatnonzero(~within).tolist()
-    first = condensed.chain_first.tolist()
+    assert sorted(contracted.core_node.tolist()) == np.flatnonzero(~within).tolist()
+    first = contracted.chain_first.tolist()
     walked = []
     for chain, (begin, end) in enumerate(pairwise(first)):
-        nodes = condensed.place_node[begin:end].tolist()
-        assert (condensed.core_node[[condensed.chain_tail[chain], condensed.chain_head[chain]]] == [nodes[0], nodes[-1]]).all()
-        assert (condensed.node_chain[nodes[1:-1]] == chain).all()
-        assert (condensed.place_node[condensed.node_place[nodes[1:-1]]] == nodes[1:-1]).all()
+        nodes = contracted.place_node[begin:end].tolist()
+        assert (contracted.core_node[[contracted.chain_tail[chain], contracted.chain_head[chain]]] == [nodes[0], nodes[-1]]).all()
+        assert (contracted.node_chain[nodes[1:-1]] == chain).all()
+        assert (contracted.place_node[contracted.node_place[nodes[1:-1]]] == nodes[1:-1]).all()
         walked += [tuple(sorted(pair)) for pair in pairwise(nodes)]
     assert sorted(walked) == sorted(map(tuple, graph.edge.tolist()))
-    assert condensed.chain_m.sum() == pytest.approx(graph.length_m.sum())
-    assert condensed.chain_cost.sum() == pytest.approx(graph.cost.sum())
+    assert contracted.chain_m.sum() == pytest.approx(graph.length_m.sum())
+    assert contracted.chain_cost.sum() == pytest.approx(graph.cost.sum())
 
 
 def test_two_places_on_one_ring_are_joined_the_short_way_round():
@@ -205,9 +205,9 @@ def test_two_places_on_one_ring_are_joined_the_short_way_round():
 
 
 def test_two_edges_between_two_nodes_count_as_the_cheaper():
-    condensed = condense(2, np.array([[0, 1], [0, 1], [1, 1]]), np.array([5.0, 3.0, 1.0]), np.array([5.0, 3.0, 1.0]))
-    assert condensed.core_count == 1
-    assert condensed.chain_m.tolist() == [8.0]
+    contracted = contract(2, np.array([[0, 1], [0, 1], [1, 1]]), np.array([5.0, 3.0, 1.0]), np.array([5.0, 3.0, 1.0]))
+    assert contracted.core_count == 1
+    assert contracted.chain_m.tolist() == [8.0]
 
 
 def test_the_index_is_made_once_even_when_threads_ask_at_the_same_time():

@@ -8,7 +8,7 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import connection
 
 from inspection.models import Asset, DataGap, GapSearch, GapState
-from inspection.quality.network import Network
+from inspection.quality.network import SupportNetwork
 from inspection.quality.repair import search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.services import find_gaps, import_osm
@@ -88,7 +88,7 @@ def test_a_region_has_its_untagged_vertices(name, without_support, all_nodes, ex
     """README of the real data: 156 of the 731 nodes of its lines are no support, 21 %. Some are ends in substations."""
     import_osm(path=region_file(name))
     ground = gap_ground()
-    network = Network(ground)
+    network = SupportNetwork(ground)
     bare = network.node_count - network.support_count
     assert (bare, bare + int(network.is_carried.sum())) == (without_support, all_nodes)
     gaps = [gap for gap in search(ground) if gap.kind in {"missing_support", "line_without_towers"}]
@@ -250,7 +250,7 @@ def test_ends_that_miss_each_other_are_joined(curator):
     assert state_of(gap) == GapState.REPAIRED
     ends = {Asset.objects.get(pk=one.pk).geometry.coords[-1], Asset.objects.get(pk=other.pk).geometry.coords[0]}
     assert len(ends) == 1 or Asset.objects.get(pk=other.pk).geometry.coords[0] == (10.0, 56.02)
-    assert Network(gap_ground()).component.max() == 0
+    assert SupportNetwork(gap_ground()).component.max() == 0
 
 
 def test_an_end_beside_a_span_gets_a_vertex_there(curator):
@@ -262,7 +262,7 @@ def test_an_end_beside_a_span_gets_a_vertex_there(curator):
     assert repaired.said == "2 lines changed."
     assert len(Asset.objects.get(pk=through.pk).geometry.coords) == 3
     assert Asset.objects.get(pk=branch.pk).geometry.coords[0] == Asset.objects.get(pk=through.pk).geometry.coords[1]
-    assert Network(gap_ground()).component.max() == 0
+    assert SupportNetwork(gap_ground()).component.max() == 0
 
 
 def test_a_dead_end_is_led_on_to_the_network(curator):

@@ -5,7 +5,7 @@ import pytest
 
 from inspection.network.build.edges import component_labels
 from inspection.quality.infrastructure import Gap, GapGround
-from inspection.quality.network import Network
+from inspection.quality.network import SupportNetwork
 from inspection.quality.repair import search
 from inspection.quality.supports import course_of_row
 from inspection.serializers.gaps import sentence, title
@@ -253,7 +253,7 @@ def test_the_smaller_side_of_each_leg_agrees_with_taking_it_away() -> None:
     places = [tuple(place) for place in chance.uniform(0, 20_000, (40, 2)).round(0).tolist()]
     lines = [[places[index], places[chance.integers(0, index)]] for index in range(1, 40)]
     lines += [[places[one], places[other]] for one, other in chance.integers(0, 40, (6, 2)).tolist() if one != other]
-    network = Network(ground(*lines, towers=places))
+    network = SupportNetwork(ground(*lines, towers=places))
     pair, metres, _ = network.pairs
     for index in range(len(pair)):
         rest = np.arange(len(pair)) != index

@@ -7,29 +7,29 @@ import pytest
 
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES, OwnAction, Settings
-from simulation.flight.events import Crashed, ModeChanged, Said
+from simulation.flight.events import Crashed, ModeChanged, StatusTextSent
 from simulation.flight.faults import Faults, ImpossibleFault
 from simulation.flight.flown import Ending, fly_mission
-from simulation.flight.states import Landed, Mode, Refused
+from simulation.flight.states import FlightMode, Landed, OrderRefused
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, begin, land, off_m, place, reached, step, take_off, waypoint
 
 IRIS = AIRFRAMES["iris"]
 
 
-def own_modes(events: list[object]) -> list[Mode]:
+def own_modes(events: list[object]) -> list[FlightMode]:
     return [event.mode for event in events if isinstance(event, ModeChanged) and event.is_own]
 
 
 def texts(events: list[object]) -> str:
-    return " | ".join(event.text for event in events if isinstance(event, Said))
+    return " | ".join(event.text for event in events if isinstance(event, StatusTextSent))
 
 
 def test_weak_battery_returns_in_time_and_lands_at_home() -> None:
     uav = SimulatedUav(IRIS, HOME, battery_percent=17.0)
     uav.load([take_off(), waypoint(0.0, 0.0), waypoint(300.0, 0.0), land(300.0, 0.0)])
     flown = fly_mission(uav)
-    assert own_modes(list(flown.events))[0] is Mode.RETURN
+    assert own_modes(list(flown.events))[0] is FlightMode.RETURN
     assert "Battery low: 15 %" in texts(list(flown.events))
     assert flown.ending is Ending.LANDED
     assert off_m(flown.end.true_position, HOME) < 0.5
@@ -41,7 +41,7 @@ def test_battery_that_suddenly_holds_little_lands_at_once() -> None:
     uav.faults = Faults(battery_wh_left=0.05 * IRIS.battery_wh)
     events = step(uav, 15.0)
     assert uav.state.landed is Landed.ON_GROUND
-    assert own_modes(list(events))[0] is Mode.LAND
+    assert own_modes(list(events))[0] is FlightMode.LAND
     assert 3.0 < uav.state.battery_percent < 5.0
     assert not uav.arm().is_done
     uav.faults = replace(uav.faults, battery_wh_left=None)
@@ -53,7 +53,7 @@ def test_what_the_battery_does_by_itself_can_be_switched_off_until_it_is_empty()
     uav = airborne(SimulatedUav(IRIS, HOME, settings=quiet))
     uav.faults = Faults(battery_wh_left=0.3)
     events = step(uav, 5.0)
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
     assert own_modes(list(events)) == []
     events = step(uav, 10.0)
     assert uav.is_crashed
@@ -66,14 +66,14 @@ def test_without_gps_it_drifts_lands_after_its_patience_and_says_so() -> None:
     uav.faults = Faults(gps_lost_until_s=uav.now_s + 60.0)
     events = step(uav, 9.0)
     state = uav.state
-    assert (state.gps.fix, state.gps.satellites, state.mode) == (0, 0, Mode.HOLD)
+    assert (state.gps.fix, state.gps.satellites, state.mode) == (0, 0, FlightMode.HOLD)
     off = off_m(state.position, state.true_position)
     assert 0.3 < off < 15.0
     assert off_m(state.position, HOME) < 0.5  # where it takes itself to be, it holds
     events += step(uav, 25.0)
-    assert own_modes(list(events))[-2:] == [Mode.LAND, Mode.HOLD]
+    assert own_modes(list(events))[-2:] == [FlightMode.LAND, FlightMode.HOLD]
     assert uav.state.landed is Landed.ON_GROUND
-    assert isinstance(uav.arm(), Refused)
+    assert isinstance(uav.arm(), OrderRefused)
 
 
 def test_gps_that_comes_back_in_time_brings_the_uav_back() -> None:
@@ -83,7 +83,7 @@ def test_gps_that_comes_back_in_time_brings_the_uav_back() -> None:
     assert off_m(uav.state.true_position, HOME) < 0.5
     assert uav.state.position == uav.state.true_position
     assert "GPS fix again" in texts(list(events))
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
 
 
 def test_motor_failure_in_the_air_is_a_crash_that_stays_one() -> None:
@@ -98,8 +98,8 @@ def test_motor_failure_in_the_air_is_a_crash_that_stays_one() -> None:
     assert uav.state.true_position == where
     assert not uav.state.is_armed
     assert not uav.state.is_in_air
-    for outcome in (uav.arm(), uav.take_off(10.0), uav.hold(), uav.set_mode(Mode.LAND)):
-        assert isinstance(outcome, Refused)
+    for outcome in (uav.arm(), uav.take_off(10.0), uav.hold(), uav.set_mode(FlightMode.LAND)):
+        assert isinstance(outcome, OrderRefused)
 
 
 def test_motors_stopped_in_the_air_by_force_let_it_fall() -> None:

@@ -8,7 +8,7 @@ from pymavlink.dialects.v20 import common as mavlink
 from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import AIRFRAMES, Settings
 from simulation.flight.events import Armed, Disarmed
-from simulation.flight.states import Landed, MissionState, Mode, Refused
+from simulation.flight.states import FlightMode, Landed, MissionItemState, OrderRefused
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, at, off_m, place, plain, step, take_off, waypoint
 
@@ -36,11 +36,11 @@ def test_list_that_cannot_be_flown_is_refused_whole(item: MissionItem, code: str
     kept = [take_off(), waypoint(10.0, 0.0)]
     assert uav.load(kept).is_done
     outcome = uav.load([take_off(), item])
-    assert isinstance(outcome, Refused)
+    assert isinstance(outcome, OrderRefused)
     assert outcome.code == code
     assert "Item 1" in outcome.words
     assert uav.items == tuple(kept)
-    assert uav.state.mission_state is MissionState.NOT_STARTED
+    assert uav.state.mission_state is MissionItemState.NOT_STARTED
 
 
 def test_what_is_left_open_is_filled_in() -> None:
@@ -49,10 +49,10 @@ def test_what_is_left_open_is_filled_in() -> None:
     here = MissionItem(mavlink.MAV_CMD_NAV_TAKEOFF, 6, (NAN, NAN, NAN, NAN), 0, 0, NAN)
     stay = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, 6, (NAN, NAN, NAN, NAN), 0, 0, NAN)
     assert uav.load([here, stay]).is_done
-    assert uav.set_mode(Mode.MISSION).is_done
+    assert uav.set_mode(FlightMode.MISSION).is_done
     assert uav.arm().is_done
     step(uav, 12.0)
-    assert uav.state.mission_state is MissionState.COMPLETE
+    assert uav.state.mission_state is MissionItemState.COMPLETE
     assert uav.state.altitude_relative_m == pytest.approx(6.0, abs=0.3)
     assert off_m(uav.state.position, HOME) < 0.3
 
@@ -70,10 +70,10 @@ def test_take_off_that_is_ordered_disarmed_waits_for_arming() -> None:
     assert uav.take_off(8.0).is_done
     step(uav, 3.0)
     assert uav.state.landed is Landed.ON_GROUND
-    assert uav.state.mode is Mode.TAKE_OFF
+    assert uav.state.mode is FlightMode.TAKE_OFF
     uav.arm()
     step(uav, 9.0)
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
     assert uav.state.altitude_relative_m == pytest.approx(8.0, abs=0.2)
 
 
@@ -82,7 +82,7 @@ def test_go_to_flies_there_and_return_comes_home_and_lands() -> None:
     assert uav.go_to(place(20.0, 10.0), 12.0, heading_deg=300.0).is_done
     step(uav, 12.0)
     state = uav.state
-    assert state.mode is Mode.GO_TO
+    assert state.mode is FlightMode.GO_TO
     assert off_m(state.position, place(20.0, 10.0)) < 0.3
     assert state.altitude_relative_m == pytest.approx(12.0, abs=0.2)
     assert state.heading_deg == pytest.approx(300.0, abs=2.0)
@@ -94,7 +94,7 @@ def test_go_to_flies_there_and_return_comes_home_and_lands() -> None:
     assert highest_m == pytest.approx(15.0, abs=0.3)
     assert uav.state.landed is Landed.ON_GROUND
     assert off_m(uav.state.true_position, HOME) < 0.3
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
 
 
 def test_speed_can_be_changed_on_the_way() -> None:
@@ -118,14 +118,14 @@ def test_orders_with_what_is_no_number_are_refused(number: float) -> None:
     ]
     assert not any(outcome.is_done for outcome in wrong)
     step(uav, 1.0)
-    assert uav.state.mode is Mode.HOLD
+    assert uav.state.mode is FlightMode.HOLD
     assert math.isfinite(uav.state.altitude_amsl_m)
 
 
 def test_orders_that_make_no_sense_on_the_ground_are_refused() -> None:
     uav = SimulatedUav(IRIS, HOME)
     assert not uav.go_to(place(1.0, 1.0), 5.0).is_done
-    assert not uav.set_mode(Mode.MISSION).is_done
+    assert not uav.set_mode(FlightMode.MISSION).is_done
     assert not uav.set_current(0).is_done
     assert not uav.change_speed(0.0).is_done
 

@@ -15,13 +15,13 @@ from mavlink.vehicle_plan import MissionType
 from simulation.flight.plant import FlatGround
 from simulation.flight.states import FlightMode
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.mode_numbers import GUIDED, Flavour
+from simulation.vehicle_protocol.mode_numbers import GUIDED, SimulatedAutopilot
 from tests.simulation.fleets import AT, flying, free_port, wait_for
 
 SPEED = 20.0
 GROUND_M = 40.0
 SYSTEM = 7
-WAITS = {Flavour.PX4: "COM_DISARM_PRFLT", Flavour.ARDUPILOT: "DISARM_DELAY"}
+WAITS = {SimulatedAutopilot.PX4: "COM_DISARM_PRFLT", SimulatedAutopilot.ARDUPILOT: "DISARM_DELAY"}
 HOME = "16 0 0 0 0 0 55.4 10.4 40"
 MISSION = ("22 3 0 0 0 0 55.4 10.4 15", "16 3 2 0 0 0 55.4004 10.4 20", "21 3 0 0 0 0 55.4004 10.4 0")
 FENCE = ("5001 0 3 0 0 0 55.41 10.39 0", "5001 0 3 0 0 0 55.41 10.41 0", "5001 0 3 0 0 0 55.39 10.4 0")
@@ -116,11 +116,11 @@ def listed(text: str) -> list[str]:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("flavour", Flavour)
-def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_mavproxy_loads_lists_sets_and_flies(autopilot_type, tmp_path):
     port = free_port()
-    launch = Launch(SYSTEM, AT, flavour=flavour, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
-    mission = [HOME, *MISSION] if flavour is Flavour.ARDUPILOT else list(MISSION)
+    launch = Launch(SYSTEM, AT, autopilot_type=autopilot_type, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
+    mission = [HOME, *MISSION] if autopilot_type is SimulatedAutopilot.ARDUPILOT else list(MISSION)
     with flying([launch], speed=SPEED) as fleet, mavproxy(port, tmp_path) as station:
         uav, pilot, held = fleet.uavs[0].uav, fleet.uavs[0].endpoint.pilot, fleet.uavs[0].endpoint.missions.held
         station.reported("Saved")  # its parameters: it has asked for all it wants
@@ -134,19 +134,22 @@ def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
             station.reported(f"Got MISSION_ACK: TYPE_{kind.name}: ACCEPTED")
             station.type_line(f"{name} list")
             assert listed(station.reported("Saved")) == list(items)
-            assert len(held[kind]) == len(items) - (kind is MissionType.MISSION and flavour is Flavour.ARDUPILOT)
+            assert len(held[kind]) == len(items) - (kind is MissionType.MISSION and autopilot_type is SimulatedAutopilot.ARDUPILOT)
         station.type_line("fence clear")
         station.reported("Got MISSION_ACK: TYPE_FENCE: ACCEPTED")
         assert held[MissionType.FENCE] == ()
 
-        name, value, metres = {Flavour.PX4: ("RTL_RETURN_ALT", "33", 33.0), Flavour.ARDUPILOT: ("RTL_ALT", "3300", 33.0)}[flavour]
+        name, value, metres = {
+            SimulatedAutopilot.PX4: ("RTL_RETURN_ALT", "33", 33.0),
+            SimulatedAutopilot.ARDUPILOT: ("RTL_ALT", "3300", 33.0),
+        }[autopilot_type]
         station.type_line(f"param set {name} {value}")
         wait_for(lambda: uav.settings.return_height_m == metres, "the parameter")
         station.asked(f"param show {name}", f"{float(value):.1f}")
 
-        station.type_line(f"param set {WAITS[flavour]} 120")  # simulated seconds on the ground: the machine may be busy
+        station.type_line(f"param set {WAITS[autopilot_type]} 120")  # simulated seconds on the ground: the machine may be busy
         wait_for(lambda: uav.settings.disarm_on_ground_s == 120.0, "the parameter")
-        if flavour is Flavour.ARDUPILOT:
+        if autopilot_type is SimulatedAutopilot.ARDUPILOT:
             station.type_line("mode GUIDED")
             station.reported("DO_SET_MODE: ACCEPTED")
             assert pilot.custom_mode == GUIDED

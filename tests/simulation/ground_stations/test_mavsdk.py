@@ -17,14 +17,14 @@ from mavsdk.plugins.telemetry import Telemetry
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from tests.simulation.fleets import AT, TIMEOUT_S, flying, free_port, wait_for
 
 SPEED = 20.0
 GROUND_M = 40.0
 NORTH_DEG = 1 / 111_195.0
 # Simulated seconds armed on the ground: the machine may be busy.
-WAITS = {Flavour.PX4: "COM_DISARM_PRFLT", Flavour.ARDUPILOT: "DISARM_DELAY"}
+WAITS = {SimulatedAutopilot.PX4: "COM_DISARM_PRFLT", SimulatedAutopilot.ARDUPILOT: "DISARM_DELAY"}
 MISSION, HOLD, RETURN, LAND = "MISSION", "HOLD", "RETURN_TO_LAUNCH", "LAND"
 
 
@@ -33,7 +33,7 @@ class Station:
     """MAVSDK with the plugins that the tests use."""
 
     fleet: Fleet
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
     action: Action
     telemetry: Telemetry
     mission: Mission
@@ -48,11 +48,11 @@ class Station:
         return float(self.telemetry.position().relative_altitude_m)
 
 
-@pytest.fixture(scope="module", params=list(Flavour))
+@pytest.fixture(scope="module", params=list(SimulatedAutopilot))
 def station(request) -> Iterator[Station]:
     """One for all tests of a flavour, in their order: each leaves the UAV on the ground, disarmed."""
     port = free_port()
-    launch = Launch(7, AT, flavour=request.param, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
+    launch = Launch(7, AT, autopilot_type=request.param, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
     with flying([launch], speed=SPEED) as fleet:
         mavsdk = Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION))
         try:
@@ -71,10 +71,10 @@ def landed(station: Station) -> None:
     wait_for(lambda: not station.telemetry.in_air() and not station.telemetry.armed(), "landing")
 
 
-def raw_items(flavour: Flavour) -> list[RawItem]:
+def raw_items(autopilot_type: SimulatedAutopilot) -> list[RawItem]:
     """Home first for ArduPilot; figures that both flavours keep."""
     place = (round(AT.lat * 1e7) + 3_000, round(AT.lon * 1e7))
-    home = [(16, 0, 0.0, *place, GROUND_M)] if flavour is Flavour.ARDUPILOT else []
+    home = [(16, 0, 0.0, *place, GROUND_M)] if autopilot_type is SimulatedAutopilot.ARDUPILOT else []
     flown = [(22, 3, 0.0, *place, 15.25), (16, 3, 2.0, place[0] + 123, place[1] - 4_567, 20.5), (21, 3, 0.0, *place, 0.0)]
     return [
         RawItem(seq, frame, command, int(seq == 0), 1, one, 0.0, 0.0, 0.0, lat, lon, height_m, 0)
@@ -99,27 +99,29 @@ def test_it_is_found_healthy_and_where_it_stands(station):
     assert 10 < battery.voltage_v < 13 and battery.remaining_percent == pytest.approx(100, abs=1)
     wait_for(lambda: station.telemetry.gps_info().num_satellites >= 6, "satellites")
     assert not station.telemetry.armed() and not station.telemetry.in_air()
-    assert station.info.get_version().flight_sw_major == {Flavour.PX4: 1, Flavour.ARDUPILOT: 4}[station.flavour]
+    assert (
+        station.info.get_version().flight_sw_major == {SimulatedAutopilot.PX4: 1, SimulatedAutopilot.ARDUPILOT: 4}[station.autopilot_type]
+    )
 
 
 def test_a_list_is_read_back_as_it_was_sent(station):
-    sent = raw_items(station.flavour)
+    sent = raw_items(station.autopilot_type)
     station.raw.upload_mission(sent)
     read = station.raw.download_mission()
-    first = station.flavour.first_item
+    first = station.autopilot_type.first_item
     assert figures(read)[first:] == figures(sent)[first:]
     if first:
         assert (read[0].x, read[0].y, read[0].z) == (round(AT.lat * 1e7), round(AT.lon * 1e7), GROUND_M), "home is the vehicle's own"
 
 
 def test_a_list_with_a_bad_item_leaves_the_one_before(station):
-    before = raw_items(station.flavour)
+    before = raw_items(station.autopilot_type)
     station.raw.upload_mission(before)
-    bad = raw_items(station.flavour)
+    bad = raw_items(station.autopilot_type)
     bad[-2].x = 910_000_000
     with pytest.raises(MissionRawError):
         station.raw.upload_mission(bad)
-    first = station.flavour.first_item
+    first = station.autopilot_type.first_item
     assert figures(station.raw.download_mission())[first:] == figures(before)[first:]
     station.raw.clear_mission()
     assert len(station.raw.download_mission()) == first
@@ -137,8 +139,8 @@ def test_fence_and_rally_points_are_read_back_as_they_were_sent(station):
 
 
 def test_parameters_are_read_and_set_and_a_missing_one_is_no_wait(station):
-    name = {Flavour.PX4: "RTL_RETURN_ALT", Flavour.ARDUPILOT: "RTL_ALT"}[station.flavour]
-    per_metre = {Flavour.PX4: 1, Flavour.ARDUPILOT: 100}[station.flavour]
+    name = {SimulatedAutopilot.PX4: "RTL_RETURN_ALT", SimulatedAutopilot.ARDUPILOT: "RTL_ALT"}[station.autopilot_type]
+    per_metre = {SimulatedAutopilot.PX4: 1, SimulatedAutopilot.ARDUPILOT: 100}[station.autopilot_type]
     assert station.param.get_param_float(name) == 30.0 * per_metre
     station.param.set_param_float(name, 25.0 * per_metre)
     assert station.param.get_param_float(name) == 25.0 * per_metre
@@ -166,7 +168,9 @@ def test_armed_taken_off_flown_somewhere_and_landed(station):
 def test_a_mission_is_flown_paused_resumed_and_ends_at_home(station):
     """The return home is told once it hovers at the last place, as an operator does. ArduPilot's list begins with home and a take-off."""
     lat, lon = round(AT.lat * 1e7), round(AT.lon * 1e7)
-    before = [(16, 0, 0.0, lat, lon, GROUND_M), (22, 3, 0.0, lat, lon, 20.0)] if station.flavour is Flavour.ARDUPILOT else []
+    before = (
+        [(16, 0, 0.0, lat, lon, GROUND_M), (22, 3, 0.0, lat, lon, 20.0)] if station.autopilot_type is SimulatedAutopilot.ARDUPILOT else []
+    )
     flown = [(16, 3, 0.0, lat + north_m * 90, lon, height_m) for north_m, height_m in ((60, 20.0), (120, 25.0), (180, 25.0))]
     items = [
         RawItem(seq, frame, command, int(seq == 0), 1, one, 0.0, 0.0, math.nan, *place, height_m, 0)
@@ -191,7 +195,7 @@ def test_a_mission_is_flown_paused_resumed_and_ends_at_home(station):
     assert station.telemetry.position().latitude_deg == pytest.approx(AT.lat, abs=1.5 * NORTH_DEG)
 
 
-@pytest.mark.parametrize("station", [Flavour.PX4], indirect=True)
+@pytest.mark.parametrize("station", [SimulatedAutopilot.PX4], indirect=True)
 def test_the_mission_plugin_flies_its_own_items(station):
     """Not on ArduPilot: there the plugin has its first place lost as home, and reads back a frame that it does not know."""
     plan = [MissionItem(AT.lat + north_m * NORTH_DEG, AT.lon, 20.0, 8.0, True, acceptance_radius_m=2.0) for north_m in (30.0, 60.0)]

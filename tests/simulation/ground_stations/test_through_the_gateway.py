@@ -9,7 +9,7 @@ from missions.services.commands.commands import queue_command
 from missions.services.commands.dispatch import dispatch_mission, load_of
 from simulation.flight.plant import FlatGround
 from simulation.vehicle_endpoint.launch import Launch
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from telemetry.models import TelemetryRecord, UavLink
 from tests.accounts.users import a_user
 from tests.missions.flights import approved, ground
@@ -54,12 +54,14 @@ def fresh(mission: Mission) -> Mission:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("flavour", list(Flavour))
-def test_a_mission_is_flown_to_its_end(flavour, uav_and_key, mission, tmp_path):
+@pytest.mark.parametrize("autopilot_type", list(SimulatedAutopilot))
+def test_a_mission_is_flown_to_its_end(autopilot_type, uav_and_key, mission, tmp_path):
     uav, key = uav_and_key
     port = free_port()
     ground_below, station = FlatGround(GROUND_M), ("127.0.0.1", port)
-    launch = Launch(SYSTEM, LonLat(*UAV_AT), airframe="inspector", flavour=flavour, key=key, ground=ground_below, talks_to=[station])
+    launch = Launch(
+        SYSTEM, LonLat(*UAV_AT), airframe="inspector", autopilot_type=autopilot_type, key=key, ground=ground_below, talks_to=[station]
+    )
     with gateway_program(port, tmp_path), flying([launch], speed=SPEED) as fleet:
         (upload,) = dispatch_mission(mission=mission, actor=mission.author)
         load = load_of(ended(upload))
@@ -80,7 +82,9 @@ def test_a_mission_is_flown_to_its_end(flavour, uav_and_key, mission, tmp_path):
         wait_for(lambda: fresh(mission).state == MissionState.COMPLETED, "the end of the mission", patience_s=90.0)
     assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
     records = TelemetryRecord.objects.filter(uav=uav)
-    assert records.filter(is_in_air=True, mode={Flavour.PX4: "MISSION", Flavour.ARDUPILOT: "AUTO"}[flavour]).exists()
+    assert records.filter(
+        is_in_air=True, mode={SimulatedAutopilot.PX4: "MISSION", SimulatedAutopilot.ARDUPILOT: "AUTO"}[autopilot_type]
+    ).exists()
     assert records.latest("measured_at").battery_percent < 100
     assert not UavLink.objects.get(uav=uav).losses.get("wrong-signature")
     assert fleet.uavs[0].refused == 0

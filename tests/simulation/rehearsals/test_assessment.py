@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from simulation.assessment.flown import Ending, FlownFlight, FlownRoute
+from simulation.assessment.flown import AssessedRoute, FlownFlight, TrackEnding
 from simulation.assessment.following import following_of
-from simulation.assessment.judging import Verdict, judge
+from simulation.assessment.judging import Assessment, judge
 from simulation.assessment.limits import Level
 from simulation.assessment.obstacles import nearest_standing
 from simulation.assessment.stored import assessment_to_json, track_to_json
 from tests.simulation.flown import LIMITS, UP_M, a_route, a_track, around, flown, rows, standing, zones
 
 
-def codes(verdict: Verdict) -> list[tuple[str, str]]:
+def codes(verdict: Assessment) -> list[tuple[str, str]]:
     return [(str(finding.level), finding.code) for finding in verdict.findings]
 
 
-def judged(*routes: FlownRoute, **more) -> Verdict:
+def judged(*routes: AssessedRoute, **more) -> Assessment:
     return judge(routes, around(**more), LIMITS)
 
 
@@ -72,13 +72,13 @@ def test_whoever_comes_later_than_uavs_are_kept_apart_in_time_is_warned_of() -> 
     assert ("warnings", "late") in codes(verdict)
 
 
-@pytest.mark.parametrize("ending", [Ending.CRASHED, Ending.UNFINISHED, Ending.REFUSED])
-def test_a_flight_that_did_not_end_well_fails(ending: Ending) -> None:
+@pytest.mark.parametrize("ending", [TrackEnding.CRASHED, TrackEnding.UNFINISHED, TrackEnding.REFUSED])
+def test_a_flight_that_did_not_end_well_fails(ending: TrackEnding) -> None:
     assert ("fail", str(ending)) in codes(judged(flown(a_track(rows(), ending=ending))))
 
 
 def test_a_flight_that_never_began_fails_with_its_targets() -> None:
-    route = FlownRoute(0, "Tern", a_route(), (FlownFlight(a_route().flights[0], None),), 20.0)
+    route = AssessedRoute(0, "Tern", a_route(), (FlownFlight(a_route().flights[0], None),), 20.0)
     assert set(codes(judged(route))) == {("fail", "not-begun"), ("fail", "not-flown-to")}
 
 
@@ -148,14 +148,14 @@ def test_two_uavs_at_the_same_time_are_measured_from_each_other(east_m: float, e
     other = flown(uav=1, name="Gull", east_m=east_m)
     verdict = judged(flown(), other)
     assert verdict.level is expected
-    assert verdict.meetings[0].away_m == pytest.approx(east_m, abs=0.1)
+    assert verdict.closest_approaches[0].away_m == pytest.approx(east_m, abs=0.1)
     assert {finding.uav for finding in verdict.findings} == ({0, 1} if expected is not Level.PASS else set())
 
 
 def test_two_uavs_at_one_place_one_after_the_other_do_not_meet() -> None:
     later = [(t_s + 600.0, *rest) for t_s, *rest in rows()]
     other = flown(a_track(later), uav=1, name="Gull")
-    assert not judged(flown(), other).meetings
+    assert not judged(flown(), other).closest_approaches
 
 
 def test_a_verdict_and_a_track_are_plain_values_to_the_digits_that_are_shown() -> None:

@@ -277,9 +277,9 @@ def test_what_was_rehearsed_without_a_mast_that_the_network_has_by_now_is_not_ap
     worlds.power_line([tower((lon + 0.002, lat + 0.003 * place)) for place in (1, 2)])
     mark_ground_changed()
     rehearsed(mission, person, "as-planned")
-    revision = planning_read().edition
+    revision = planning_read().dataset_version
     build_graph()
-    assert planning_read().edition == revision
+    assert planning_read().dataset_version == revision
     assert [reason.code for reason in reasons_without_rehearsal(loaded(mission))] == ["rehearsal_on_other_ground"]
     with mock.patch("simulation.services.rehearsals.fly", side_effect=Flown), pytest.raises(Flown):
         rehearsed(mission, person, "as-planned")

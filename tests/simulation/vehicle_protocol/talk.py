@@ -6,7 +6,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Outgoing, Station
 from tests.simulation.kinematic_uav import STEP_S, KinematicUav
 
@@ -25,13 +25,13 @@ def over_the_wire(message: Any, system: int, component: int) -> Any:
 class Talk:
     """`send` returns what comes back to everybody and to this station, `pass_by` what the vehicle says by itself meanwhile."""
 
-    flavour: Flavour = Flavour.PX4
+    autopilot_type: SimulatedAutopilot = SimulatedAutopilot.PX4
     uav: Any = field(default_factory=KinematicUav)
     now_s: float = 0.0
     station: Station = STATION
 
     def __post_init__(self) -> None:
-        self.endpoint = Endpoint(self.uav, flavour=self.flavour, system=SYSTEM, unix_at_zero_s=UNIX_S)
+        self.endpoint = Endpoint(self.uav, autopilot_type=self.autopilot_type, system=SYSTEM, unix_at_zero_s=UNIX_S)
         self.endpoint.tick(self.now_s)
 
     def send(self, *messages: Any, station: Station | None = None) -> list[Any]:
@@ -63,7 +63,7 @@ class Talk:
     def mode(self) -> tuple[int, int]:
         """PX4's main and sub mode; ArduPilot's number and 0."""
         number = self.endpoint.pilot.custom_mode
-        return (number >> 16 & 0xFF, number >> 24) if self.flavour is Flavour.PX4 else (number, 0)
+        return (number >> 16 & 0xFF, number >> 24) if self.autopilot_type is SimulatedAutopilot.PX4 else (number, 0)
 
 
 def kinds(messages: list[Any]) -> list[str]:

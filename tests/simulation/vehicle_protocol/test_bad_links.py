@@ -11,12 +11,12 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.mission_server import as_kept
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import KinematicUav
 from tests.simulation.vehicle_protocol.talk import SYSTEM, UNIX_S, over_the_wire
 from tests.telemetry.vehicles.channel import Channel, Link
-from tests.telemetry.vehicles.loads import ENDS, load, polygon, rally
+from tests.telemetry.vehicles.loads import ADDRESSING, load, polygon, rally
 
 NEW = load(60, fence=polygon(0, 5), rally=rally())
 OLD = load(20, east=40_000, fence=polygon(9_000))
@@ -26,11 +26,11 @@ SEEDS = [*range(5), *(pytest.param(seed, marks=pytest.mark.long) for seed in ran
 class OnChannel:
     """An endpoint as the channel of the ground station's tests drives a vehicle."""
 
-    def __init__(self, flavour: Flavour) -> None:
+    def __init__(self, autopilot_type: SimulatedAutopilot) -> None:
         self.system, self.is_alive = SYSTEM, True
-        self.endpoint = Endpoint(KinematicUav(), flavour=flavour, system=SYSTEM, unix_at_zero_s=UNIX_S)
+        self.endpoint = Endpoint(KinematicUav(), autopilot_type=autopilot_type, system=SYSTEM, unix_at_zero_s=UNIX_S)
         for kind in MissionType:
-            items = tuple(as_kept(item, kind, flavour) for item in OLD.of(kind))
+            items = tuple(as_kept(item, kind, autopilot_type) for item in OLD.of(kind))
             assert self.endpoint.missions.put(kind, items) == 0
         self.wake_at_s: float | None = 0.0
 
@@ -70,24 +70,26 @@ def reported(vehicle: OnChannel) -> VehicleState:
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("loss", [0.0, 0.3])
-@pytest.mark.parametrize("flavour", Flavour)
-def test_a_load_arrives_over_a_bad_link_and_is_read_back(flavour, loss, seed):
-    vehicle = OnChannel(flavour)
-    keeper = MissionSync(NEW, reported(vehicle), ENDS, TransferRules(), known=[OLD])
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_a_load_arrives_over_a_bad_link_and_is_read_back(autopilot_type, loss, seed):
+    vehicle = OnChannel(autopilot_type)
+    keeper = MissionSync(NEW, reported(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     outcome = Channel(keeper, vehicle, Link(loss, duplicates=0.1, reordered=0.1), seed).run(until_s=7_200.0)
     assert (outcome.state, outcome.sha256, outcome.mixes) == (SyncState.READY, NEW.content_sha256, ()), outcome
     for kind in MissionType:
-        assert vehicle.held(kind) == figures(tuple(as_kept(item, kind, flavour) for item in NEW.of(kind)))
+        assert vehicle.held(kind) == figures(tuple(as_kept(item, kind, autopilot_type) for item in NEW.of(kind)))
 
 
 @pytest.mark.parametrize("dies_after", range(1, 150, 11))
-@pytest.mark.parametrize("flavour", Flavour)
-def test_a_station_that_dies_leaves_each_list_old_or_new(flavour, dies_after):
-    vehicle = OnChannel(flavour)
-    keeper = MissionSync(NEW, reported(vehicle), ENDS, TransferRules(), known=[OLD])
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_a_station_that_dies_leaves_each_list_old_or_new(autopilot_type, dies_after):
+    vehicle = OnChannel(autopilot_type)
+    keeper = MissionSync(NEW, reported(vehicle), ADDRESSING, TransferRules(), known=[OLD])
     channel = Channel(keeper, vehicle, Link(0.1), seed=dies_after, ground_dies_after=dies_after)
     channel.run(until_s=7_200.0)
     channel.let_pass(30.0)
     for kind in MissionType:
-        assert vehicle.held(kind) in [figures(tuple(as_kept(item, kind, flavour) for item in one.of(kind))) for one in (OLD, NEW)] + ["[]"]
+        assert vehicle.held(kind) in [
+            figures(tuple(as_kept(item, kind, autopilot_type) for item in one.of(kind))) for one in (OLD, NEW)
+        ] + ["[]"]
     assert not vehicle.endpoint.missions.is_uploading

@@ -13,7 +13,7 @@ from mavlink.signing import FrameWriter
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import HOME, KinematicUav
 
@@ -67,11 +67,11 @@ def _value(chance: random.Random, name: str, field: str, kind: str) -> Any:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("flavour", Flavour)
-def test_nothing_that_comes_in_makes_it_fail_or_leaves_a_command_without_its_one_answer(flavour, seed):
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_nothing_that_comes_in_makes_it_fail_or_leaves_a_command_without_its_one_answer(autopilot_type, seed):
     chance = random.Random(seed)
     uav: Any = SimulatedUav(AIRFRAMES["iris"], HOME) if seed % 3 == 0 else KinematicUav()
-    endpoint = Endpoint(uav, flavour=flavour, system=7, unix_at_zero_s=1.8e9)
+    endpoint = Endpoint(uav, autopilot_type=autopilot_type, system=7, unix_at_zero_s=1.8e9)
     writer, ground = FrameWriter(7, 1), FrameWriter(255, 190)
     for number in range(MESSAGES):
         now_s = number * 0.01

@@ -7,14 +7,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.mission_server import MAX_REQUESTS, REQUEST_INTERVAL_S
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import Station
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import TO, Talk, kinds, only
 from tests.telemetry.vehicles.loads import mission, polygon, rally, waypoint
 
 MISSION, FENCE, RALLY = MissionType
-REQUEST = {Flavour.PX4: "MISSION_REQUEST_INT", Flavour.ARDUPILOT: "MISSION_REQUEST"}
+REQUEST = {SimulatedAutopilot.PX4: "MISSION_REQUEST_INT", SimulatedAutopilot.ARDUPILOT: "MISSION_REQUEST"}
 HOME_ITEM = MissionItem(16, 0, (0.0, 0.0, 0.0, 0.0), 1, 2, 3.0)
 OTHER = Station(254, 190, 2)
 
@@ -30,10 +30,10 @@ def item(number, one, kind=MISSION):
 
 def upload(talk, items, kind=MISSION):
     """What the last message draws."""
-    sent = [HOME_ITEM, *items] if talk.flavour is Flavour.ARDUPILOT and kind is MISSION else items
+    sent = [HOME_ITEM, *items] if talk.autopilot_type is SimulatedAutopilot.ARDUPILOT and kind is MISSION else items
     answers = talk.send(count(len(sent), kind))
     for number, one in enumerate(sent):
-        request = only(answers, REQUEST[talk.flavour])
+        request = only(answers, REQUEST[talk.autopilot_type])
         assert (request.seq, request.mission_type) == (number, kind)
         answers = talk.send(item(number, one, kind))
     return answers
@@ -54,7 +54,7 @@ def as_read(message):
     return repr((message.seq, message.command, message.frame, parameters, message.y, message.x, message.z))
 
 
-@pytest.fixture(params=list(Flavour))
+@pytest.fixture(params=list(SimulatedAutopilot))
 def talk(request):
     return Talk(request.param)
 
@@ -68,7 +68,7 @@ def test_what_is_sent_is_given_back_bit_by_bit():
 
 
 def test_ardupilot_has_home_as_item_0_and_forgets_what_ardupilot_forgets():
-    talk = Talk(Flavour.ARDUPILOT)
+    talk = Talk(SimulatedAutopilot.ARDUPILOT)
     place = MissionItem(16, 6, (2.7, 4.0, 5.0, math.nan), 98_000_001, 554_000_002, 30.129)
     speed = MissionItem(178, 2, (1.0, 5.25, -1.0, 0.0), 9, 9, math.nan)
     assert accepted(upload(talk, [place, speed]))
@@ -141,7 +141,7 @@ def test_out_of_turn_draws_the_request_for_the_right_one_and_again_is_taken_for_
 
 def test_the_last_item_sent_again_is_accepted_again(talk):
     upload(talk, mission(3))
-    last = len(talk.uav.items) - 1 + talk.flavour.first_item
+    last = len(talk.uav.items) - 1 + talk.autopilot_type.first_item
     assert accepted(talk.send(item(last, waypoint(2))))
     assert only(talk.send(item(0, waypoint(2))), "MISSION_ACK").type == mavlink.MAV_MISSION_INVALID_SEQUENCE
     assert len(talk.uav.items) == 3
@@ -172,7 +172,7 @@ def test_tries_go_by_the_wall_and_not_by_simulated_time():
 def test_an_announcement_again_begins_anew_and_another_station_is_denied(talk):
     upload(talk, mission(3))
     talk.send(count(5), item(0, waypoint(0)))
-    assert only(talk.send(count(4)), REQUEST[talk.flavour]).seq == 0
+    assert only(talk.send(count(4)), REQUEST[talk.autopilot_type]).seq == 0
     for message in (count(2), item(0, waypoint(9))):
         assert only(talk.send(message, station=OTHER), "MISSION_ACK").type == mavlink.MAV_MISSION_DENIED
     assert only(talk.send(mavlink.MAVLink_mission_clear_all_message(*TO, 0), station=OTHER), "MISSION_ACK").type != 0
@@ -229,7 +229,7 @@ def test_lists_that_there_are_not_and_changes_in_part_are_unsupported(talk):
 
 
 def test_ardupilot_is_not_cleared_while_it_flies_its_list():
-    talk = Talk(Flavour.ARDUPILOT)
+    talk = Talk(SimulatedAutopilot.ARDUPILOT)
     upload(talk, mission(4))
     talk.uav.arm()
     assert talk.command(mavlink.MAV_CMD_DO_SET_MODE, 1.0, 3.0) == mavlink.MAV_RESULT_ACCEPTED

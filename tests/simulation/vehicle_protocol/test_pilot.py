@@ -9,9 +9,9 @@ from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionType
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import FlatGround
-from simulation.flight.states import Mode
+from simulation.flight.states import FlightMode
 from simulation.flight.uav import SimulatedUav
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import TO, Talk, kinds, only
 from tests.telemetry.vehicles.loads import mission
@@ -24,14 +24,14 @@ PX4_TAKE_OFF, PX4_HOLD, PX4_MISSION, PX4_RETURN, PX4_LAND = ((4, sub) for sub in
 AUTO, GUIDED, LOITER, RTL, BRAKE = 3, 4, 5, 6, 17
 
 
-def flown(flavour=Flavour.PX4):
+def flown(autopilot_type=SimulatedAutopilot.PX4):
     """The very UAV that is simulated."""
-    return Talk(flavour, SimulatedUav(AIRFRAMES["iris"], HOME, ground=FlatGround(HOME_AMSL_M)))
+    return Talk(autopilot_type, SimulatedUav(AIRFRAMES["iris"], HOME, ground=FlatGround(HOME_AMSL_M)))
 
 
-def in_the_air(flavour=Flavour.PX4, height_m=20.0):
-    talk = flown(flavour)
-    if flavour is Flavour.ARDUPILOT:
+def in_the_air(autopilot_type=SimulatedAutopilot.PX4, height_m=20.0):
+    talk = flown(autopilot_type)
+    if autopilot_type is SimulatedAutopilot.ARDUPILOT:
         talk.command(SET_MODE, 1, GUIDED)
         talk.command(ARM, 1)
         talk.command(TAKE_OFF, 0, 0, 0, 0, 0, 0, height_m)
@@ -39,7 +39,7 @@ def in_the_air(flavour=Flavour.PX4, height_m=20.0):
         talk.command(TAKE_OFF, -1, NAN, NAN, NAN, NAN, NAN, HOME_AMSL_M + height_m)
         talk.command(ARM, 1)
     talk.pass_by(25.0)
-    assert talk.uav.state.mode is Mode.HOLD and talk.uav.state.altitude_relative_m == pytest.approx(height_m, abs=0.7)
+    assert talk.uav.state.mode is FlightMode.HOLD and talk.uav.state.altitude_relative_m == pytest.approx(height_m, abs=0.7)
     return talk
 
 
@@ -76,18 +76,18 @@ def test_each_change_of_mode_and_arming_is_in_a_heartbeat_at_once():
 def test_everything_left_open_is_a_pause_where_it_is():
     talk = in_the_air()
     assert talk.command(GO_TO, -1, 1) == ACCEPTED
-    assert talk.uav.state.mode is Mode.HOLD and talk.mode == PX4_HOLD
+    assert talk.uav.state.mode is FlightMode.HOLD and talk.mode == PX4_HOLD
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_it_goes_to_a_place_and_to_a_height(flavour):
-    talk = in_the_air(flavour)
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_it_goes_to_a_place_and_to_a_height(autopilot_type):
+    talk = in_the_air(autopilot_type)
     place = LonLat(HOME.lon, HOME.lat + 30 / 111_195)
     there = (round(place.lat * 1e7), round(place.lon * 1e7))
     message = mavlink.MAVLink_command_int_message(*TO, 0, GO_TO, 0, 0, -1, 1, 0, NAN, *there, HOME_AMSL_M + 26.0)
     assert only(talk.send(message), "COMMAND_ACK").result == ACCEPTED
-    assert talk.uav.state.mode is Mode.GO_TO
-    assert talk.mode == (PX4_HOLD if flavour is Flavour.PX4 else (GUIDED, 0))
+    assert talk.uav.state.mode is FlightMode.GO_TO
+    assert talk.mode == (PX4_HOLD if autopilot_type is SimulatedAutopilot.PX4 else (GUIDED, 0))
     talk.pass_by(20.0)
     assert talk.uav.state.position == pytest.approx(place, abs=5e-6)
     assert talk.uav.state.altitude_relative_m == pytest.approx(26.0, abs=0.5)
@@ -106,9 +106,9 @@ def test_it_goes_nowhere_from_the_ground_nor_into_it_nor_off_the_earth():
     assert talk.mode == PX4_HOLD
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_a_height_above_ground_is_not_taken_for_one_above_the_sea(flavour):
-    talk = in_the_air(flavour)
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_a_height_above_ground_is_not_taken_for_one_above_the_sea(autopilot_type):
+    talk = in_the_air(autopilot_type)
     here = (round(HOME.lat * 1e7), round(HOME.lon * 1e7))
     for number in (GO_TO, TAKE_OFF):
         message = mavlink.MAVLink_command_int_message(*TO, 11, number, 0, 0, -1, 1, 0, NAN, *here, 60.0)
@@ -141,7 +141,7 @@ def test_a_px4_mission_is_started_armed_or_not():
 
 
 def test_ardupilot_is_armed_in_guided_and_not_in_auto():
-    talk = flown(Flavour.ARDUPILOT)
+    talk = flown(SimulatedAutopilot.ARDUPILOT)
     talk.endpoint.missions.put(MissionType.MISSION, mission(5))
     assert talk.mode == (0, 0)
     assert talk.command(SET_MODE, 1, AUTO) == ACCEPTED
@@ -160,20 +160,20 @@ def test_ardupilot_is_armed_in_guided_and_not_in_auto():
         assert talk.mode == (number, 0)
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_no_mode_that_needs_a_pilot_is_flown(flavour):
-    talk = in_the_air(flavour)
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_no_mode_that_needs_a_pilot_is_flown(autopilot_type):
+    talk = in_the_air(autopilot_type)
     before = talk.mode
-    by_hand = [(209, 1), (209, 2), (209, 6)] if flavour is Flavour.PX4 else [(1, 0), (1, 1), (1, 13)]
+    by_hand = [(209, 1), (209, 2), (209, 6)] if autopilot_type is SimulatedAutopilot.PX4 else [(1, 0), (1, 1), (1, 13)]
     for values in by_hand:
         assert talk.command(SET_MODE, *values) in (UNSUPPORTED, FAILED)
     assert talk.command(SET_MODE, 0, 4, 4) == UNSUPPORTED, "not by the autopilot's own number"
-    assert talk.mode == before and talk.uav.state.mode is Mode.HOLD
+    assert talk.mode == before and talk.uav.state.mode is FlightMode.HOLD
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_disarming_in_the_air_takes_the_word_for_it(flavour):
-    talk = in_the_air(flavour)
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_disarming_in_the_air_takes_the_word_for_it(autopilot_type):
+    talk = in_the_air(autopilot_type)
     answers = talk.send(mavlink.MAVLink_command_long_message(*TO, ARM, 0, 0, NAN, NAN, NAN, NAN, NAN, NAN))
     assert only(answers, "COMMAND_ACK").result == FAILED and "STATUSTEXT" in kinds(answers)
     assert talk.uav.state.is_armed
@@ -181,11 +181,11 @@ def test_disarming_in_the_air_takes_the_word_for_it(flavour):
     assert not talk.uav.state.is_armed
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_the_current_item_is_set_as_the_flavour_counts(flavour):
-    talk = Talk(flavour)
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_the_current_item_is_set_as_the_flavour_counts(autopilot_type):
+    talk = Talk(autopilot_type)
     talk.endpoint.missions.put(MissionType.MISSION, mission(5))
-    first = flavour.first_item
+    first = autopilot_type.first_item
     assert talk.command(224, 2 + first) == ACCEPTED and talk.uav.state.current_item == 2
     assert talk.command(224, 5 + first) == DENIED and talk.command(224, -1) == DENIED and talk.command(224) == DENIED
     assert only(talk.send(mavlink.MAVLink_mission_set_current_message(*TO, 3 + first)), "MISSION_CURRENT").seq == 3 + first
@@ -213,10 +213,10 @@ def test_unknown_commands_and_messages_are_refused_at_once_and_known_ones_sent()
     assert talk.command(520, 1) == ACCEPTED and talk.command(410) == ACCEPTED
 
 
-@pytest.mark.parametrize("flavour", Flavour)
-def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(flavour):
+@pytest.mark.parametrize("autopilot_type", SimulatedAutopilot)
+def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(autopilot_type):
     """A point 60 m to the north, 50 m up; it stands 45 m to the north. PX4 counts the height of returns from that of the point."""
-    talk = in_the_air(flavour)
+    talk = in_the_air(autopilot_type)
     there = (round((HOME.lat + 60 / 111_195) * 1e7), round(HOME.lon * 1e7))
     point = mavlink.MAVLink_mission_item_int_message(*TO, 0, 3, 5100, 0, 1, 0, 0, 0, 0, *there, 50.0, 2)
     assert only(talk.send(mavlink.MAVLink_mission_count_message(*TO, 1, 2), point)[-1:], "MISSION_ACK").type == 0
@@ -225,7 +225,9 @@ def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(flavour):
     talk.pass_by(25.0)
     assert talk.command(20) == ACCEPTED
     reported = [one for one in talk.pass_by(160.0) if one.get_type() == "GLOBAL_POSITION_INT"]
-    assert max(one.relative_alt for one in reported) / 1_000 == pytest.approx(80.0 if flavour is Flavour.PX4 else 50.0, abs=1.0)
+    assert max(one.relative_alt for one in reported) / 1_000 == pytest.approx(
+        80.0 if autopilot_type is SimulatedAutopilot.PX4 else 50.0, abs=1.0
+    )
     assert not talk.uav.state.is_in_air
     assert (talk.uav.state.position.lat - HOME.lat) * 111_195 == pytest.approx(60.0, abs=1.0)
 
@@ -233,18 +235,18 @@ def test_a_return_leads_to_the_rally_point_that_is_nearer_than_home(flavour):
 def test_ardupilot_flies_no_list_from_the_ground_that_does_not_begin_with_a_take_off():
     """In the air it does; PX4 takes off by itself."""
     items = mission(5)[1:]
-    talk = flown(Flavour.ARDUPILOT)
+    talk = flown(SimulatedAutopilot.ARDUPILOT)
     talk.endpoint.missions.put(MissionType.MISSION, items)
     talk.command(SET_MODE, 1, GUIDED)
     assert talk.command(ARM, 1) == ACCEPTED
     answers = talk.send(mavlink.MAVLink_command_long_message(*TO, SET_MODE, 0, 1, AUTO, NAN, NAN, NAN, NAN, NAN))
     assert only(answers, "COMMAND_ACK").result == FAILED and "Missing Takeoff" in only(answers, "STATUSTEXT").text
     assert talk.command(300) == FAILED
-    assert talk.uav.state.mode is Mode.HOLD
-    aloft = in_the_air(Flavour.ARDUPILOT)
+    assert talk.uav.state.mode is FlightMode.HOLD
+    aloft = in_the_air(SimulatedAutopilot.ARDUPILOT)
     aloft.endpoint.missions.put(MissionType.MISSION, items)
     assert aloft.command(SET_MODE, 1, AUTO) == ACCEPTED
-    other = flown(Flavour.PX4)
+    other = flown(SimulatedAutopilot.PX4)
     other.endpoint.missions.put(MissionType.MISSION, items)
     assert other.command(300) == ACCEPTED
 
@@ -259,18 +261,18 @@ def test_the_fence_is_kept_by_holding_or_as_it_is_set():
     assert talk.command(GO_TO, -1, 1, NAN, NAN, HOME.lat + 200 / 111_195, HOME.lon, NAN) == ACCEPTED
     reported = talk.pass_by(20.0)
     assert any("Fence" in one.text for one in reported if one.get_type() == "STATUSTEXT")
-    assert talk.uav.state.mode is Mode.HOLD
+    assert talk.uav.state.mode is FlightMode.HOLD
     assert 30 < (talk.uav.state.position.lat - HOME.lat) * 111_195 < 50
     health = [one for one in reported if one.get_type() == "SYS_STATUS"][-1].onboard_control_sensors_health
     assert not health & mavlink.MAV_SYS_STATUS_GEOFENCE
     assert talk.command(20) == ACCEPTED, "it may go home"
     talk.pass_by(10.0)
-    assert talk.uav.state.mode is Mode.RETURN
+    assert talk.uav.state.mode is FlightMode.RETURN
 
 
 def test_ardupilots_fence_is_switched_off_and_px4_has_no_such_switch():
     assert Talk().command(207, 0) == UNSUPPORTED
-    talk = Talk(Flavour.ARDUPILOT)
+    talk = Talk(SimulatedAutopilot.ARDUPILOT)
     for wanted in (0, 1):
         assert talk.command(207, wanted) == ACCEPTED and talk.endpoint.parameters["FENCE_ENABLE"] == wanted
     assert talk.command(207, 7) == DENIED and talk.command(207) == DENIED

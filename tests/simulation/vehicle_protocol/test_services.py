@@ -8,9 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.decoding.report import TextCollector
 from mavlink.mission_sync.limits import PARAMETERS as LEG_LIMITS
-from mavlink.rtl import own_return
+from mavlink.rtl import rtl_behaviour
 from simulation.vehicle_protocol.endpoint import text_messages
-from simulation.vehicle_protocol.mode_numbers import Flavour
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.streams import INTERVALS_S, Streams
 from tests.simulation.kinematic_uav import HOME, HOME_AMSL_M
 from tests.simulation.vehicle_protocol.talk import SYSTEM, TO, UNIX_S, Talk, kinds, only, over_the_wire
@@ -22,7 +22,7 @@ def read(talk, name, number=-1):
     return talk.send(mavlink.MAVLink_param_request_read_message(*TO, name, number))
 
 
-@pytest.fixture(params=list(Flavour))
+@pytest.fixture(params=list(SimulatedAutopilot))
 def talk(request):
     return Talk(request.param)
 
@@ -44,13 +44,13 @@ def test_what_there_is_not_is_told_at_once(talk):
 
 def test_the_return_is_told_as_the_ground_station_reads_it_and_flown_as_it_is_set(talk):
     def reported():
-        return own_return(
-            talk.flavour.value, {one.param_id: one.param_value for one in talk.send(mavlink.MAVLink_param_request_list_message(*TO))}
+        return rtl_behaviour(
+            talk.autopilot_type.value, {one.param_id: one.param_value for one in talk.send(mavlink.MAVLink_param_request_list_message(*TO))}
         )
 
-    name, per_metre = {Flavour.PX4: (b"RTL_RETURN_ALT", 1), Flavour.ARDUPILOT: (b"RTL_ALT", 100)}[talk.flavour]
+    name, per_metre = {SimulatedAutopilot.PX4: (b"RTL_RETURN_ALT", 1), SimulatedAutopilot.ARDUPILOT: (b"RTL_ALT", 100)}[talk.autopilot_type]
     assert (reported().height_m, reported().bends_by, reported().untold, reported().shuns_home) == (30.0, "", "", False)
-    assert reported().level_m(5.0, away_m=1.0, haven_m=0.0) == 30.0, "it climbs however near home it is"
+    assert reported().level_m(5.0, away_m=1.0, goal_m=0.0) == 30.0, "it climbs however near home it is"
     assert talk.uav.settings.return_near_m == 0.0
     talk.send(mavlink.MAVLink_param_set_message(*TO, name, 45.0 * per_metre, 9))
     assert talk.uav.settings.return_height_m == reported().height_m == 45.0
@@ -114,7 +114,7 @@ def test_streams_keep_their_intervals_of_simulated_time_at_any_pace():
 def test_the_messages_of_many_vehicles_do_not_come_all_at_once():
     steps = [0] * 50
     for system in range(1, 41):
-        streams = Streams(Flavour.PX4, float(system))
+        streams = Streams(SimulatedAutopilot.PX4, float(system))
         for step in range(250):
             steps[step % 50] += len(streams.due(step * 0.04))
     assert max(steps) < 1.25 * sum(steps) / len(steps)
@@ -140,8 +140,10 @@ def test_reports_tell_what_the_state_says(talk):
     assert reported["SYS_STATUS"].voltage_battery == 12_600 and reported["BATTERY_STATUS"].battery_remaining == 100
     assert reported["SYSTEM_TIME"].time_unix_usec == pytest.approx((UNIX_S + talk.now_s) * 1e6, abs=2e6)
     assert reported["EXTENDED_SYS_STATE"].landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND
-    assert reported["HEARTBEAT"].autopilot == talk.flavour.autopilot
-    assert ("WIND" in reported) == (talk.flavour is Flavour.ARDUPILOT) and ("WIND_COV" in reported) == (talk.flavour is Flavour.PX4)
+    assert reported["HEARTBEAT"].autopilot == talk.autopilot_type.autopilot
+    assert ("WIND" in reported) == (talk.autopilot_type is SimulatedAutopilot.ARDUPILOT) and ("WIND_COV" in reported) == (
+        talk.autopilot_type is SimulatedAutopilot.PX4
+    )
     quaternion, attitude = reported["ATTITUDE_QUATERNION"], reported["ATTITUDE"]
     assert math.hypot(quaternion.q1, quaternion.q2, quaternion.q3, quaternion.q4) == pytest.approx(1.0)
     assert 2 * math.atan2(quaternion.q4, quaternion.q1) == pytest.approx(attitude.yaw, abs=1e-6)

@@ -15,17 +15,16 @@ from pymavlink.dialects.v20 import common as mavlink
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight, FrozenRoute
-from mavlink.autopilot_type import Flavour as ReceivedAutopilotType
-from mavlink.autopilot_type import mode_name
+from mavlink.autopilot_type import AutopilotType, mode_name
 from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
 from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.events import ItemReached
 from simulation.flight.faults import Weather
-from simulation.flight.states import MissionState, Mode
+from simulation.flight.states import FlightMode, MissionItemState
 from simulation.flight.uav import SimulatedUav
-from simulation.vehicle_protocol.mode_numbers import Flavour, usual_number
+from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot, usual_number
 from telemetry.estimation.knowledge import Knowledge
 from tests.simulation.rehearsals.planned_flights import planned_timing, usable_wh
 from tests.telemetry.estimation.received import reports_of
@@ -50,14 +49,14 @@ class SimulatedFlight:
     knowledge: Knowledge
     airframe: Airframe
     weather: Weather
-    flavour: Flavour
+    autopilot_type: SimulatedAutopilot
 
 
 def simulated_flight(seed: int, lines: Sequence[Sequence[LonLat]] = ()) -> SimulatedFlight:
     """Every other airframe an Iris, where its battery lasts for the route; with lines every other flight along a stretch of one of them."""
     chance = random.Random(f"simulated {seed}")
     code = "iris" if seed // 2 % 2 else "inspector"
-    flavour = chance.choice(list(Flavour))
+    autopilot_type = chance.choice(list(SimulatedAutopilot))
     while True:
         speeds, most_mps = SPEEDS_MPS[code], MAX_WIND_MPS[code]
         route = route_on_line(seed, lines, speeds) if lines and seed % 2 else drawn_route(seed, speeds)
@@ -70,7 +69,7 @@ def simulated_flight(seed: int, lines: Sequence[Sequence[LonLat]] = ()) -> Simul
     knowledge = Knowledge(
         flight, route.cruise_speed_mps, AIRFRAMES[code].max_airspeed_mps, conditions=Conditions((forecast,)), home=flight.take_off.position
     )
-    return SimulatedFlight(route, flight, knowledge, AIRFRAMES[code], _weather(forecast, chance), flavour)
+    return SimulatedFlight(route, flight, knowledge, AIRFRAMES[code], _weather(forecast, chance), autopilot_type)
 
 
 def _weather(forecast: WindLayer, chance: random.Random) -> Weather:
@@ -93,7 +92,7 @@ def fly_simulated(case: SimulatedFlight, seed: int, events: Events | None = None
 @dataclass
 class _Log:
     rows: list[tuple[float, ...]] = field(default_factory=list)
-    modes: list[Mode] = field(default_factory=list)
+    modes: list[FlightMode] = field(default_factory=list)
     armed: list[bool] = field(default_factory=list)
     in_air: list[bool] = field(default_factory=list)
     sequence: list[int] = field(default_factory=list)
@@ -126,8 +125,8 @@ class _Operator:
         uav = self._uav
         self._must(uav.load(self._items).is_done)
         self._until(self._starts_s)
-        self._must(uav.set_mode(Mode.MISSION).is_done and uav.arm().is_done)
-        while uav.now_s < MAX_DURATION_S and uav.is_armed and uav.mission_state is not MissionState.COMPLETE:
+        self._must(uav.set_mode(FlightMode.MISSION).is_done and uav.arm().is_done)
+        while uav.now_s < MAX_DURATION_S and uav.is_armed and uav.mission_state is not MissionItemState.COMPLETE:
             self._intervene()
             self._step()
         self._must(not uav.is_crashed)
@@ -141,7 +140,7 @@ class _Operator:
             uav.hold()
         elif uav.now_s >= self._goes_on_s and self._pauses_s == math.inf:
             self._goes_on_s = math.inf
-            uav.set_mode(Mode.MISSION)
+            uav.set_mode(FlightMode.MISSION)
         elif uav.now_s >= self._called_s and uav.state.is_in_air:
             self._called_s = math.inf
             _ = uav.return_home() if self._is_return else uav.land()
@@ -179,7 +178,9 @@ class _Operator:
         seconds = np.arange(0.0, columns[-1, 0], STEP_S)
         rows = np.column_stack([seconds, *(np.interp(seconds, columns[:, 0], column) for column in columns[:, 1:].T)])
         place = np.minimum(np.searchsorted(columns[:, 0], seconds), len(columns) - 1).tolist()
-        names = {mode: mode_name(ReceivedAutopilotType(self._case.flavour), usual_number(self._case.flavour, mode)) for mode in Mode}
+        names = {
+            mode: mode_name(AutopilotType(self._case.autopilot_type), usual_number(self._case.autopilot_type, mode)) for mode in FlightMode
+        }
         return Truth(
             self._frame,
             rows,

@@ -8,7 +8,7 @@ import pytest
 from django.db import connection
 from django.utils import timezone
 
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
 from workspace.jobs.services import LEASE_S, create_job, finish_job, next_waiting, requeue_lost_jobs, start_fair_job, start_job
 from workspace.models import Job, JobState, Organisation, User
@@ -17,7 +17,7 @@ READ = "inspection.tasks.read_proposal"
 
 
 def user_of(name: str) -> User:
-    return somebody(organisation=Organisation.objects.get_or_create(name=name)[0])
+    return a_user(organisation=Organisation.objects.get_or_create(name=name)[0])
 
 
 def waiting(user: User, number: int, task: str = READ) -> list[Job]:

@@ -11,8 +11,8 @@ from django.conf import settings
 from redis import Redis
 from websocket import WebSocket, create_connection
 
-from tests.accounts.users import client_of, somebody
-from tests.workspace.live.proxied_site import Door, front_door, redis_at, running, wait_until
+from tests.accounts.users import a_user, client_of
+from tests.workspace.live.proxied_site import Endpoint, front_endpoint, redis_at, running, wait_until
 from workspace.live import sockets
 from workspace.live.sockets import SocketPlaces
 from workspace.models import User
@@ -24,17 +24,17 @@ TOO_MANY = 4429
 
 
 @pytest.fixture
-def here(django_db_setup: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[Door]:
+def here(django_db_setup: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[Endpoint]:
     monkeypatch.setenv("SPANWISE_SOCKETS_PER_USER", str(OF_A_USER))
     monkeypatch.setenv("SPANWISE_OPERATORS_PER_ADDRESS", str(OPERATORS))
-    with front_door() as door, door.serves_live(), running(redis_at(door.redis)):
-        wait_until(door.redis.exists)
-        wait_until(lambda: door.is_open)
-        yield door
+    with front_endpoint() as endpoint, endpoint.serves_live(), running(redis_at(endpoint.redis)):
+        wait_until(endpoint.redis.exists)
+        wait_until(lambda: endpoint.is_open)
+        yield endpoint
 
 
-def opened(door: Door, user: User, number: int) -> list[WebSocket]:
-    sockets = [door.open("/ws/live", user=user) for _ in range(number)]
+def opened(endpoint: Endpoint, user: User, number: int) -> list[WebSocket]:
+    sockets = [endpoint.open("/ws/live", user=user) for _ in range(number)]
     assert {first(live)["type"] for live in sockets} == {"snapshot"}
     return sockets
 
@@ -50,12 +50,12 @@ def connected(path: str) -> socket.socket | None:
     return beside
 
 
-def opened_beside(door: Door, path: str, user: User) -> WebSocket:
+def opened_beside(endpoint: Endpoint, path: str, user: User) -> WebSocket:
     """At the live program of this unix socket, past nginx."""
     beside = connected(path)
     assert beside is not None
     cookie = f"{settings.SESSION_COOKIE_NAME}={client_of(user).cookies[settings.SESSION_COOKIE_NAME].value}"
-    site = f"127.0.0.1:{door.port}"
+    site = f"127.0.0.1:{endpoint.port}"
     return create_connection(f"ws://{site}/ws/live", timeout=60, socket=beside, cookie=cookie, origin=f"http://{site}")
 
 
@@ -69,28 +69,28 @@ def first(live: WebSocket) -> dict[str, Any]:
     return message
 
 
-def test_one_too_many_of_a_user_is_closed_with_a_code_and_another_user_is_let_in(here: Door) -> None:
-    user = somebody()
+def test_one_too_many_of_a_user_is_closed_with_a_code_and_another_user_is_let_in(here: Endpoint) -> None:
+    user = a_user()
     sockets = opened(here, user, OF_A_USER)
     assert is_closed_at_once(here.open("/ws/live", user=user))
-    opened(here, somebody(), 1)
+    opened(here, a_user(), 1)
     sockets[0].close()
     wait_until(lambda: here.open("/ws/live", user=user).recv_data()[0] != 8)  # the place of the closed one is free again
 
 
-def test_one_too_many_of_an_address_is_closed_with_a_code(here: Door) -> None:
-    people = [somebody() for _ in range(3)]
+def test_one_too_many_of_an_address_is_closed_with_a_code(here: Endpoint) -> None:
+    people = [a_user() for _ in range(3)]
     sockets = [live for user in people[:2] for live in opened(here, user, OF_A_USER)]
     sockets += opened(here, people[2], 2)
     assert is_closed_at_once(here.open("/ws/live", user=people[2]))
     assert len(sockets) == 12
 
 
-def test_those_of_all_live_programs_are_counted_together(here: Door) -> None:
+def test_those_of_all_live_programs_are_counted_together(here: Endpoint) -> None:
     path = here.folder / "live-2.sock"
     with running([part.replace("live.sock", path.name) for part in here.live], **here.environment):
         wait_until(lambda: (asked := connected(str(path))) is not None and asked.close() is None)
-        user = somebody()
+        user = a_user()
         sockets = opened(here, user, OF_A_USER - 2)
         sockets += [opened_beside(here, str(path), user) for _ in range(2)]
         assert first(sockets[-1])["type"] == "snapshot"
@@ -103,7 +103,7 @@ def test_those_of_all_live_programs_are_counted_together(here: Door) -> None:
 def test_those_of_a_killed_program_are_counted_until_their_lifetime_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sockets, "LIFETIME_S", 2)
     monkeypatch.setattr(sockets, "RENEW_INTERVAL_S", 0.2)
-    limits = {f"user {somebody().pk}": 2}
+    limits = {f"user {a_user().pk}": 2}
 
     async def scenario() -> None:
         killed, beside = SocketPlaces(), SocketPlaces()
@@ -122,7 +122,7 @@ def test_those_of_a_killed_program_are_counted_until_their_lifetime_ends(monkeyp
 
 def test_open_ones_are_counted_again_after_redis_has_lost_them(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sockets, "RENEW_INTERVAL_S", 0.2)
-    place = f"user {somebody().pk}"
+    place = f"user {a_user().pk}"
 
     async def scenario() -> None:
         here, beside = SocketPlaces(), SocketPlaces()
@@ -142,7 +142,7 @@ def test_a_process_counts_for_itself_while_redis_is_away(settings: Any) -> None:
         member = await places.take({"user 1": 1})
         assert member is not None
         assert await places.take({"user 1": 1}) is None
-        await places.give_back(member)
+        await places.release(member)
         assert await places.take({"user 1": 1})
 
     asyncio.run(scenario())

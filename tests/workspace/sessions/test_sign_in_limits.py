@@ -16,7 +16,7 @@ from workspace.sessions.sign_in_attempts import (
     TRIES,
     TRIES_BEFORE_A_NAME_IS_SLOW,
     TRIES_OF_A_NETWORK,
-    HeldBack,
+    TooManyAttempts,
     network_of,
     try_to_sign_in,
 )
@@ -128,7 +128,7 @@ def test_names_that_nobody_has_are_slowed_down_alike() -> None:
 def test_one_network_tries_so_many_names_and_no_more() -> None:
     for number in range(TRIES_OF_A_NETWORK):
         try_to_sign_in(name=f"name-{number}", address="203.0.113.1", trusted_device=None)
-    with pytest.raises(HeldBack):
+    with pytest.raises(TooManyAttempts):
         try_to_sign_in(name="one-more", address="203.0.113.1", trusted_device=None)
     assert try_to_sign_in(name="one-more", address="203.0.113.2", trusted_device=None).left == TRIES - 1
 
