@@ -9,7 +9,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
-from inspection.network.build.obstacles import WALL, too_tall_walls, with_walls
+from inspection.network.build.obstacles import WALL, too_tall_obstacles, with_obstacles
 from inspection.network.export import by_length
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
@@ -121,14 +121,14 @@ def airspace_on(
         zone_clearance_m=rules.linking.zone_clearance_m,
     )
     zones = context.zone_index(chosen)
-    walls = too_tall_walls(context.network, rules.heights)
-    graph = context.cleared(zones if obstacles is None else with_walls(zones, obstacles))
+    walls = too_tall_obstacles(context.network, rules.heights)
+    graph = context.cleared(zones if obstacles is None else with_obstacles(zones, obstacles))
     graph = by_length(graph) if is_by_length else graph
-    walls = walls if obstacles is None else with_walls(walls, obstacles)
+    walls = walls if obstacles is None else with_obstacles(walls, obstacles)
     in_transit = context.zones.reaching(flight.transit_agl_m - flight.terrain_tolerance_m, flight.max_agl_m + flight.terrain_tolerance_m)
-    leg_zones = with_walls(context.zone_index(in_transit if chosen is None else chosen & in_transit), walls)
+    leg_zones = with_obstacles(context.zone_index(in_transit if chosen is None else chosen & in_transit), walls)
     flyable = flyable_part(graph, flight.tallest_m)
-    return Airspace(context, graph, flyable, with_walls(zones, walls), leg_zones, access, is_by_length)
+    return Airspace(context, graph, flyable, with_obstacles(zones, walls), leg_zones, access, is_by_length)
 
 
 ZoneName = str | Reason  # a name as stated, or what stands for one

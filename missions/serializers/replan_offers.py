@@ -7,7 +7,7 @@ from rest_framework import serializers
 
 from missions.models import OfferState, ReplanOffer
 from missions.reason_texts import why_text
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
 DECIDED = 3
@@ -42,12 +42,12 @@ class ReplanAskedSerializer(serializers.Serializer):
     offer = serializers.UUIDField()
 
 
-def difference_in_words(difference: Mapping[str, Any]) -> dict[str, Any]:
+def render_difference(difference: Mapping[str, Any]) -> dict[str, Any]:
     """As services/replanning/difference.py has it, in the reader's language, and without what the offer was reckoned on."""
     shown = {name: value for name, value in difference.items() if name != "basis"}
-    for part, told in (("uavs", "why"), ("targets", "message")):
+    for part, reported in (("uavs", "why"), ("targets", "message")):
         if part in shown:
-            shown[part] = [{**entry, told: in_words(entry[told])} for entry in shown[part]]
+            shown[part] = [{**entry, reported: render_message(entry[reported])} for entry in shown[part]]
     if "targets" in shown:
         shown["targets"] = [{**entry, "message": why_text(entry.get("why", ()), entry["message"])} for entry in shown["targets"]]
     return shown
@@ -61,10 +61,10 @@ def offer_json(offer: ReplanOffer) -> dict[str, Any]:
         "cause": offer.cause,
         "state": offer.state,
         "revision": revision_of_offer(offer),
-        "difference": difference_in_words(offer.difference),
+        "difference": render_difference(offer.difference),
         "continuation": None if offer.continuation_id is None else str(offer.continuation_id),
         "created_at": offer.created_at,
         "decided_by": offer.decided_by.username if offer.decided_by else None,
         "decided_at": offer.decided_at,
-        "outcome": str(in_words(offer.outcome)),
+        "outcome": str(render_message(offer.outcome)),
     }

@@ -10,7 +10,7 @@ from django.utils.translation import override
 from missions.models import InspectionTarget
 from missions.reason_texts import plan_with_texts, reason_text, why_text
 from planning.reasons import SENTENCES, Reason, reason_from_json
-from tests.accounts.users import client_of, somebody
+from tests.accounts.users import a_user, client_of
 from tests.missions.api import mission_body, plan_body, post
 from tests.missions.worlds import world
 from workspace.models import Role
@@ -66,7 +66,7 @@ def test_a_plan_is_left_alone_in_english() -> None:
 @pytest.mark.django_db
 def test_a_plan_and_a_stored_mission_are_read_in_german_and_stored_in_english() -> None:
     here = world()
-    client: Client = client_of(somebody(Role.OPERATOR))
+    client: Client = client_of(a_user(Role.OPERATOR))
     far = {"position": [10.0, 57.0]}
     plan = post(client, "plans", plan_body(here.towers[2], far), **{"Accept-Language": "de"}).json()
     assert plan["unassigned"][0]["message"] == "Es liegt mehr als 10 km vom Netz entfernt."

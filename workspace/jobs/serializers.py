@@ -6,7 +6,7 @@ from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from workspace.jobs.result_texts import result_with_texts
-from workspace.message_rendering import in_words
+from workspace.message_rendering import render_message
 from workspace.models import Job, JobState
 
 # A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared
@@ -58,11 +58,11 @@ class JobSerializer(serializers.ModelSerializer):
 
     def to_representation(self, instance: Job) -> dict[str, Any]:
         shown = super().to_representation(instance)
-        shown["message"] = in_words(instance.message)
+        shown["message"] = render_message(instance.message)
         if shown.get("result"):
             shown["result"] = result_with_texts(instance.task, instance.result)
         if instance.error:
-            shown["error"] = instance.error | {"message": in_words(str(instance.error.get("message", "")))}
+            shown["error"] = instance.error | {"message": render_message(str(instance.error.get("message", "")))}
         return shown
 
 

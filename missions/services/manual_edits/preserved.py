@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from missions.models import Mission, Route
-from missions.services.manual_edits.checks import HandGround, hand_ground
-from missions.services.manual_edits.edits import checked_by_hand, place_of, settle_by_hand, store_by_hand
-from missions.services.manual_edits.legs import HandLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
+from missions.services.manual_edits.checks import ManualEditContext, manual_edit_context
+from missions.services.manual_edits.edits import checked_manual_edit, place_of, settle_manual_edits, store_manual_edit
+from missions.services.manual_edits.legs import EditedLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
 from planning.plan import PlannedRoute, PlanWarning
 from planning.plan_json import warning_to_json
 from planning.reasons import Reason
@@ -19,7 +19,7 @@ NOT_KEPT = "by_hand_not_kept"
 
 @dataclass(frozen=True, eq=False)
 class _Kept:
-    legs: list[HandLeg]
+    legs: list[EditedLeg]
     rows: list[Step]
     flown: PlannedRoute
 
@@ -33,7 +33,7 @@ def keep_by_hand(mission: Mission) -> int:
     remembered = hand_legs_from_json((mission.last_plan or {}).get("by_hand", ()))
     if not remembered:
         return 0
-    ground, targets, count = hand_ground(), target_keys(mission), 0
+    ground, targets, count = manual_edit_context(), target_keys(mission), 0
     flown = {route.mission_uav.name: route for route in mission.routes.select_related("mission_uav").filter(geometry__isnull=False)}
     for name, legs in remembered.items():
         route = flown.get(name)
@@ -41,14 +41,14 @@ def keep_by_hand(mission: Mission) -> int:
         if route is not None and kept is not None:
             route.before_hand = [[step_row(row) for row in route.waypoints.select_related("target")]]
             by_hand = {place_of(point["position"], point["agl_m"]) for point in kept.rows if point["is_by_hand"]}
-            store_by_hand(mission, route, kept.flown, by_hand)
+            store_manual_edit(mission, route, kept.flown, by_hand)
             count += len(kept.legs)
         missed = len(legs) - (0 if kept is None else len(kept.legs))
         uav = next((row.sequence for row in mission.mission_uavs.all() if row.name == name), None)
         if missed and uav is not None:
             mission.plan_warnings = [*mission.plan_warnings, _warning(name, uav, missed, len(legs))]
     if count:
-        settle_by_hand(mission)
+        settle_manual_edits(mission)
     return count
 
 
@@ -56,7 +56,7 @@ def _warning(name: str, uav: int, missed: int, count: int) -> dict[str, Any]:
     return warning_to_json(PlanWarning(NOT_KEPT, uav, Reason("edits_discarded", {"missed": missed, "legs": count, "uav": name})))
 
 
-def _kept(mission: Mission, route: Route, legs: Sequence[HandLeg], targets: dict[int, Any], ground: HandGround) -> _Kept | None:
+def _kept(mission: Mission, route: Route, legs: Sequence[EditedLeg], targets: dict[int, Any], ground: ManualEditContext) -> _Kept | None:
     """All legs that are there still, together; where these are not clear, one after the other as long as the route stays clear."""
     planned = [step_row(row) for row in route.waypoints.select_related("target")]
     there = {(start, end) for start, end, _first, _last in legs_between(planned, targets)}
@@ -73,17 +73,17 @@ def _kept(mission: Mission, route: Route, legs: Sequence[HandLeg], targets: dict
 
 
 def _tried(
-    mission: Mission, route: Route, legs: list[HandLeg], planned: Sequence[Step], targets: dict[int, Any], ground: HandGround
+    mission: Mission, route: Route, legs: list[EditedLeg], planned: Sequence[Step], targets: dict[int, Any], ground: ManualEditContext
 ) -> _Kept | None:
     rows = _with_legs(planned, legs, targets)
     try:
-        flown = checked_by_hand(mission, route, RoutePoints.of(step_points(rows)), ground)
+        flown = checked_manual_edit(mission, route, RoutePoints.of(step_points(rows)), ground)
     except InvalidRequest:
         return None
     return _Kept(legs, rows, flown)
 
 
-def _with_legs(planned: Sequence[Step], legs: Sequence[HandLeg], targets: dict[int, Any]) -> list[Step]:
+def _with_legs(planned: Sequence[Step], legs: Sequence[EditedLeg], targets: dict[int, Any]) -> list[Step]:
     by_ends = {(leg.start, leg.end): leg for leg in legs}
     rows = [planned[0]]
     for start, end, first, last in legs_between(planned, targets):

@@ -53,35 +53,35 @@ class ReasonOracle:
             return
         else:
             return
-        said = named | _others(item["why"])
+        stated = named | _others(item["why"])
         for name, limit in limits.items():
-            if limit == NOTHING and said.get(name) != BATTERY:
-                yield f"{name} has the range and a way, but is said to have {said.get(name)}"
-            elif limit not in (NOTHING, said.get(name)):
-                yield f"{name}: {limit}, but is said to have {said.get(name)}"
-        if BATTERY in said.values():
-            for name in (name for name, limit in said.items() if limit == BATTERY):
+            if limit == NOTHING and stated.get(name) != BATTERY:
+                yield f"{name} has the range and a way, but is said to have {stated.get(name)}"
+            elif limit not in (NOTHING, stated.get(name)):
+                yield f"{name}: {limit}, but is said to have {stated.get(name)}"
+        if BATTERY in stated.values():
+            for name in (name for name, limit in stated.items() if limit == BATTERY):
                 if next(uav for uav in self.request.uavs if uav.name == name).performance.battery_wh is None:
                     yield f"{name} has no battery"
 
     def _untrue_wish(self, target: int, why: list[dict[str, Any]], bound: str | None, limits: dict[str, str]) -> Iterator[str]:
         number = next((number for number, uav in enumerate(self.request.uavs) if uav.name == bound), None)
-        told = {(reason["code"], reason["params"].get("uav")) for reason in why}
+        reported = {(reason["code"], reason["params"].get("uav")) for reason in why}
         if number is not None and not self._has_sensor(number, target):
-            if ("tied_without_sensor", bound) not in told:
+            if ("tied_without_sensor", bound) not in reported:
                 yield f"it does not say that {bound} lacks the sensor"
-        elif bound is not None and limits[bound] == GROUNDED and ("uav_inside_zone", bound) not in told:
+        elif bound is not None and limits[bound] == GROUNDED and ("uav_inside_zone", bound) not in reported:
             yield f"it does not say why {bound} cannot take off"
         if NOTHING in limits.values() or RANGE in limits.values():
             yield f"somebody may do it, {limits}"
 
-    def _wrong_figures(self, item: dict[str, Any], said: dict[str, Any], limits: dict[str, str]) -> Iterator[str]:
-        needed_m, missing_m = said["needed_m"], said["missing_m"]
+    def _wrong_figures(self, item: dict[str, Any], stated: dict[str, Any], limits: dict[str, str]) -> Iterator[str]:
+        needed_m, missing_m = stated["needed_m"], stated["missing_m"]
         lacks_m = {}
         for number, uav in enumerate(self.request.uavs):
             if limits.get(uav.name) == RANGE:
                 lacks_m[uav.name] = self._needed_m(number, item["target"]) - (uav.max_range_m or 0.0)
-        name = said["uav"]
+        name = stated["uav"]
         if name not in lacks_m:
             yield f"not the range is what keeps {name}"
             return

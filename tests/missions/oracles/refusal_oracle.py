@@ -62,8 +62,8 @@ class RefusalJudge:
             yield "no UAV has a battery"
         elif reason not in REASONS:
             yield "that is no reason here"
-        is_told = missing(item) is not None or item["why"][0]["code"] in NO_NUMBER
-        if reason in {"beyond_range", "beyond_energy"} and not is_told:
+        is_reported = missing(item) is not None or item["why"][0]["code"] in NO_NUMBER
+        if reason in {"beyond_range", "beyond_energy"} and not is_reported:
             yield f"it does not say what is missing: {message}"
         if missing(item) is not None and not any(_is_so_long(item, uav) for uav in request.uavs):
             yield f"that are not the minutes of any UAV: {message}"

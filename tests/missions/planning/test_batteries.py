@@ -110,8 +110,8 @@ def test_the_objectives_each_find_no_worse_a_plan_in_what_they_count() -> None:
 def test_calm_air_and_no_battery_plan_as_ever() -> None:
     here = world()
     plan = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN))
-    told = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN, conditions=Conditions((WindLayer(60.0, 0.0, 0.0),))))
-    assert plan["routes"][0]["targets"] == told["routes"][0]["targets"]
+    reported = make_plan(request=request(*here.towers, objective=Objective.MAKESPAN, conditions=Conditions((WindLayer(60.0, 0.0, 0.0),))))
+    assert plan["routes"][0]["targets"] == reported["routes"][0]["targets"]
 
 
 def test_what_does_not_fit_in_one_flight_is_flown_in_several() -> None:
@@ -239,8 +239,8 @@ def test_a_target_behind_a_ridge_is_refused_with_what_the_drawn_route_lacks(tmp_
     small = iris(battery_wh=(drawn_wh - 0.7) / 0.8, end_action=EndAction.RETURN)
     plan = make_plan(request=request(here.towers[5], uavs=(small,)))
     assert reasons(plan) == {0: "beyond_energy"}
-    said = f"it needs {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight."
-    assert plan["unassigned"][0]["message"] == f"Including terrain and obstacles {said}"
+    stated = f"it needs {drawn_wh:.1f} Wh there and back, 0.7 Wh more than the usable battery of Tern: 0.3 min of flight."
+    assert plan["unassigned"][0]["message"] == f"Including terrain and obstacles {stated}"
 
 
 def test_who_may_fly_again_takes_a_full_battery_and_charges_at_no_tower(tmp_path: Path) -> None:
@@ -271,8 +271,8 @@ def test_what_is_missing_is_of_the_route_that_is_the_least_as_it_is_drawn() -> N
 
     straight_wh, round_wh = (plan(40.0, *targets)["total_energy_wh"] for targets in ((there,), (beside, there)))
     assert round_wh < straight_wh - 0.5
-    said = next(item["message"] for item in plan(round_wh - 0.3, beside, there)["unassigned"] if item["target"] == 1)
-    assert f"it needs {round_wh:.1f} Wh there, 0.3 Wh more" in said
+    stated = next(item["message"] for item in plan(round_wh - 0.3, beside, there)["unassigned"] if item["target"] == 1)
+    assert f"it needs {round_wh:.1f} Wh there, 0.3 Wh more" in stated
 
 
 MID_WAY = (10.16, 56.0)  # from here a UAV reaches the line of the world, or the island; from the one to the other it does not
@@ -304,8 +304,8 @@ def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
 
 def test_what_another_plan_flies_is_within_reach_alone() -> None:
     left_out = UnassignedTarget(0, "beyond_range", (Reason("beyond_range"),), 1_000.0)
-    (told,) = least_missing([left_out], [], {0: uav(max_range_m=9_000.0)})
-    assert (told.reason, told.missing, told.why) == ("beyond_range", 0.0, (Reason("in_range_alone"),))
+    (reported,) = least_missing([left_out], [], {0: uav(max_range_m=9_000.0)})
+    assert (reported.reason, reported.missing, reported.why) == ("beyond_range", 0.0, (Reason("in_range_alone"),))
     assert least_missing([left_out], [], {1: uav()}) == [left_out]
 
 

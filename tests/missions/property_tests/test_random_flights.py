@@ -10,7 +10,7 @@ import pytest
 
 from missions.services import GraphOutdated, PlanRequest, make_plan
 from planning import planner
-from tests.accounts.users import somebody
+from tests.accounts.users import a_user
 from tests.missions.oracles.flight_oracle import Judge
 from tests.missions.oracles.manual_edit_oracle import ManualEditOracle
 from tests.missions.oracles.refusal_oracle import first_of_all, missing
@@ -82,7 +82,7 @@ def test_a_plan_that_runs_out_of_solver_calls_is_as_safe(
     hills = bring_in(region_file("quillmoor.osm.pbf"), tmp_path, random.Random(6), is_hilly=True)
     draw = random.Random(6)
     put_zones(600, draw)
-    region, judge, author, every_air, times = Region(), Judge(hills), somebody(), airs(draw), departures(draw, 2)
+    region, judge, author, every_air, times = Region(), Judge(hills), a_user(), airs(draw), departures(draw, 2)
     flown = 0
     for _ in range(60):
         asked = flight(region, draw, draw.choice(every_air), draw.choice(times), author)
@@ -98,7 +98,7 @@ def test_a_plan_that_runs_out_of_solver_calls_is_as_safe(
 def _fly(path: Path, folder: Path, *, missions: int, seed: int, twice: Twice) -> Counter[str]:
     """What was seen in so many missions, half of them each on zones of their own; any fault fails."""
     hills = bring_in(path, folder, random.Random(seed), is_hilly=path.name in HILLY)
-    author = somebody()
+    author = a_user()
     seen: Counter[str] = Counter()
     faults: list[str] = []
     for number in range(ZONE_SETS):
@@ -159,14 +159,14 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
     if not refused or draw.random() > flown_share:
         return []
     item = draw.choice(refused)
-    target, lacks, said = item["target"], missing(item), item["message"]
+    target, lacks, stated = item["target"], missing(item), item["message"]
     only = replace(asked, targets=(asked.targets[target],))
     if lacks is None:
         seen["alone"] += 1
         first = _left_out(make_plan(request=first_of_all(asked, target))).get(target)
         # What is said is said of the battery: at the time of that plan a zone may be in force that was not.
         is_flown = first is None or first["reason"] not in OUT_OF_REACH or not make_plan(request=only)["unassigned"]
-        return [] if is_flown else [f"target {target} is not flown alone: {said}"]
+        return [] if is_flown else [f"target {target} is not flown alone: {stated}"]
     if item["why"][0]["code"] == "beyond_battery_with_charging":  # by way of others there may be more towers to charge at
         asked, target = only, 0
     seen["refusals flown"] += 1
@@ -174,9 +174,9 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
     whole = make_plan(request=first_of_all(asked, target, lacks[0] * 1.001 + 60.0, lacks[1] * MORE + MIN_WH))
     faults = []
     if target not in _left_out(half) and item["why"][0]["code"] != "beyond_battery_with_charging":
-        faults.append(f"target {target} is flown with less than what is missing: {said}")
+        faults.append(f"target {target} is flown with less than what is missing: {stated}")
     if target in _left_out(whole) and _left_out(whole)[target]["reason"] == item["reason"]:  # who has the range may lack the battery
-        faults.append(f"target {target} is not flown with all that is missing: {said}")
+        faults.append(f"target {target} is not flown with all that is missing: {stated}")
     return faults
 
 

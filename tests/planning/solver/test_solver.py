@@ -124,7 +124,7 @@ def test_a_target_that_the_range_just_reaches_is_visited() -> None:
     assert solve(on_a_line([10], (UavStart(20_001.0, end=End.RETURN),))).unassigned == ()
 
 
-def told(left_out: Unassigned) -> tuple[float, str, float]:
+def facts_of(left_out: Unassigned) -> tuple[float, str, float]:
     params = left_out.why.params
     return params["needed_m"], params["there"].code, params["missing_m"]
 
@@ -133,7 +133,7 @@ def test_a_target_beyond_every_range_says_how_much_is_missing() -> None:
     (left_out,) = solve(on_a_line([10], (UavStart(9_000.0), UavStart(4_000.0)))).unassigned
     assert left_out.reason is UnassignedReason.BEYOND_RANGE
     assert left_out.why.code == "beyond_range"
-    assert told(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
+    assert facts_of(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
 
 
 def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
@@ -141,13 +141,13 @@ def test_the_missing_range_is_that_of_a_uav_that_has_a_way() -> None:
     problem = on_a_line([10], (UavStart(), UavStart(9_000.0)))
     problem.from_start_m[0] = np.inf
     (left_out,) = solve(problem).unassigned
-    assert told(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
+    assert facts_of(left_out) == (10_000.0, "there", pytest.approx(1_000.0, abs=0.1))
 
 
 def test_the_way_back_counts_for_a_uav_that_returns() -> None:
     (left_out,) = solve(on_a_line([10], (UavStart(15_000.0, end=End.RETURN),))).unassigned
     assert left_out.reason is UnassignedReason.BEYOND_RANGE
-    assert told(left_out) == (20_000.0, "there_and_back", pytest.approx(5_000.0, abs=0.1))
+    assert facts_of(left_out) == (20_000.0, "there_and_back", pytest.approx(5_000.0, abs=0.1))
 
 
 def test_a_target_that_would_fit_alone_says_so() -> None:

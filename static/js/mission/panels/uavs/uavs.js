@@ -5,7 +5,7 @@ import { t, tn } from "../../../text.js";
 import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
 import { isPlanCurrent } from "../../plan_view.js";
 import { GROUNDING } from "../../plan_words.js";
-import { saidInMission } from "../../uav_changes.js";
+import { figuresInMission } from "../../uav_changes.js";
 import { changeDialog, newDialog } from "./dialog.js";
 import { refreshRow, uavRow } from "./row.js";
 
@@ -192,7 +192,7 @@ function askForChange(store, actions, sequence) {
     act: t("Change"),
     submit({ name, base_name, cruise_speed_mps, ...values }) {
       const speed = cruise_speed_mps === null ? {} : { cruise_speed_mps };
-      return actions.changeUav(sequence, saidInMission(uav, { ...values, ...speed }, known));
+      return actions.changeUav(sequence, figuresInMission(uav, { ...values, ...speed }, known));
     },
   });
 }

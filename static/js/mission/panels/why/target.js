@@ -11,33 +11,33 @@ import { showLegalTimes } from "../options/legal_times.js";
 /** @import { MissionActions, MissionStore, PickedTarget, ShownPlan } from "../../types.d.ts" */
 /** @import { Explaining } from "./route.js" */
 
-/** @typedef {TargetExplanation} Said */
+/** @typedef {TargetExplanation} StatusText */
 
-/** @param {Said} said @param {Unassigned} entry @param {Explaining} explaining @returns {Child[]} */
-export function targetExplanation(said, entry, { plan, store, actions, canPlan }) {
-  const target = plan.targets[said.target];
-  const full = fullUavs(said, plan);
+/** @param {StatusText} explanation @param {Unassigned} entry @param {Explaining} explaining @returns {Child[]} */
+export function targetExplanation(explanation, entry, { plan, store, actions, canPlan }) {
+  const target = plan.targets[explanation.target];
+  const full = fullUavs(explanation, plan);
   return [
     h(
       "p",
       { class: "why-sentence" },
-      isRangeOfPlan(said, entry) ? entry.message : reasonWords(said, full) || entry.message,
+      isRangeOfPlan(explanation, entry) ? entry.message : reasonWords(explanation, full) || entry.message,
     ),
-    facts(said),
-    canPlan && changes(said, { target, full, store, actions }),
+    facts(explanation),
+    canPlan && changes(explanation, { target, full, store, actions }),
   ];
 }
 
 /**
  * UAVs of the mission that could fly there but for having as many targets as they may.
  *
- * @param {Pick<Said, "uavs">} said
+ * @param {Pick<StatusText, "uavs">} explanation
  * @param {Pick<ShownPlan, "result">} plan
  */
-export function fullUavs(said, plan) {
+export function fullUavs(explanation, plan) {
   /** @param {Reach} uav */
   const done = (uav) => new Set(plan.result.routes.find((route) => route.uav === uav.name)?.targets).size;
-  return said.uavs.filter(
+  return explanation.uavs.filter(
     (uav) =>
       uav.is_in_mission &&
       uav.is_enough &&
@@ -47,9 +47,9 @@ export function fullUavs(said, plan) {
   );
 }
 
-/** @param {Said} said @param {Reach[]} full */
-function sharedWords(said, full) {
-  const able = (said.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
+/** @param {StatusText} explanation @param {Reach[]} full */
+function sharedWords(explanation, full) {
+  const able = (explanation.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
   if (!full.length)
     return t("One UAV alone could fly there, but none has range or battery left after its other targets.");
   const names = full.map(({ name }) => name).join(", ");
@@ -64,25 +64,25 @@ function sharedWords(said, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {Said} said @param {Unassigned} entry */
+/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {StatusText} explanation @param {Unassigned} entry */
 const isRangeOfPlan = ({ reason }, entry) => reason === "beyond_range" && entry.reason === reason;
 
-/** @param {Said} said @param {Reach[]} [full] see fullUavs */
-export function reasonWords(said, full = []) {
-  const zones = said.zones.map(({ name }) => zoneOf(name)).join(", ");
-  const lengths = { reach: lengthText(said.access_limit_m), distance: lengthText(said.network_m) };
-  /** @type {Partial<Record<Said["reason"], () => string>>} */
+/** @param {StatusText} explanation @param {Reach[]} [full] see fullUavs */
+export function reasonWords(explanation, full = []) {
+  const zones = explanation.zones.map(({ name }) => zoneOf(name)).join(", ");
+  const lengths = { reach: lengthText(explanation.access_limit_m), distance: lengthText(explanation.network_m) };
+  /** @type {Partial<Record<StatusText["reason"], () => string>>} */
   const words = {
     asset_gone: () => t("It has been deleted from the data since it was picked."),
     inside_zone: () =>
-      said.stretches.length
+      explanation.stretches.length
         ? t("It runs through {zones}.", { zones })
         : t("It stands inside {zones}.", { zones: zones || t("the margin round a no-fly zone") }),
     above_height_limit: () =>
       t("It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.", {
-        height: heightText(said.height_m ?? 0),
-        needed: heightText(said.needed_height_m ?? 0),
-        limit: heightText(said.height_limit_m),
+        height: heightText(explanation.height_m ?? 0),
+        needed: heightText(explanation.needed_height_m ?? 0),
+        limit: heightText(explanation.height_limit_m),
       }),
     too_far_from_network: () =>
       t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
@@ -91,19 +91,19 @@ export function reasonWords(said, full = []) {
         ? t("Every way to it leads through {zones}.", { zones })
         : t("No way leads there that keeps clear of every zone."),
     beyond_range: () => t("It is out of range of every UAV of this mission."),
-    beyond_energy: () => said.message || t("No battery lasts for the way there and back."),
+    beyond_energy: () => explanation.message || t("No battery lasts for the way there and back."),
     wind: () => t("The wind is too strong on every way to it, or back."),
     not_allowed: () => t("No UAV may fly it: none has the sensor, or is the one it is tied to."),
     most_targets: () => t("Every UAV that could fly it has as many targets as it may."),
-    not_with_the_others: () => sharedWords(said, full),
+    not_with_the_others: () => sharedWords(explanation, full),
   };
-  return words[said.reason]?.() ?? "";
+  return words[explanation.reason]?.() ?? "";
 }
 
-/** @param {Said} said */
-function facts(said) {
-  const needs = said.uavs.filter(({ is_in_mission }) => is_in_mission);
-  if (!needs.length || ["beyond_energy", "wind"].includes(said.reason)) return null; // ranges say nothing of them
+/** @param {StatusText} explanation */
+function facts(explanation) {
+  const needs = explanation.uavs.filter(({ is_in_mission }) => is_in_mission);
+  if (!needs.length || ["beyond_energy", "wind"].includes(explanation.reason)) return null; // ranges say nothing of them
   /** @param {Reach} reach */
   const row = ({ name, needed_m, max_range_m, most_targets, is_grounded }) => {
     const limit = most_targets ? tn(most_targets, "at most {count} target", "at most {count} targets") : "";
@@ -130,15 +130,15 @@ function facts(said) {
 /**
  * What would help.
  *
- * @param {Said} said
+ * @param {StatusText} explanation
  * @param {{ target: PickedTarget, full: Reach[], store: MissionStore, actions: MissionActions }} context
  */
-function changes(said, { target, full, store, actions }) {
+function changes(explanation, { target, full, store, actions }) {
   const list = [];
-  if (said.stretches.length)
+  if (explanation.stretches.length)
     list.push(
       act(t("The parts outside can be flown."), t("Take the parts outside"), () =>
-        actions.replaceByStretches(target, said.stretches),
+        actions.replaceByStretches(target, explanation.stretches),
       ),
     );
   for (const { name, most_targets } of full) {
@@ -156,9 +156,9 @@ function changes(said, { target, full, store, actions }) {
       ),
     );
   }
-  if (!["beyond_energy", "wind"].includes(said.reason)) list.push(...changesOfRange(said.uavs, actions));
-  if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
-  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length)
+  if (!["beyond_energy", "wind"].includes(explanation.reason)) list.push(...changesOfRange(explanation.uavs, actions));
+  if (explanation.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
+  if (["inside_zone", "no_path"].includes(explanation.reason) && explanation.zones.length)
     list.push(
       act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
     );
