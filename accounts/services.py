@@ -122,7 +122,7 @@ def _seconds(time: datetime) -> str:
     return time.isoformat(timespec="seconds")
 
 
-class NameTaken(ValueError):
+class AccountNameTaken(ValueError):
     """The organisation has a service account of this name."""
 
 
@@ -141,14 +141,14 @@ def make_service_account(*, actor: User, name: str, role: Role) -> User:
     """Raises NameTaken."""
     username = f"service:{actor.organisation_id}:{name}"
     if User.objects.filter(username__iexact=username).exists():
-        raise NameTaken
+        raise AccountNameTaken
     account = User(username=username, role=role, organisation_id=actor.organisation_id, is_service=True)
     account.set_unusable_password()
     try:
         with transaction.atomic():
             return save_person(user=account, actor=actor)
     except IntegrityError as error:  # two at the same moment
-        raise NameTaken from error
+        raise AccountNameTaken from error
 
 
 def tokens_of(account: User) -> QuerySet[ApiToken]:

@@ -73,7 +73,7 @@ class ServiceAccountList(APIView):
         name, role = body.validated_data["name"], Role(body.validated_data["role"])
         try:
             account = services.make_service_account(actor=request.user, name=name, role=role)
-        except services.NameTaken as error:
+        except services.AccountNameTaken as error:
             raise ApiProblem(409, "name_taken", _("There is a service account of this name.")) from error
         return _answer(request, account.pk, status=201)
 

@@ -181,7 +181,7 @@ class Deck:
 
 
 @dataclass(frozen=True)
-class Bridge:
+class DemoBridge:
     """A bridge of a bundle: the middle and half the length of its decks; named bridges have an outline."""
 
     middle: Point
@@ -199,14 +199,19 @@ def draw_transport(drawing: OsmDrawing) -> None:
 
 def _draw_railways(drawing: OsmDrawing) -> None:
     main = smooth_path(km((-14, -1.4), (-9, 0), (-8, 0), (8, 0), (9, 0), (14, 1.6)))
-    bridges = [Bridge((4_000.0, 0.0), 120.0), Bridge((-7_000.0, 0.0), 13.0), Bridge((-4_000.0, 0.0), 9.0), Bridge((7_600.0, 0.0), 10.0)]
+    bridges = [
+        DemoBridge((4_000.0, 0.0), 120.0),
+        DemoBridge((-7_000.0, 0.0), 13.0),
+        DemoBridge((-4_000.0, 0.0), 9.0),
+        DemoBridge((7_600.0, 0.0), 10.0),
+    ]
     splits = [(-TURNOUT_M, 0.0), (TURNOUT_M, 0.0), (BRANCH_M, 0.0)]
     tracks = _draw_bundle(drawing, main, [Deck(offset_m, MAIN_LINE) for offset_m in MAIN_TRACKS_M], bridges, splits)
     northern, southern = tracks
     _draw_yard(drawing, southern[splits[0]], southern[splits[1]])
     branch = smooth_path(km((6, 0.0023), (6.8, 0.3), (7.4, 2.2), (9.6, 9)))
     single = Deck(0.0, MAIN_LINE | {"usage": "branch"})
-    _draw_bundle(drawing, branch, [single], [Bridge((7_550.0, 2_700.0), 11.0)], starts=[northern[splits[2]]])
+    _draw_bundle(drawing, branch, [single], [DemoBridge((7_550.0, 2_700.0), 11.0)], starts=[northern[splits[2]]])
     out_of_use = [np.array(point) for point in km((-6.5, -0.4), (-5.8, -1.4), (-5.9, -3))]
     drawing.add_path(out_of_use, {"railway": "disused", "name": RAILWAY_NAME})
     drawing.add_path([np.array(point) for point in km((2.2, 0.6), (2.4, 1.3), (2.1, 2.4))], {"railway": "tram"})
@@ -230,26 +235,26 @@ def _draw_roads(drawing: OsmDrawing) -> None:
     carriageway = {"highway": "primary", "oneway": "yes", "lanes": "2", "name": "Harbour Road"}
     decks = [Deck(5.0, carriageway), Deck(-5.0, carriageway), Deck(12.0, {"highway": "cycleway"}), Deck(-12.0, {"highway": "footway"})]
     harbour = smooth_path(km((-14, 0.9), (-4, 0.6), (2.2, 0.024), (3, 0.024), (5, 0.024), (5.6, 0.024), (9, 0.5), (14, 0.3)))
-    harbour_bridge = Bridge((4_000.0, 24.0), 120.0, "Harbour Bridge", sides_m=(17.0, -32.0))
-    _draw_bundle(drawing, harbour, decks, [harbour_bridge, Bridge((-7_500.0, 700.0), 10.0), Bridge((9_200.0, 500.0), 8.0)])
+    harbour_bridge = DemoBridge((4_000.0, 24.0), 120.0, "Harbour Bridge", sides_m=(17.0, -32.0))
+    _draw_bundle(drawing, harbour, decks, [harbour_bridge, DemoBridge((-7_500.0, 700.0), 10.0), DemoBridge((9_200.0, 500.0), 8.0)])
 
     north = smooth_path(km((-14, 6), (-5, 5.4), (3, 5.2), (8, 5.9), (14, 5.5)))
     tertiary = Deck(0.0, {"highway": "tertiary", "name": "Mill Road"})
-    mill_bridge = Bridge((2_960.0, 5_300.0), 48.0, "Mill Bridge", sides_m=(8.0, -7.0))
-    streams = [Bridge((east, 5_600.0), 6.0 + number) for number, east in enumerate((-10_500.0, -6_200.0, -500.0, 6_900.0, 10_600.0))]
+    mill_bridge = DemoBridge((2_960.0, 5_300.0), 48.0, "Mill Bridge", sides_m=(8.0, -7.0))
+    streams = [DemoBridge((east, 5_600.0), 6.0 + number) for number, east in enumerate((-10_500.0, -6_200.0, -500.0, 6_900.0, 10_600.0))]
     _draw_bundle(drawing, north, [tertiary, Deck(5.5, {"highway": "footway"})], [mill_bridge, *streams])
 
     south = smooth_path(km((-14, -5), (-6, -5.6), (0, -5), (5.4, -5.2), (9, -4.6), (14, -6)))
-    mill_bridge = Bridge((5_450.0, -5_100.0), 50.0, "Mill Bridge", sides_m=(6.0, -6.0))
-    streams = [Bridge((east, -5_200.0), 7.0) for east in (-11_000.0, -8_200.0, -3_000.0, 1_100.0, 7_800.0, 11_300.0)]
+    mill_bridge = DemoBridge((5_450.0, -5_100.0), 50.0, "Mill Bridge", sides_m=(6.0, -6.0))
+    streams = [DemoBridge((east, -5_200.0), 7.0) for east in (-11_000.0, -8_200.0, -3_000.0, 1_100.0, 7_800.0, 11_300.0)]
     _draw_bundle(drawing, south, [tertiary], [mill_bridge, *streams])
 
     yard_road = smooth_path(km((0.2, 6.4), (0.2, 2), (0.2, -2), (0.2, -6.6)))
     road = {"highway": "secondary", "name": "Yard Road"}
-    yard_bridge = Bridge((200.0, -70.0), 95.0, "Yard Bridge", sides_m=(9.0, -9.0))
-    mill_bridge = Bridge((200.0, 2_600.0), 9.0, "Mill Bridge", sides_m=(8.5, -8.5))
+    yard_bridge = DemoBridge((200.0, -70.0), 95.0, "Yard Bridge", sides_m=(9.0, -9.0))
+    mill_bridge = DemoBridge((200.0, 2_600.0), 9.0, "Mill Bridge", sides_m=(8.5, -8.5))
     walks = [Deck(side_m, {"highway": "footway"}) for side_m in (6.5, -6.5)]
-    _draw_bundle(drawing, yard_road, [Deck(0.0, road), *walks], [yard_bridge, mill_bridge, Bridge((200.0, -3_900.0), 8.0)])
+    _draw_bundle(drawing, yard_road, [Deck(0.0, road), *walks], [yard_bridge, mill_bridge, DemoBridge((200.0, -3_900.0), 8.0)])
     quay = [np.array([3_300.0 + east, 2_600.0 + north]) for east, north in ((0, 0), (40, 3), (38, 16), (-2, 13))]
     drawing.add_area(quay, {"man_made": "bridge", "name": "Old Quay"})  # carries nothing
 
@@ -267,7 +272,7 @@ def _draw_bundle(
     drawing: OsmDrawing,
     path: FloatArray,
     decks: Sequence[Deck],
-    bridges: Sequence[Bridge],
+    bridges: Sequence[DemoBridge],
     splits: Sequence[Point] = (),
     starts: Sequence[int | None] = (),
 ) -> list[dict[Point, int]]:

@@ -86,7 +86,7 @@ def _error(metres: FloatArray) -> Error:
 
 
 @dataclass(frozen=True)
-class Visit:
+class AssessedVisit:
     """What was flown of one waypoint.
 
     closest_m is in place and height, None where nothing was flown; at_s when that was, after the mission's departure; late_s is that less
@@ -102,7 +102,7 @@ class Visit:
     battery_percent: float | None
 
 
-def visits_of(route: AssessedRoute, *, within_m: float) -> list[Visit]:
+def visits_of(route: AssessedRoute, *, within_m: float) -> list[AssessedVisit]:
     """Of every waypoint of the route at which a UAV flies, in its order."""
     found = []
     for number, flown in enumerate(route.flights):
@@ -111,12 +111,12 @@ def visits_of(route: AssessedRoute, *, within_m: float) -> list[Visit]:
     return found
 
 
-def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float) -> Visit:
+def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, within_m: float) -> AssessedVisit:
     if track is None or not len(track):
-        return Visit(waypoint, number, None, None, None, 0.0, None)
+        return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
     rows = np.flatnonzero(track.is_in_air & _about(track, waypoint.sequence))
     if not len(rows):
-        return Visit(waypoint, number, None, None, None, 0.0, None)
+        return AssessedVisit(waypoint, number, None, None, None, 0.0, None)
     frame = LocalFrame.around(*waypoint.position)
     flat = frame.to_metres(track.position[rows])
     places = np.column_stack([flat, track.relative_m[rows] - waypoint.altitude_relative_m])
@@ -125,7 +125,7 @@ def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, with
     closest_m, after = _between(places, nearest)
     held_s = float(np.diff(track.t_s[rows], append=track.t_s[rows[-1]])[away_m <= within_m].sum())
     at_s = float(track.t_s[rows[nearest]]) + after * _gap_s(track, rows, nearest)
-    return Visit(
+    return AssessedVisit(
         waypoint,
         number,
         closest_m,

@@ -11,8 +11,8 @@ from mavlink.approved_route import FrozenRoute
 from planning.energy.conditions import Conditions
 from simulation.assessment.closest_approach import ClosestApproach, closest_approaches_of
 from simulation.assessment.flown import AssessedRoute, FloatArray, TrackEnding
-from simulation.assessment.following import Following, Visit, following_of, visits_of
-from simulation.assessment.limits import AssessmentLimits, Facts, Finding, Level, level_of
+from simulation.assessment.following import AssessedVisit, Following, following_of, visits_of
+from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Facts, Level, level_of
 from simulation.assessment.obstacles import Approach, Standing, ZoneApproach, lowest_of, nearest_standing, zone_approaches
 
 APPROACH_STEP_S = 0.2
@@ -21,14 +21,14 @@ NEAR_ZONES = 5  # of a route that are told of
 GroundHeights = Callable[[FloatArray], FloatArray]
 
 
-def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> Finding | None:
+def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> AssessmentFinding | None:
     """The strongest mean wind at the heights of a route, where it is more than can be flown: it is said before all that follows."""
     heights_m = {waypoint.altitude_agl_m for waypoint in route.waypoints}
     speed_mps, agl_m = max(((math.hypot(*conditions.wind_at(agl_m)), agl_m) for agl_m in heights_m), default=(0.0, 0.0))
     if speed_mps <= max_airspeed_mps:
         return None
     facts: dict[str, float | int | str | None] = {"wind_mps": speed_mps, "agl_m": agl_m, "limit_mps": max_airspeed_mps}
-    return Finding(Level.FAIL, "wind", uav, facts=facts)
+    return AssessmentFinding(Level.FAIL, "wind", uav, facts=facts)
 
 
 @dataclass(frozen=True)
@@ -108,12 +108,14 @@ class RouteAssessment:
 @dataclass(frozen=True)
 class Assessment:
     level: Level
-    findings: tuple[Finding, ...]
+    findings: tuple[AssessmentFinding, ...]
     routes: tuple[RouteAssessment, ...]
     closest_approaches: tuple[ClosestApproach, ...]
 
 
-def judge(routes: Sequence[AssessedRoute], around: Surroundings, limits: AssessmentLimits, *, known: Sequence[Finding] = ()) -> Assessment:
+def judge(
+    routes: Sequence[AssessedRoute], around: Surroundings, limits: AssessmentLimits, *, known: Sequence[AssessmentFinding] = ()
+) -> Assessment:
     """known: findings that were there before the flight, such as a wind that the airframe cannot fly in."""
     closest_approaches = closest_approaches_of(routes, step_s=APPROACH_STEP_S)
     findings = [*known, *_of_closest_approaches(closest_approaches, limits)]
@@ -126,8 +128,8 @@ def judge(routes: Sequence[AssessedRoute], around: Surroundings, limits: Assessm
 
 
 def _of_route(
-    route: AssessedRoute, around: Surroundings, limits: AssessmentLimits, met: Sequence[Finding]
-) -> tuple[list[Finding], RouteAssessment]:
+    route: AssessedRoute, around: Surroundings, limits: AssessmentLimits, met: Sequence[AssessmentFinding]
+) -> tuple[list[AssessmentFinding], RouteAssessment]:
     visits, energy, following = visits_of(route, within_m=limits.waypoint_fail_m), energy_of(route), following_of(route)
     grounds = [np.zeros(0) if flown.track is None else around.ground_amsl_m(flown.track.position) for flown in route.flights]
     zones = _nearest_zones(route, grounds, around)
@@ -167,11 +169,11 @@ def _of_route(
     )
 
 
-def _targets(visits: Sequence[Visit]) -> Iterator[int]:
+def _targets(visits: Sequence[AssessedVisit]) -> Iterator[int]:
     return (visit.waypoint.target for visit in visits if visit.waypoint.target is not None)
 
 
-def _of_target(target: int, visits: Sequence[Visit], limits: AssessmentLimits) -> TargetAssessment:
+def _of_target(target: int, visits: Sequence[AssessedVisit], limits: AssessmentLimits) -> TargetAssessment:
     own = [visit for visit in visits if visit.waypoint.target == target]
     metres = [visit.closest_m for visit in own]
     is_reached = all(one is not None and one <= limits.waypoint_fail_m for one in metres)
@@ -189,29 +191,29 @@ def _of_target(target: int, visits: Sequence[Visit], limits: AssessmentLimits) -
     )
 
 
-def _hold_s(visit: Visit) -> float:
+def _hold_s(visit: AssessedVisit) -> float:
     return 0.0 if visit.waypoint.task is None else visit.waypoint.task.hold_s
 
 
-def _with_level(assessment: TargetAssessment, findings: Sequence[Finding]) -> TargetAssessment:
+def _with_level(assessment: TargetAssessment, findings: Sequence[AssessmentFinding]) -> TargetAssessment:
     level = level_of(finding for finding in findings if finding.target == assessment.target)
     return replace(assessment, level=level)
 
 
-def _of_endings(route: AssessedRoute) -> Iterator[Finding]:
+def _of_endings(route: AssessedRoute) -> Iterator[AssessmentFinding]:
     for number, flown in enumerate(route.flights):
         facts: Facts = {"name": route.name, "flight": number + 1, "flights": len(route.flights)}
         if flown.track is None:
-            yield Finding(Level.FAIL, "not-begun", route.uav, facts=facts)
+            yield AssessmentFinding(Level.FAIL, "not-begun", route.uav, facts=facts)
         elif not flown.track.is_over_well:
             stated = flown.track.stated[-1] if flown.track.stated else ""
             at_s = float(flown.track.t_s[-1]) if len(flown.track) else None
-            yield Finding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": stated, "at_s": at_s})
+            yield AssessmentFinding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": stated, "at_s": at_s})
 
 
 def _of_energy(
-    route: AssessedRoute, energy: Sequence[FlightEnergy], visits: Sequence[Visit], limits: AssessmentLimits
-) -> Iterator[Finding]:
+    route: AssessedRoute, energy: Sequence[FlightEnergy], visits: Sequence[AssessedVisit], limits: AssessmentLimits
+) -> Iterator[AssessmentFinding]:
     """What is short is told of the route, and of the last target of the flight: without it the battery would have lasted longer."""
     for one in energy:
         facts: Facts = {
@@ -220,9 +222,9 @@ def _of_energy(
         }  # fmt: skip
         if one.left_percent < route.reserve_percent:
             last = next((v.waypoint.target for v in reversed(visits) if v.flight == one.flight and v.waypoint.target is not None), None)
-            yield Finding(Level.FAIL, "reserve", route.uav, last, facts)
+            yield AssessmentFinding(Level.FAIL, "reserve", route.uav, last, facts)
         elif one.left_percent < route.reserve_percent + limits.reserve_spare_percent and not _is_as_planned(route, energy):
-            yield Finding(Level.WARNINGS, "reserve-near", route.uav, None, facts)
+            yield AssessmentFinding(Level.WARNINGS, "reserve-near", route.uav, None, facts)
 
 
 def _is_as_planned(route: AssessedRoute, energy: Sequence[FlightEnergy]) -> bool:
@@ -230,7 +232,7 @@ def _is_as_planned(route: AssessedRoute, energy: Sequence[FlightEnergy]) -> bool
     return route.planned_wh is not None and sum(one.used_wh for one in energy) <= AS_PLANNED * route.planned_wh
 
 
-def _of_following(route: AssessedRoute, following: Following, limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_following(route: AssessedRoute, following: Following, limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     kinds = (
         ("across", following.across, following.worst_across_waypoint, limits.across_warn_m, limits.across_fail_m),
         ("height", following.height, following.worst_height_waypoint, limits.height_warn_m, limits.height_fail_m),
@@ -240,32 +242,34 @@ def _of_following(route: AssessedRoute, following: Following, limits: Assessment
             level = Level.FAIL if error.max_m > fail_m else Level.WARNINGS
             limit_m = fail_m if level is Level.FAIL else warn_m
             facts: Facts = {"name": route.name, "metres": error.max_m, "limit_m": limit_m, "waypoint": waypoint}
-            yield Finding(level, code, route.uav, facts=facts)
+            yield AssessmentFinding(level, code, route.uav, facts=facts)
 
 
-def _of_visits(route: AssessedRoute, visits: Sequence[Visit], limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_visits(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     for visit in visits:
         facts: Facts = {"name": route.name, "waypoint": visit.waypoint.sequence}
         target = visit.waypoint.target
         if visit.closest_m is None:
             if target is not None:
-                yield Finding(Level.FAIL, "not-flown-to", route.uav, target, facts)
+                yield AssessmentFinding(Level.FAIL, "not-flown-to", route.uav, target, facts)
         elif visit.closest_m > limits.waypoint_fail_m:
-            yield Finding(Level.FAIL, "missed", route.uav, target, facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_fail_m})
+            yield AssessmentFinding(
+                Level.FAIL, "missed", route.uav, target, facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_fail_m}
+            )
         elif visit.closest_m > limits.waypoint_warn_m:
             reported = facts | {"metres": visit.closest_m, "limit_m": limits.waypoint_warn_m}
-            yield Finding(Level.WARNINGS, "passed-wide", route.uav, target, reported)
+            yield AssessmentFinding(Level.WARNINGS, "passed-wide", route.uav, target, reported)
         if target is not None and visit.closest_m is not None and visit.held_s < _hold_s(visit) - limits.hold_slack_s:
-            yield Finding(Level.FAIL, "not-held", route.uav, target, facts | {"held_s": visit.held_s, "hold_s": _hold_s(visit)})
+            yield AssessmentFinding(Level.FAIL, "not-held", route.uav, target, facts | {"held_s": visit.held_s, "hold_s": _hold_s(visit)})
 
 
-def _of_times(route: AssessedRoute, visits: Sequence[Visit], limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_times(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     """The waypoint farthest from its time."""
     late = max((visit for visit in visits if visit.late_s is not None), key=lambda visit: abs(visit.late_s or 0.0), default=None)
     if late is not None and late.late_s is not None and abs(late.late_s) > limits.late_warn_s:
         code = "late" if late.late_s > 0 else "early"
         facts: Facts = {"name": route.name, "seconds": abs(late.late_s), "limit_s": limits.late_warn_s, "waypoint": late.waypoint.sequence}
-        yield Finding(Level.WARNINGS, code, route.uav, facts=facts)
+        yield AssessmentFinding(Level.WARNINGS, code, route.uav, facts=facts)
 
 
 def _nearest_zones(route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
@@ -284,12 +288,12 @@ def _is_near(zone: ZoneApproach, limits: AssessmentLimits) -> bool:
     return zone.beside_m < limits.zone_beside_m and zone.height_m < limits.zone_height_m
 
 
-def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLimits) -> Finding:
+def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLimits) -> AssessmentFinding:
     facts: Facts = {"name": route.name, "zone": zone.name, "at_s": zone.t_s, "waypoint": zone.waypoint, "metres": zone.away_m}
     if zone.is_inside:
-        return Finding(Level.FAIL, "zone-entered", route.uav, facts=facts)
+        return AssessmentFinding(Level.FAIL, "zone-entered", route.uav, facts=facts)
     limit_m = limits.zone_height_m if zone.beside_m == 0.0 else limits.zone_beside_m
-    return Finding(Level.WARNINGS, "zone-near", route.uav, facts=facts | {"limit_m": limit_m})
+    return AssessmentFinding(Level.WARNINGS, "zone-near", route.uav, facts=facts | {"limit_m": limit_m})
 
 
 def _nearest(
@@ -312,26 +316,28 @@ def _nearest(
     return lowest, (on_way, in_column)
 
 
-def _of_ground(route: AssessedRoute, lowest: Approach | None, limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_ground(route: AssessedRoute, lowest: Approach | None, limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     if lowest is None or lowest.away_m >= limits.ground_warn_m:
         return
     level = Level.FAIL if lowest.away_m < limits.ground_fail_m else Level.WARNINGS
     limit_m = limits.ground_fail_m if level is Level.FAIL else limits.ground_warn_m
     facts: Facts = {"name": route.name, "metres": lowest.away_m, "limit_m": limit_m, "waypoint": lowest.waypoint, "at_s": lowest.t_s}
-    yield Finding(level, "low", route.uav, facts=facts)
+    yield AssessmentFinding(level, "low", route.uav, facts=facts)
 
 
-def _of_standing(route: AssessedRoute, standing: tuple[Approach | None, Approach | None], limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_standing(
+    route: AssessedRoute, standing: tuple[Approach | None, Approach | None], limits: AssessmentLimits
+) -> Iterator[AssessmentFinding]:
     for one in standing:
         if one is None or one.away_m >= limits.obstacle_warn_m:
             continue
         level = Level.FAIL if one.away_m < limits.obstacle_fail_m and not one.is_column else Level.WARNINGS
         limit_m = limits.obstacle_fail_m if level is Level.FAIL else limits.obstacle_warn_m
         facts: Facts = {"name": route.name, "metres": one.away_m, "limit_m": limit_m, "waypoint": one.waypoint, "at_s": one.t_s}
-        yield Finding(level, "obstacle-column" if one.is_column else "obstacle", route.uav, facts=facts)
+        yield AssessmentFinding(level, "obstacle-column" if one.is_column else "obstacle", route.uav, facts=facts)
 
 
-def _of_closest_approaches(closest_approaches: Sequence[ClosestApproach], limits: AssessmentLimits) -> Iterator[Finding]:
+def _of_closest_approaches(closest_approaches: Sequence[ClosestApproach], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
     """Each is told of both UAVs."""
     for closest in closest_approaches:
         is_hit = closest.away_m < limits.apart_fail_m
@@ -340,4 +346,4 @@ def _of_closest_approaches(closest_approaches: Sequence[ClosestApproach], limits
         limit_m = limits.apart_fail_m if is_hit else limits.apart_warn_beside_m
         for uav, other in (closest.uavs, closest.uavs[::-1]):
             facts: Facts = {"metres": closest.away_m, "limit_m": limit_m, "at_s": closest.t_s, "other": other}
-            yield Finding(Level.FAIL if is_hit else Level.WARNINGS, "apart", uav, facts=facts)
+            yield AssessmentFinding(Level.FAIL if is_hit else Level.WARNINGS, "apart", uav, facts=facts)

@@ -87,7 +87,7 @@ Facts = dict[str, Fact]
 
 
 @dataclass(frozen=True)
-class Finding:
+class AssessmentFinding:
     """One thing that speaks against a flight. `code` names the sentence that `facts` are put into.
 
     uav: the UAV's place in the mission; target: the target's place in the operator's list, from 0, where it is about one.
@@ -105,5 +105,5 @@ def worst(levels: Iterable[Level]) -> Level:
     return max(levels, key=SEVERITY.__getitem__, default=Level.PASS)
 
 
-def level_of(findings: Iterable[Finding]) -> Level:
+def level_of(findings: Iterable[AssessmentFinding]) -> Level:
     return worst(finding.level for finding in findings)

@@ -7,7 +7,7 @@ from simulation.assessment.closest_approach import ClosestApproach
 from simulation.assessment.flown import FlownTrack
 from simulation.assessment.following import Error
 from simulation.assessment.judging import Assessment, RouteAssessment, TargetAssessment
-from simulation.assessment.limits import Finding
+from simulation.assessment.limits import AssessmentFinding
 from simulation.assessment.obstacles import Approach, ZoneApproach
 
 METRE_DIGITS, SECOND_DIGITS, PERCENT_DIGITS, DEGREE_DIGITS, ANGLE_DIGITS = 2, 1, 1, 7, 1
@@ -24,7 +24,7 @@ def assessment_to_json(assessment: Assessment) -> dict[str, Any]:
     }
 
 
-def finding_to_json(finding: Finding) -> dict[str, Any]:
+def finding_to_json(finding: AssessmentFinding) -> dict[str, Any]:
     facts = {name: round(value, METRE_DIGITS) if isinstance(value, float) else value for name, value in finding.facts.items()}
     return {"level": str(finding.level), "code": finding.code, "uav": finding.uav, "target": finding.target, "facts": facts}
 

@@ -11,7 +11,7 @@ from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
 from simulation.flight.airframe import Airframe
 from simulation.flight.course import Vector
 from simulation.flight.faults import Weather
-from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Motion, Plant, TerrainHeights
+from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, GroundElevation, Motion, Plant
 
 DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
 WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
@@ -157,7 +157,7 @@ class Body:
         airframe: Airframe,
         home: LonLat,
         *,
-        ground: TerrainHeights,
+        ground: GroundElevation,
         weather: Weather,
         seed: int,
         heading_deg: float,

@@ -21,7 +21,7 @@ class Ending(StrEnum):
     REFUSED = "refused"  # it did not take off
 
 
-class Sample(NamedTuple):
+class FlightSample(NamedTuple):
     """Where it truly was. Heights above the take-off and above the ground below; the battery in percent."""
 
     at_s: float
@@ -37,7 +37,7 @@ class FlownFlightLog:
     """`samples` begin with the arming. `end` is the state at the end; `refusal` why it did not take off."""
 
     ending: Ending
-    samples: tuple[Sample, ...]
+    samples: tuple[FlightSample, ...]
     events: tuple[Event, ...]
     end: SimulatedState
     refusal: OrderRefused | None = None
@@ -87,5 +87,5 @@ def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_
     return FlownFlightLog(ending, tuple(samples), tuple(events), uav.state)
 
 
-def _sample(uav: SimulatedUav) -> Sample:
-    return Sample(*uav.true_place, uav.battery_percent)
+def _sample(uav: SimulatedUav) -> FlightSample:
+    return FlightSample(*uav.true_place, uav.battery_percent)

@@ -12,7 +12,7 @@ from simulation.flight.events import Event, StatusTextSent
 from simulation.flight.faults import Faults
 from simulation.flight.guidance import Gate, Guidance
 from simulation.flight.orders import Above, OrderPlace
-from simulation.flight.plant import TerrainHeights
+from simulation.flight.plant import GroundElevation
 from simulation.flight.states import RallyPoint, Severity
 
 
@@ -25,7 +25,7 @@ class ManoeuvreContext:
 
     airframe: Airframe
     settings: Settings
-    ground: TerrainHeights
+    ground: GroundElevation
     home: LonLat
     home_amsl_m: float
     frame: LocalFrame

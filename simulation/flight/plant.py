@@ -50,7 +50,7 @@ _SET_POINTS = (
 )
 
 
-class TerrainHeights(Protocol):
+class GroundElevation(Protocol):
     """Anything that knows how high the ground lies above sea level [m]; NaN where it does not."""
 
     def elevation_m(self, position: LonLat) -> float: ...

@@ -16,7 +16,7 @@ from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, TakeOffManoeuvre
 from simulation.flight.mission import MissionManoeuvre, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
-from simulation.flight.plant import FlatGround, TerrainHeights
+from simulation.flight.plant import FlatGround, GroundElevation
 from simulation.flight.states import (
     DONE,
     FlightMode,
@@ -103,7 +103,7 @@ class SimulatedUav:
         airframe: Airframe,
         home: LonLat,
         *,
-        ground: TerrainHeights | None = None,
+        ground: GroundElevation | None = None,
         weather: Weather | None = None,
         seed: int = 0,
         heading_deg: float = 0.0,

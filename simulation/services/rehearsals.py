@@ -20,7 +20,7 @@ from missions.services.commands.refused import RefusalReason, Refused
 from missions.services.missions import note
 from simulation.assessment.flown import AssessedRoute
 from simulation.assessment.judging import Assessment, judge, wind_finding
-from simulation.assessment.limits import AssessmentLimits, Finding, Level, limits_to_json, worst
+from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Level, limits_to_json, worst
 from simulation.assessment.stored import assessment_to_json, track_to_json
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, StatusTextSent
@@ -251,7 +251,7 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     _store(run, flown, verdict, time.monotonic() - began_s)
 
 
-def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[Finding]:
+def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[AssessmentFinding]:
     """For the UAV, or for the airframe that flies for it: the one that flies slower."""
     found = (
         wind_finding(route.uav, route.route, scenario.conditions, min(route.limit_mps, AIRFRAMES[stand_in.airframe].max_airspeed_mps))
@@ -260,9 +260,9 @@ def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[Finding]:
     return [finding for finding in found if finding is not None]
 
 
-def _mid_air_starts(plan: PlanToFly) -> list[Finding]:
+def _mid_air_starts(plan: PlanToFly) -> list[AssessmentFinding]:
     """Of those that take over in the air: there they have no take-off of their own, and what is left of a battery."""
-    return [Finding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
+    return [AssessmentFinding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
 
 
 def _store(run: RehearsalRun, flown: Sequence[AssessedRoute], verdict: Assessment, took_s: float) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.faults import Faults, Weather
-from simulation.flight.plant import FlatGround, TerrainHeights
+from simulation.flight.plant import FlatGround, GroundElevation
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_endpoint.fleet import Fleet
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
@@ -31,7 +31,7 @@ class Launch:
     seed: int = 0
     heading_deg: float = 0.0
     battery_percent: float = 100.0
-    ground: TerrainHeights = field(default_factory=FlatGround)
+    ground: GroundElevation = field(default_factory=FlatGround)
     weather: Weather = field(default_factory=Weather)
     faults: Faults = field(default_factory=Faults)
     talks_to: Sequence[Address] = ()
