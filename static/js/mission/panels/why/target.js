@@ -157,7 +157,8 @@ function changes(explanation, { target, full, store, actions }) {
     );
   }
   if (!["beyond_energy", "wind"].includes(explanation.reason)) list.push(...changesOfRange(explanation.uavs, actions));
-  if (explanation.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
+  if (explanation.reason === "not_with_the_others")
+    list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
   if (["inside_zone", "no_path"].includes(explanation.reason) && explanation.zones.length)
     list.push(
       act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
