@@ -27,13 +27,13 @@ from inspection.network.legs import Attachments
 from inspection.network.paths.along_paths import steps_of_graph
 from inspection.network.paths.paths import travel_of_legs
 from inspection.network.route_index import route_index
-from planning.connection_points import Ways
+from planning.connection_points import TargetPaths
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, graph_taken
 from planning.energy.performance import Performance
 from planning.file_plans import FileGraph, plan_json, read_graph, read_mission
-from planning.problem import Amounts, End, Objective, Problem, Routes, Task, TaskKind, UavStart, Visit
+from planning.problem import End, Objective, Problem, Resources, Routes, Task, TaskKind, UavStart, Visit
 from planning.rules import FlightRules
 from planning.solver.exact import best_routes
 from planning.solver.problem_arrays import Arcs
@@ -106,7 +106,7 @@ class Mission:
         places = np.arange(UAVS + TARGETS + 1)
         sinks = np.array([*range(UAVS, UAVS + TARGETS), *range(UAVS)], dtype=np.int64)
         travel = travel_of_legs(plain.index, places, nodes, np.zeros(len(nodes)), np.zeros(len(nodes)), places[:-1], sinks)
-        self.ways = Ways(travel, UAVS, TARGETS, (NO_LEGS,) * UAVS, (NO_LEGS,) * TARGETS, (NO_LEGS,) * TARGETS)
+        self.ways = TargetPaths(travel, UAVS, TARGETS, (NO_LEGS,) * UAVS, (NO_LEGS,) * TARGETS, (NO_LEGS,) * TARGETS)
         self.starts = [LonLat(*place) for place in asked.uavs.tolist()]
         self.courses = [[LonLat(*graph.position[node].tolist())] for node in asked.targets]
 
@@ -164,7 +164,7 @@ class Mission:
             )
 
 
-def problem_of(ways: Ways, costs: FlightCosts) -> Problem:
+def problem_of(ways: TargetPaths, costs: FlightCosts) -> Problem:
     return Problem(
         uavs=(UavStart(None, End.RETURN, FLYING.cruise_speed_mps, usable_wh=FLYING.performance.usable_wh),) * UAVS,
         visits=tuple(Visit(target) for target in range(TARGETS)),
@@ -173,8 +173,8 @@ def problem_of(ways: Ways, costs: FlightCosts) -> Problem:
         between_m=ways.between_m,
         to_start_m=ways.to_start_m,
         objective=Objective.TIME,
-        seconds=Amounts(**vars(costs.seconds)),
-        wh=Amounts(**vars(costs.wh)),
+        seconds=Resources(**vars(costs.seconds)),
+        wh=Resources(**vars(costs.wh)),
         class_of=costs.class_of,
     )
 

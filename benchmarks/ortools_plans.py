@@ -7,7 +7,7 @@ import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 
 from planning.problem import BoolArray, FloatArray, Problem, Routes
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.problem_arrays import Arcs
 
 UNITS_PER_M = 10
@@ -47,7 +47,7 @@ def routes_by_ortools(problem: Problem, usable: BoolArray, cpu_s: float) -> Rout
     metres = _square(arcs)
     lengths = routing.RegisterTransitMatrix(_units(metres, UNITS_PER_M))
     routing.SetArcCostEvaluatorOfAllVehicles(lengths)
-    if (arcs.limit_m < NO_WAY_M / 2).any() or (metres >= NO_WAY_M).any():
+    if (arcs.limit_m < NO_PATH_M / 2).any() or (metres >= NO_PATH_M).any():
         limits = [min(MAX_UNITS, math.floor(limit_m * UNITS_PER_M)) for limit_m in arcs.limit_m.tolist()]
         routing.AddDimensionWithVehicleTransitAndCapacity([lengths] * uavs, 0, limits, True, "length")
     if (arcs.most < problem.target_count).any():
@@ -107,9 +107,9 @@ def _seconds(metres: FloatArray, arcs: Arcs, speed_mps: float, ready_s: float) -
     seconds = metres / speed_mps
     seconds[:, uavs : uavs + visits] += arcs.service_s
     seconds[:uavs, uavs : uavs + visits] += ready_s  # of routes with a visit alone
-    seconds[metres >= NO_WAY_M] = NO_WAY_M
+    seconds[metres >= NO_PATH_M] = NO_PATH_M
     return seconds
 
 
 def _units(values: FloatArray, per_unit: int) -> list[list[int]]:
-    return [[int(value) for value in row] for row in np.where(values >= NO_WAY_M, NO_WAY, np.ceil(values * per_unit)).tolist()]
+    return [[int(value) for value in row] for row in np.where(values >= NO_PATH_M, NO_WAY, np.ceil(values * per_unit)).tolist()]

@@ -14,7 +14,7 @@ from time import perf_counter
 
 import numpy as np
 
-from planning.problem import Amounts, End, FloatArray, Objective, Problem, UavStart, Visit
+from planning.problem import End, FloatArray, Objective, Problem, Resources, UavStart, Visit
 from planning.solver import exact
 from planning.solver.problem_arrays import Arcs
 from planning.solver.solver import solve
@@ -52,14 +52,14 @@ def windy(seed: int, targets: int, objective: Objective, battery: str | None, so
     if battery is None:
         return replace(plain, objective=objective)
     class_of = (0, 0, 1)
-    flown = Amounts(
+    flown = Resources(
         np.concatenate([seconds(starts[[uav]], places, AIRSPEEDS_MPS[number]) for uav, number in enumerate(class_of)]),
         np.stack([seconds(places, places, airspeed_mps) for airspeed_mps in AIRSPEEDS_MPS]),
         np.concatenate([seconds(places, starts[[uav]], AIRSPEEDS_MPS[number]) for uav, number in enumerate(class_of)], axis=1),
     )
     watt_hours = np.array(POWERS_W) / 3_600.0
     by_uav = watt_hours[list(class_of)]
-    wh = Amounts(
+    wh = Resources(
         flown.first * by_uav[:, None],
         flown.onward * watt_hours[:, None, None],
         flown.end * by_uav,

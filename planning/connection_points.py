@@ -213,7 +213,7 @@ def _near_pairs(start: FloatArray, end: FloatArray, longest_m: float, within: fl
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
+class TargetPaths:
     """Metres and paths between u starts and v visits, and on to the bases: the ends of each are terminals."""
 
     travel: Travel
@@ -272,7 +272,7 @@ class Ways:
         return self.travel.path(self.uavs + visit, self.visits + self.uavs + int(self.nearest_base[visit]))
 
 
-def ways_between(
+def paths_between(
     graph: InspectionGraph,
     zones: ZoneIndex,
     starts: Sequence[Terminal],
@@ -281,7 +281,7 @@ def ways_between(
     rules: AccessRules,
     bases: Sequence[Terminal] = (),
     homes: Sequence[Terminal] | None = None,
-) -> Ways:
+) -> TargetPaths:
     """Least-cost ways from starts and exits to entries, homes and bases. Who is not in the air already has its home at its start.
 
     A target on a part of the network that no UAV gets to, such as a line that stands alone, is given access legs of its own.
@@ -300,7 +300,7 @@ def ways_between(
         for at, place in alone.items():
             legs[at] = joined([legs[at], access_legs(graph, zones, place, rules)])
         found = travel_between_places(graph, legs, source, sink, direct)
-    return Ways(
+    return TargetPaths(
         found,
         uavs,
         visits,

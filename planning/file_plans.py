@@ -25,7 +25,7 @@ from inspection.network.paths.node_tree import NodeTree, tree_of
 from inspection.network.paths.paths import travel_of_legs
 from inspection.network.route_index import RouteIndex
 from planning.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.exact import MAX_TARGETS, best_routes
 from planning.solver.problem_arrays import Arcs, no_burden
 from planning.solver.solver import solve
@@ -139,8 +139,8 @@ def _routes(length_m: FloatArray, uavs: int, objective: Objective) -> Routes:
     if not uavs or not targets:
         return ((),) * uavs
     if targets <= MAX_TARGETS:
-        ways_m = np.minimum(length_m, NO_WAY_M)
-        return best_routes(_arcs(ways_m[:uavs], ways_m[uavs:], objective))
+        paths_m = np.minimum(length_m, NO_PATH_M)
+        return best_routes(_arcs(paths_m[:uavs], paths_m[uavs:], objective))
     problem = Problem(
         uavs=(UavStart(),) * uavs,
         visits=tuple(Visit(target) for target in range(targets)),
@@ -167,7 +167,7 @@ def _plain(uavs: int, targets: int) -> dict[str, Any]:
         "service_s": np.zeros(targets),
         "ready_s": np.zeros(uavs),
         "done": np.ones(targets, dtype=np.int64),
-        "limit_m": np.full(uavs, NO_WAY_M / 2),
+        "limit_m": np.full(uavs, NO_PATH_M / 2),
         "speed_mps": np.ones(uavs),
         "most": np.full(uavs, targets, dtype=np.int64),
         "allowed": np.ones((uavs, targets), dtype=np.bool_),

@@ -30,7 +30,7 @@ class PlannedRoute:
     departs_s: float = 0.0  # after the plan's departure
     timing: Timing | None = None
     charging: tuple[ChargingStop, ...] = ()
-    lacks_wh: float = 0.0  # however it charges on the way
+    shortfall_wh: float = 0.0  # however it charges on the way
     blocked_by: tuple[int, ...] = ()  # spans of the network over which it would have to fly above the limit
 
 

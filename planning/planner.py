@@ -16,7 +16,7 @@ from planning.checks.lost_link import lost_link_check
 from planning.checks.separation import SeparatedRoutes, separated
 from planning.checks.zones import keys_of_zones_met
 from planning.context import PlanningContext
-from planning.explain.energy_shortfall import OUT_OF_REACH, least_missing, with_lacks
+from planning.explain.energy_shortfall import OUT_OF_REACH, least_missing, with_shortfalls
 from planning.explain.other_limits import with_other_limits
 from planning.plan import Plan, PlannedRoute, PlanWarning
 from planning.problem import Objective, Priority
@@ -172,7 +172,7 @@ def _checked(found: CandidatePlan, alone: Sequence[PlannedRoute], constraints: C
     request, context = found.request, found.airspace.context
     on_all = (constraints.zones == choice.widest).all()
     is_clear = None if on_all else lambda route: not keys_of_zones_met([route], request.departs_at, context)
-    found = replace(found, left_out=with_lacks(found, is_clear))
+    found = replace(found, left_out=with_shortfalls(found, is_clear))
     flown = separated(request, alone, context)
     return CheckedPlan(found, flown, _value_of(found, flown.routes), constraints.is_relaxed)
 

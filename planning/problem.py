@@ -139,7 +139,7 @@ class InvalidProblem(ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Amounts:
+class Resources:
     """Seconds or Wh of u UAVs in c classes and v visits that do not follow from the metres; inf or nan where there is no way.
 
     first   (u, v)     start of each UAV to where each visit begins
@@ -175,11 +175,11 @@ class Amounts:
         amount += 0.0 if self.ready is None else float(self.ready[uav])
         return math.inf if math.isnan(amount) else amount
 
-    def taken(self, first: IntArray, last: IntArray, at_visit: FloatArray) -> "Amounts":
+    def taken(self, first: IntArray, last: IntArray, at_visit: FloatArray) -> "Resources":
         """For runs of visits in place of visits: their first and last ones, and what each run takes from end to end (c, runs)."""
-        return Amounts(self.first[:, first], self.onward[:, last][:, :, first], self.end[last], along=at_visit, ready=self.ready)
+        return Resources(self.first[:, first], self.onward[:, last][:, :, first], self.end[last], along=at_visit, ready=self.ready)
 
-    def of_uavs(self, uavs: IntArray) -> "Amounts":
+    def of_uavs(self, uavs: IntArray) -> "Resources":
         return replace(
             self, first=self.first[uavs], end=self.end[:, uavs], ready=None if self.ready is None else np.asarray(self.ready)[uavs]
         )
@@ -215,8 +215,8 @@ class Problem:
     priorities: tuple[Priority, ...] = ()
     locks: tuple[Lock, ...] = ()
     weights: FloatArray | None = None
-    seconds: Amounts | None = None
-    wh: Amounts | None = None
+    seconds: Resources | None = None
+    wh: Resources | None = None
     class_of: tuple[int, ...] = ()
     owner: tuple[int, ...] = ()
     cannot_end: BoolArray | None = None
@@ -231,18 +231,24 @@ class Problem:
             raise InvalidProblem("a battery is limited, but the Wh are missing")
         if any(uav.sorties < 1 or uav.turnaround_s < 0 or (uav.sorties > 1 and uav.end is not End.RETURN) for uav in self.uavs):
             raise InvalidProblem("only a UAV that returns can fly several sorties, and each flies one or more")
-        for amounts in (self.seconds, self.wh):
-            if amounts is None:
+        for resources in (self.seconds, self.wh):
+            if resources is None:
                 continue
             classes = max(self.class_of, default=0) + 1
             if (
-                amounts.first.shape != (uavs, visits)
-                or amounts.onward.shape[1:] != (visits, visits)
-                or len(amounts.onward) < classes
-                or amounts.end.shape != (visits, uavs)
+                resources.first.shape != (uavs, visits)
+                or resources.onward.shape[1:] != (visits, visits)
+                or len(resources.onward) < classes
+                or resources.end.shape != (visits, uavs)
             ):
                 raise InvalidProblem("seconds or Wh do not fit the UAVs and visits")
-            parts = (amounts.first, amounts.onward, amounts.end, amounts.at_visit, *(() if amounts.ready is None else (amounts.ready,)))
+            parts = (
+                resources.first,
+                resources.onward,
+                resources.end,
+                resources.at_visit,
+                *(() if resources.ready is None else (resources.ready,)),
+            )
             if any(np.count_nonzero(np.asarray(part) < 0) for part in parts):
                 raise InvalidProblem("seconds or Wh are below 0")
 

@@ -13,7 +13,7 @@ from planning.context import ResolvedTarget
 from planning.energy.assignment_costs import FlightCosts
 from planning.energy.duration import ready_s
 from planning.plan import ALL_PLANS, WITHOUT_TIMED_ZONES
-from planning.problem import Amounts, BoolArray, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
+from planning.problem import BoolArray, Lock, Objective, Priority, Problem, Resources, Solution, UavStart, Visit
 from planning.reasons import Reason
 from planning.request import EndAction, LockRequest, PlanRequest, UavRequest
 from planning.rules import FlightRules
@@ -100,8 +100,8 @@ def assignment(
         priorities=tuple(target.priority for target in asked_targets)
         if any(target.priority != Priority.NORMAL for target in asked_targets)
         else (),
-        seconds=None if costs is None else Amounts(**vars(costs.seconds)),
-        wh=None if costs is None else Amounts(**vars(costs.wh)),
+        seconds=None if costs is None else Resources(**vars(costs.seconds)),
+        wh=None if costs is None else Resources(**vars(costs.wh)),
         class_of=() if costs is None else costs.class_of,
         cannot_end=_cannot_end(request, uavs, visits, no_landing) if no_landing else None,
     )
@@ -192,12 +192,12 @@ def solve_assignment(
         return solve(asked.problem, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s), None
     half_s = search_s / 2.0 if asked.free.target_count > MAX_TARGETS else search_s
 
-    def first_half(told: Progress) -> None:
-        on_progress(replace(told, share=told.share / 2.0))
+    def first_half(reported: Progress) -> None:
+        on_progress(replace(reported, share=reported.share / 2.0))
 
-    def second_half(told: Progress) -> None:
+    def second_half(reported: Progress) -> None:
         on_progress(
-            Progress(0.5 + told.share / 2.0, "Working out what the locked parts cost")
+            Progress(0.5 + reported.share / 2.0, "Working out what the locked parts cost")
         )  # what is drawn stays the plan with the locks
 
     solution = solve(asked.problem, stop=stop, on_progress=first_half, seed=seed, search_s=half_s)

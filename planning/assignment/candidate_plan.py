@@ -8,7 +8,7 @@ from planning.assignment.assignment import LockCost, assignment, least_ready_s, 
 from planning.assignment.refusals import Grounding, deleted_target, groundings, refused_target, target_height_m
 from planning.assignment.routing_input import costs_of_flying, needs_flight_costs, visits_of_targets
 from planning.assignment.unassigned import explained_unassigned
-from planning.connection_points import Terminal, ways_between
+from planning.connection_points import Terminal, paths_between
 from planning.context import ResolvedTarget
 from planning.energy.duration import target_s
 from planning.plan import PlannedRoute, UnassignedTarget
@@ -104,7 +104,7 @@ def candidate_plan(
             target_s(height_m, target.task.hold_s, slowest_mps, airspace.flight) for target, height_m in zip(targets, agl_m, strict=True)
         ]
     visits, courses = visits_of_targets(targets, takes_s)
-    ways = ways_between(
+    ways = paths_between(
         airspace.graph,
         airspace.leg_zones,
         starts=[Terminal(request.uavs[uav].position) for uav in uavs],
@@ -143,8 +143,8 @@ def _no_landing(request: PlanRequest, uavs: Sequence[int], targets: Sequence[Res
 def _passed_on(sketch: Sketch, on_progress: OnPlanProgress) -> OnProgress:
     """What the solver says of the search, in the words of the whole plan."""
 
-    def hear(told: Progress) -> None:
-        draw = None if told.best_routes is None else lambda: sketch.of(told)
-        on_progress(PlanProgress(0.1 + 0.85 * told.share, told.message, draw))
+    def hear(reported: Progress) -> None:
+        draw = None if reported.best_routes is None else lambda: sketch.of(reported)
+        on_progress(PlanProgress(0.1 + 0.85 * reported.share, reported.message, draw))
 
     return hear

@@ -7,7 +7,7 @@ import numpy as np
 
 from inspection.geodesy import LonLat, path_length_m
 from planning.airspace import Airspace
-from planning.connection_points import Ways
+from planning.connection_points import TargetPaths
 from planning.context import ResolvedTarget
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.path_cost import FlightClass, NodeGround
@@ -27,7 +27,7 @@ class RoutingInput:
     agl_m: Sequence[float]
     visits: Sequence[Visit]
     courses: Sequence[tuple[LonLat, ...]]
-    ways: Ways
+    ways: TargetPaths
     bases: Sequence[BaseRequest]
 
 

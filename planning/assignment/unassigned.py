@@ -11,7 +11,7 @@ from planning.assignment.assignment import Assignment
 from planning.assignment.options import has_sensor, may_do
 from planning.assignment.refusals import Grounding
 from planning.assignment.routing_input import RoutingInput
-from planning.connection_points import Ways, is_near_network
+from planning.connection_points import TargetPaths, is_near_network
 from planning.context import ResolvedTarget
 from planning.energy.power import power_w
 from planning.plan import Shortfall, UnassignedTarget
@@ -95,7 +95,7 @@ def _why(
     request: PlanRequest,
     asked: Assignment,
     visits: Sequence[int],
-    ways: Ways,
+    ways: TargetPaths,
     grounded: Mapping[int, Grounding],
 ) -> tuple[str, tuple[Reason, ...]] | None:
     """Where a wish is what keeps the target from its route, that wish."""
@@ -106,7 +106,7 @@ def _why(
     return None
 
 
-def _is_cut_off_from_bases(problem: Problem, visits: Sequence[int], ways: Ways) -> bool:
+def _is_cut_off_from_bases(problem: Problem, visits: Sequence[int], ways: TargetPaths) -> bool:
     """Whether every UAV that may do it has to land at a base, and none can be reached from where it meets the network."""
     may = [uav for uav in range(len(problem.uavs)) if any(problem.may_fly(uav, visit) for visit in visits)]
     return (

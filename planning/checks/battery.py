@@ -5,7 +5,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from planning.assignment.candidate_plan import CandidatePlan
-from planning.checks.least_shortfall import LeastLacks, lack_wh
+from planning.checks.least_shortfall import LeastShortfalls, shortfall_wh
 from planning.plan import PlannedRoute, UnassignedTarget
 from planning.reasons import Reason
 from planning.trajectory.sorties import wh_of_sorties
@@ -22,7 +22,7 @@ def battery_overruns(found: CandidatePlan, routes: Sequence[PlannedRoute]) -> di
     request, over = found.request, {}
     for number, route in enumerate(routes):
         usable_wh = request.uavs[number].performance.usable_wh
-        if route.lacks_wh > 0.0 and usable_wh is not None:
+        if route.shortfall_wh > 0.0 and usable_wh is not None:
             over[number] = (1.0 - JUST_BELOW) * found.most_counted_wh(number) / usable_wh  # with charging this may be above 1
             continue
         most_wh = max(wh_of_sorties(route.timing), default=0.0) if route.timing is not None and not route.charging else 0.0
@@ -42,35 +42,35 @@ def not_lasting_for(found: CandidatePlan, routes: Sequence[PlannedRoute], over: 
     """
     request, barred = found.request, {}
     locked = {lock.uav for lock in request.locks}
-    lacks = LeastLacks(found)
+    shortfalls = LeastShortfalls(found)
     for uav, share in over.items():
         if request.uavs[uav].name not in locked and len(routes[uav].targets) <= MAX_TRIED:
-            barred[uav] = _too_much_for(uav, lacks, None if routes[uav].lacks_wh > 0.0 else share)
+            barred[uav] = _too_much_for(uav, shortfalls, None if routes[uav].shortfall_wh > 0.0 else share)
     return {uav: targets for uav, targets in barred.items() if targets}
 
 
-def _too_much_for(uav: int, lacks: LeastLacks, share: float | None) -> frozenset[int]:
+def _too_much_for(uav: int, shortfalls: LeastShortfalls, share: float | None) -> frozenset[int]:
     """share: None where it charges on the way."""
-    found, request, start = lacks.found, lacks.request, lacks.found.uavs.index(uav)
+    found, request, start = shortfalls.found, shortfalls.request, shortfalls.found.uavs.index(uav)
     flights = found.solution.sorties[start]
     target_of = {visit: found.drawing.targets[found.problem.visits[visit].target].target for order in flights for visit in order}
-    least = {target: lacks.of_battery(target, only=uav) for target in target_of.values()}
-    hopeless = frozenset(target for target, lack in least.items() if lack is not None and lack.missing > 0.0)
+    least = {target: shortfalls.of_battery(target, only=uav) for target in target_of.values()}
+    hopeless = frozenset(target for target, shortfall in least.items() if shortfall is not None and shortfall.missing > 0.0)
     if hopeless or (share is not None and _is_enough(uav, found, share)):
         return hopeless
 
-    def lack(visits: Sequence[int]) -> float:
+    def shortfall(visits: Sequence[int]) -> float:
         """Some targets are come to from others only."""
-        has_way = math.isfinite(found.problem.route_length_m(start, visits))
-        return lack_wh(request, uav, found.drawn_alone(uav, visits)) if has_way else math.inf
+        has_path = math.isfinite(found.problem.route_length_m(start, visits))
+        return shortfall_wh(request, uav, found.drawn_alone(uav, visits)) if has_path else math.inf
 
-    order = max(flights, key=lack)
+    order = max(flights, key=shortfall)
     most_wanted = max(request.targets[target_of[visit]].priority for visit in order)
     alike = all(request.targets[target_of[visit]].priority == most_wanted for visit in order)
 
     def merit(visit: int) -> tuple[bool, bool, bool, int, float]:
         rest = [other for other in order if other != visit]
-        rest_wh = lack(rest) if rest else math.inf
+        rest_wh = shortfall(rest) if rest else math.inf
         priority = request.targets[target_of[visit]].priority
         return math.isinf(rest_wh), not alike and priority == most_wanted, rest_wh > 0.0, priority, rest_wh
 

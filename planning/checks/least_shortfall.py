@@ -14,7 +14,7 @@ from planning.plan import PlannedRoute
 from planning.problem import RANGE_RESERVE
 from planning.request import PlanRequest
 from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import NO_WAY_M, Kind
+from planning.solver.cost_matrices import NO_PATH_M, Kind
 from planning.trajectory.sorties import wh_of_sorties
 
 IsClear = Callable[[PlannedRoute], bool]
@@ -23,7 +23,7 @@ MAX_DRAWN = 300  # routes of one plan
 MAX_LISTED = 4  # targets of which each order is looked at
 
 
-class Lack(NamedTuple):
+class RouteShortfall(NamedTuple):
     """missing: metres or Wh, below 0 for what is left; uav by its number in the request."""
 
     missing: float
@@ -31,19 +31,19 @@ class Lack(NamedTuple):
     route: PlannedRoute
 
 
-def lack_wh(request: PlanRequest, uav: int, route: PlannedRoute | None) -> float:
+def shortfall_wh(request: PlanRequest, uav: int, route: PlannedRoute | None) -> float:
     """Wh by which a drawn route takes more than the battery of its UAV may give, below 0 what is left; inf where it cannot be flown."""
     usable_wh = request.uavs[uav].performance.usable_wh
     if route is None:
         return math.inf
     if usable_wh is None or route.timing is None:
         return -math.inf
-    if route.charging or route.lacks_wh > 0.0:
-        return route.lacks_wh
+    if route.charging or route.shortfall_wh > 0.0:
+        return route.shortfall_wh
     return max(wh_of_sorties(route.timing), default=0.0) - usable_wh
 
 
-class LeastLacks:
+class LeastShortfalls:
     """Of one attempt, whatever it keeps from UAVs. Other targets may lie on the way: a place between two networks can join them.
 
     is_clear: whether a drawn route keeps clear of all zones, where the attempt stands on fewer: a way that does not is none.
@@ -59,10 +59,10 @@ class LeastLacks:
         self._drawn = 0
         self.barred: set[tuple[int, int]] = set()  # targets and UAVs: a way that was drawn passes what cannot be flown over
 
-    def of_battery(self, target: int, only: int | None = None) -> Lack | None:
+    def of_battery(self, target: int, only: int | None = None) -> RouteShortfall | None:
         """Of all UAVs, or one of them; None where there is no way, or MAX_DRAWN are drawn already."""
-        best: Lack | None = None
-        for counted_wh, uav, order in sorted(self._ways(target)):
+        best: RouteShortfall | None = None
+        for counted_wh, uav, order in sorted(self._paths(target)):
             if best is not None and (counted_wh >= best.missing or best.missing <= 0.0):
                 break
             if self._drawn >= MAX_DRAWN or only not in (None, uav):
@@ -72,17 +72,17 @@ class LeastLacks:
             if route is not None and barring_spans([route], self.found.airspace.context):
                 self.barred.add((target, uav))
                 continue
-            missing_wh = max(counted_wh, lack_wh(self.request, uav, route))  # who is refused by the one is not helped by the other
+            missing_wh = max(counted_wh, shortfall_wh(self.request, uav, route))  # who is refused by the one is not helped by the other
             if route is not None and (best is None or missing_wh < best.missing) and (self.is_clear is None or self.is_clear(route)):
-                best = Lack(missing_wh, uav, route)
+                best = RouteShortfall(missing_wh, uav, route)
         return best
 
-    def of_range(self, target: int) -> Lack | None:
+    def of_range(self, target: int) -> RouteShortfall | None:
         missing_m, uav, order = min(self._shortest(target), default=(0.0, -1, ()))
         route = self.found.drawn_alone(uav, order) if order else None
         if route is None or not (self.is_clear is None or self.is_clear(route)):
             return None
-        return Lack(missing_m, uav, route)
+        return RouteShortfall(missing_m, uav, route)
 
     def _shortest(self, target: int) -> list[tuple[float, int, tuple[int, ...]]]:
         """For each UAV that may do it, by its number in the request, the visits of the shortest route, and the metres that it lacks."""
@@ -93,7 +93,7 @@ class LeastLacks:
                 ways += [(one.amount - self.found.problem.uavs[start].limit_m, uav, one.order) for one in routes if one.amount < math.inf]
         return ways
 
-    def _ways(self, target: int) -> list[tuple[float, int, tuple[int, ...]]]:
+    def _paths(self, target: int) -> list[tuple[float, int, tuple[int, ...]]]:
         """For each UAV that has the range, by its number in the request, the visits of routes that may be the least; and what each is
         counted to lack.
 
@@ -109,16 +109,16 @@ class LeastLacks:
             for visit in self._visits[self._number[target]]:
                 if usable_wh is None:
                     shortest = self._metres.route(start, visit)
-                    ways += [(-math.inf, uav, shortest.order)] if shortest.amount <= min(limit_m, NO_WAY_M) else []
+                    ways += [(-math.inf, uav, shortest.order)] if shortest.amount <= min(limit_m, NO_PATH_M) else []
                     continue
                 least = (routes.route(start, visit).order for routes in (self._wh, self._metres))
                 orders = ((visit,), *least) if charges else (*least, *self._orders_of_few(visit))
-                within = [order for order in dict.fromkeys(orders) if self._metres_of(start, order) <= min(limit_m, NO_WAY_M)]
+                within = [order for order in dict.fromkeys(orders) if self._metres_of(start, order) <= min(limit_m, NO_PATH_M)]
                 for order in within[:1] if charges else within:
                     counted_wh = self.found.problem.route_wh(start, order)
                     if counted_wh is not None and math.isfinite(counted_wh):
-                        lacks_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - usable_wh
-                        ways.append((-math.inf if charges else lacks_wh, uav, order))
+                        shortfall_wh = counted_wh / (1.0 - COUNTED_CLOSE - RANGE_RESERVE) - usable_wh
+                        ways.append((-math.inf if charges else shortfall_wh, uav, order))
         return ways
 
     def _orders_of_few(self, visit: int) -> Iterator[tuple[int, ...]]:

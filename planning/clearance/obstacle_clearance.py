@@ -57,8 +57,8 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
     top_m = np.column_stack([spans.start_height_m[near], spans.end_height_m[near]])
     if is_known and ground_heights_m is not None:
         used = np.unique(span)
-        told_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
-        top_m[used] += np.where(np.isnan(told_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, told_m)
+        reported_m = ground_heights_m(np.concatenate([spans.start[near[used]], spans.end[near[used]]])).reshape(2, -1).T
+        top_m[used] += np.where(np.isnan(reported_m).any(axis=1, keepdims=True), UNKNOWN_TOP_M, reported_m)
     found: set[tuple[int, int]] = set()
     too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
     for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):

@@ -86,7 +86,7 @@ class Trouble:
     zone: int | None = None
 
 
-class WaysHome:
+class RtlPaths:
     """From places to one haven. What the ground and obstacles ask for is looked up once, for any level.
 
     `home_amsl_m` and ground_heights_m are None where flat ground is assumed; heights are then above it.

@@ -17,10 +17,10 @@ from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.along_paths import chain_arrays
 from inspection.network.paths.contracted_graph import NumberArray
-from planning.connection_points import Ways
+from planning.connection_points import TargetPaths
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
-from planning.energy.path_cost import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
+from planning.energy.path_cost import FlightClass, NodeGround, bends_of_paths, graph_taken, taken_on_paths
 from planning.problem import End
 from planning.rules import FlightRules
 
@@ -66,7 +66,7 @@ class Finish:
 
 def flight_costs(
     graph: InspectionGraph,
-    ways: Ways,
+    ways: TargetPaths,
     *,
     classes: Sequence[FlightClass],
     finishes: Sequence[Finish],
@@ -98,7 +98,7 @@ def flight_costs(
     own_class = np.array(class_of, dtype=np.int64)
     first, end = np.empty((2, uavs, visits)), np.empty((2, visits, uavs))
     onward, at_visit = np.empty((2, len(numbers), visits, visits)), np.empty((2, 2, len(numbers), visits))
-    bends = bends_of_ways(travel, float(rules.transit_agl_m))
+    bends = bends_of_paths(travel, float(rules.transit_agl_m))
     for flying, number in numbers.items():
         taken = graph_taken(graph, flying, conditions, rules, ground)
         _fill(
@@ -176,7 +176,7 @@ def _fill(
         source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)
     if len(source_ground_m):
         source[:, 3], sink[:, 3] = source_ground_m, sink_ground_m
-    taken = taken_on_ways(
+    taken = taken_on_paths(
         way, entry_leg, entry_label, leg_node, node_chain, node_place, chain_first, place_sum, label_sum,
         node_position, passed_m, node_ground_m, source, sink, bend, bend_first, direct_number, wind, temperature_c, own, table,
     )  # fmt: skip

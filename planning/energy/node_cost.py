@@ -20,14 +20,14 @@ DONE, UP, LANDING_THERE = range(3)
 TAKE_OFF, LANDING = range(2)
 
 
-def both_ways(
+def both_directions(
     start: FloatArray, start_agl_m: FloatArray, end: FloatArray, end_agl_m: FloatArray, length_m: FloatArray, air: Air
 ) -> FloatArray:
     """Seconds and joules of legs from starts (k, 2) to ends (k, 2), and back: (k, 2, 2), endless where the wind is too strong.
 
     Heights are above ground; length_m is that of the leg, which is more than straight where it goes round something.
     """
-    taken: FloatArray = _both_ways(start, start_agl_m, end, end_agl_m, length_m, air.wind, air.temperature_c, air.own, air.table)
+    taken: FloatArray = _both_directions(start, start_agl_m, end, end_agl_m, length_m, air.wind, air.temperature_c, air.own, air.table)
     return taken
 
 
@@ -41,7 +41,7 @@ def at_nodes(level_m: FloatArray, transit_agl_m: float, hold_s: FloatArray, air:
 
 
 @njit(cache=True, nogil=True)
-def _both_ways(
+def _both_directions(
     start: FloatArray,
     start_agl_m: FloatArray,
     end: FloatArray,

@@ -118,7 +118,7 @@ class Bends(NamedTuple):
 _STRAIGHT = Bends(np.zeros((0, 3)), np.zeros(0, dtype=np.int64), np.zeros((0, 0), dtype=np.int32))
 
 
-def bends_of_ways(travel: Travel, agl_m: float) -> Bends:
+def bends_of_paths(travel: Travel, agl_m: float) -> Bends:
     """The bends of the legs and direct ways of a travel, all flown at this height above ground."""
     if not (travel.leg_bends or travel.direct_bends):
         return _STRAIGHT
@@ -186,7 +186,7 @@ def _steps_taken(
 
 
 @njit(cache=True, nogil=True)
-def taken_on_ways(
+def taken_on_paths(
     way: NumberArray,
     entry_leg: NumberArray,
     entry_label: IntArray,

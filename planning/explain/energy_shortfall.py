@@ -6,7 +6,7 @@ from dataclasses import replace
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.unassigned import LOCKED, of_battery, with_minutes
 from planning.checks.battery import IN_EVERY_ROUTE
-from planning.checks.least_shortfall import IsClear, Lack, LeastLacks
+from planning.checks.least_shortfall import IsClear, LeastShortfalls, RouteShortfall
 from planning.checks.wires import NO_PATH, wires_in_the_way
 from planning.plan import UnassignedTarget
 from planning.problem import UnassignedReason
@@ -17,18 +17,18 @@ from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE, THERE
 OUT_OF_REACH = {UnassignedReason.BEYOND_RANGE.value, UnassignedReason.BEYOND_ENERGY.value}
 
 
-def with_lacks(found: CandidatePlan, is_clear: IsClear | None = None) -> list[UnassignedTarget]:
+def with_shortfalls(found: CandidatePlan, is_clear: IsClear | None = None) -> list[UnassignedTarget]:
     """The targets left out, with the Wh that are missing for those for which no battery lasts. Locked runs keep their reasons.
 
     is_clear: whether a drawn route keeps clear of all zones, where the plan stands on fewer: a way that does not is none.
     """
-    told = list(found.left_out)
-    rows = [row for row, item in enumerate(told) if item.reason in OUT_OF_REACH and not item.is_for(LOCKED.code)]
+    reported = list(found.left_out)
+    rows = [row for row, item in enumerate(reported) if item.reason in OUT_OF_REACH and not item.is_for(LOCKED.code)]
     if rows:
-        lacks = LeastLacks(found, is_clear)
+        shortfalls = LeastShortfalls(found, is_clear)
         for row in rows:
-            told[row] = _told(told[row], found.request, lacks)
-    return told
+            reported[row] = _reported(reported[row], found.request, shortfalls)
+    return reported
 
 
 def least_missing(
@@ -60,29 +60,33 @@ def least_missing(
     return [least(item) for item in plan]
 
 
-def _told(item: UnassignedTarget, request: PlanRequest, lacks: LeastLacks) -> UnassignedTarget:
+def _reported(item: UnassignedTarget, request: PlanRequest, shortfalls: LeastShortfalls) -> UnassignedTarget:
     """Who has the range, but was kept from a target, lacks the battery, even where the solver saw only the range of the others."""
     by_range = item.reason == UnassignedReason.BEYOND_RANGE.value
     is_alone = by_range and not item.missing
-    least = None if is_alone else lacks.of_battery(item.target)
+    least = None if is_alone else shortfalls.of_battery(item.target)
     if least is None and not by_range:
-        for target, uav in lacks.barred:
+        for target, uav in shortfalls.barred:
             if target == item.target:
                 return UnassignedTarget(target, NO_PATH, (wires_in_the_way(request.uavs[uav].name),), uavs=(uav,))
     if least is None:
-        is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
+        is_way = shortfalls.is_clear is None or (by_range and shortfalls.of_range(item.target) is not None)
         if is_way or by_range:
             return item if is_way else replace(item, missing=None)
-        anyhow = _told(item, request, LeastLacks(lacks.found))  # where zones are not in force: no less is missing
+        anyhow = _reported(item, request, LeastShortfalls(shortfalls.found))  # where zones are not in force: no less is missing
         return replace(anyhow, missing=None)
-    told = replace(item, reason=UnassignedReason.BEYOND_ENERGY.value)
+    reported = replace(item, reason=UnassignedReason.BEYOND_ENERGY.value)
     if least.missing <= 0.0:
         if item.is_for(IN_EVERY_ROUTE.code):
-            return replace(told, missing=0.0)
+            return replace(reported, missing=0.0)
         return _alone(item.target, request.uavs[least.uav])
     shortfall = of_battery(request.uavs[least.uav], least.missing)
     return replace(
-        told, why=(with_minutes(_beyond_battery(least, request), shortfall),), missing=least.missing, shortfall=shortfall, uavs=(least.uav,)
+        reported,
+        why=(with_minutes(_beyond_battery(least, request), shortfall),),
+        missing=least.missing,
+        shortfall=shortfall,
+        uavs=(least.uav,),
     )
 
 
@@ -90,14 +94,14 @@ def _alone(target: int, uav: UavRequest) -> UnassignedTarget:
     """What keeps it from the route of a UAV that could do it alone."""
     if uav.performance.usable_wh is not None:
         return UnassignedTarget(target, UnassignedReason.BEYOND_ENERGY.value, (Reason("in_reach_alone"),), 0.0)
-    told = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
-    return UnassignedTarget(target, told.reason.value, (told.why,), 0.0)
+    reported = NOT_ON_ONE_ROUTE if uav.max_range_m is None else RANGE_ALONE
+    return UnassignedTarget(target, reported.reason.value, (reported.why,), 0.0)
 
 
-def _beyond_battery(lack: Lack, request: PlanRequest) -> Reason:
+def _beyond_battery(lack: RouteShortfall, request: PlanRequest) -> Reason:
     uav = request.uavs[lack.uav]
     figures = {"uav": uav.name, "missing_wh": lack.missing}
-    if lack.route.lacks_wh > 0.0:
+    if lack.route.shortfall_wh > 0.0:
         return Reason("beyond_battery_with_charging", figures)  # fewer may do by paths that were not drawn
     needed_wh = lack.missing + (uav.performance.usable_wh or 0.0)
     return Reason("beyond_battery_as_drawn", {**figures, "needed_wh": needed_wh, "there": THERE[request.route_end(lack.uav)]})

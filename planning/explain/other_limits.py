@@ -10,7 +10,7 @@ from planning.assignment.assignment import allowed_visits
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.options import has_sensor
 from planning.assignment.unassigned import LOCKED, WIND, in_calm
-from planning.checks.least_shortfall import LeastLacks
+from planning.checks.least_shortfall import LeastShortfalls
 from planning.plan import UnassignedTarget
 from planning.problem import BoolArray, UnassignedReason
 from planning.reasons import Reason
@@ -60,11 +60,11 @@ def with_other_limits(found: CandidatePlan) -> list[UnassignedTarget]:
     if not asked:
         return list(found.left_out)
     limits = _Limits(found, [item.target for item in asked])
-    told = {item.target: _told(item, request, limits) for item in asked}
-    return [told.get(item.target, item) for item in found.left_out]
+    reported = {item.target: _reported(item, request, limits) for item in asked}
+    return [reported.get(item.target, item) for item in found.left_out]
 
 
-def _told(item: UnassignedTarget, request: PlanRequest, limits: "_Limits") -> UnassignedTarget:
+def _reported(item: UnassignedTarget, request: PlanRequest, limits: "_Limits") -> UnassignedTarget:
     of_kind: dict[Limit, list[str]] = {}
     for uav in range(len(request.uavs)):
         limit = None if uav in item.uavs else limits.of(uav, item.target)
@@ -85,7 +85,7 @@ class _Limits:
 
     def __init__(self, found: CandidatePlan, targets: Sequence[int]) -> None:
         self.request, self.found = found.request, found
-        self._lacks = LeastLacks(found)
+        self._lacks = LeastShortfalls(found)
         routed = found.drawing.targets
         self._free = replace(found.problem, allowed=allowed_visits(found.request, found.uavs, routed, found.problem.visits))
         of_number = found.problem.visits_of_target()
@@ -119,10 +119,10 @@ class _Limits:
             yield Limit.BATTERY
         allowed = self.found.problem.allowed
         if allowed is not None and not allowed[start, visits].any():  # kept from it, as its route was drawn
-            lack = self._lacks.of_battery(target, only=uav)
-            if (target, uav) in self._lacks.barred and lack is None:
+            shortfall = self._lacks.of_battery(target, only=uav)
+            if (target, uav) in self._lacks.barred and shortfall is None:
                 yield Limit.WIRES
-            if lack is not None and lack.missing > 0.0:
+            if shortfall is not None and shortfall.missing > 0.0:
                 yield Limit.BATTERY
 
     def _is_in_reach_in_calm(self, start: int, visits: Sequence[int]) -> bool:

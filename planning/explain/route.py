@@ -14,10 +14,10 @@ from inspection.network.zones.zone_index import ZoneIndex
 from planning.airspace import Airspace, airspace_on, zone_at
 from planning.assignment.refusals import target_height_m
 from planning.assignment.routing_input import RoutingInput, costs_of_flying, visits_of_targets
-from planning.connection_points import Terminal, Ways, ways_between
+from planning.connection_points import TargetPaths, Terminal, paths_between
 from planning.context import ResolvedTarget
 from planning.energy.assignment_costs import FlightCosts
-from planning.problem import Amounts, Objective
+from planning.problem import Objective, Resources
 from planning.reasons import Reason
 from planning.request import CALM, EndAction, InvalidRequest, PlanRequest
 from planning.trajectory.heights import inspection_agl_m
@@ -33,7 +33,7 @@ def what_binds(
     request: PlanRequest,
     airspace: Airspace,
     targets: Sequence[ResolvedTarget],
-    ways: Ways,
+    ways: TargetPaths,
     orders: Mapping[int, Sequence[int]],
     uav: int,
     *,
@@ -66,7 +66,9 @@ def what_binds(
     }
 
 
-def _costs(request: PlanRequest, airspace: Airspace, targets: Sequence[ResolvedTarget], ways: Ways, flying: Sequence[int]) -> FlightCosts:
+def _costs(
+    request: PlanRequest, airspace: Airspace, targets: Sequence[ResolvedTarget], ways: TargetPaths, flying: Sequence[int]
+) -> FlightCosts:
     visits, courses = visits_of_targets(targets)
     agl_m = [inspection_agl_m(target_height_m(target, airspace), airspace.flight) for target in targets]
     bases = [base for base in request.bases if zone_at(base.position, airspace) is None]
@@ -74,8 +76,8 @@ def _costs(request: PlanRequest, airspace: Airspace, targets: Sequence[ResolvedT
 
 
 def _of_route(costs: FlightCosts, quantity: str, number: int, order: Sequence[int]) -> float:
-    amounts = Amounts(**vars(getattr(costs, quantity)))
-    return float(amounts.of_route(number, costs.class_of[number], order))
+    resources = Resources(**vars(getattr(costs, quantity)))
+    return float(resources.of_route(number, costs.class_of[number], order))
 
 
 @dataclass(frozen=True)
@@ -83,7 +85,7 @@ class _Field:
     """The ways of a plan again: visits as the planner numbers them, and the targets that they do."""
 
     targets: list[ResolvedTarget]
-    ways: Ways
+    ways: TargetPaths
     courses: list[tuple[LonLat, ...]]
     along_m: list[float]
     visits_of: dict[int, list[int]]  # by the request's number of the target
@@ -149,7 +151,7 @@ def _field(request: PlanRequest, wanted: set[int], airspace: Airspace, graph: In
     visits, courses = visits_of_targets(targets)
     bases = [base.position for base in request.bases if zone_at(base.position, airspace) is None]
     flying = [number for number, asked in enumerate(request.uavs) if zone_at(asked.position, airspace) is None]
-    ways = ways_between(
+    ways = paths_between(
         graph,
         zones,
         starts=[Terminal(request.uavs[number].position) for number in flying],

@@ -29,7 +29,7 @@ from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
 from planning.energy.conditions import Conditions
 from planning.energy.leg_cost import J_PER_WH
-from planning.energy.node_cost import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_ways
+from planning.energy.node_cost import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_directions
 from planning.energy.path_cost import NO_HEADWAY, FlightClass, GraphTaken, graph_taken
 from planning.problem import DEFAULT_HOLD_S, End, TaskKind
 from planning.reachability.reachable_assets import NodeReach, Reach, Verdict, of_assets
@@ -172,14 +172,14 @@ def _reach_of_nodes(
     barred = np.zeros(count, dtype=bool) if no_landing is None else no_landing
     lands_nowhere = np.zeros(count, dtype=bool)
     able_m, flight = np.full(count, np.inf), np.full(count, -1, dtype=np.int16)
-    missing_m, missing_wh, has_way = np.full(count, np.inf), np.full(count, np.inf), np.zeros(count, dtype=bool)
+    missing_m, missing_wh, has_path = np.full(count, np.inf), np.full(count, np.inf), np.zeros(count, dtype=bool)
     places = list(dict.fromkeys(flight.position for flight in flights))
     legs = {place: access_legs(graph, zones, Terminal(place), rules) for place in places}
     landed_at = bases if any(one.end is End.ANY_BASE for one in flights) else []
     base_legs = [access_legs(graph, zones, Terminal(base), rules) for base in landed_at]
     islands = _Islands.of(graph, zones, joined(list(legs.values())), joined(base_legs), rules)
     scene = _Scene(graph, zones, rules, islands, core_graph(route_index(graph).contracted), conditions, flight_rules)
-    to_base: dict[FlightClass | None, _Ways] = {}
+    to_base: dict[FlightClass | None, _Paths] = {}
     for (place, flying), alike in _alike(flights).items():
         there = scene.ways([place], [legs[place]], flying)
         for number in alike:
@@ -195,13 +195,13 @@ def _reach_of_nodes(
                 is_able &= ~barred
             can = is_able & (needed_m < able_m)
             able_m[can], flight[can] = needed_m[can], number
-            has_way |= np.isfinite(needed_m)
+            has_path |= np.isfinite(needed_m)
             against = np.isfinite(needed_m) & np.isfinite(needed_wh)
             np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, MAX_DISTANCE_M), np.inf), out=missing_m)
             enough = against & (needed_m <= one.limit_m)
             np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MAX_WH), np.inf), out=missing_wh)
     verdict = np.full(count, Verdict.CUT_OFF, dtype=np.int8)
-    verdict[has_way] = Verdict.WIND
+    verdict[has_path] = Verdict.WIND
     verdict[np.isfinite(missing_m)] = Verdict.BEYOND_RANGE
     verdict[np.isfinite(missing_wh)] = Verdict.BEYOND_ENERGY
     verdict[lands_nowhere] = Verdict.NO_LANDING
@@ -327,7 +327,7 @@ def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
 
 
 @dataclass(frozen=True, eq=False)
-class _Ways:
+class _Paths:
     """Between each node and the place, of some, that is nearest to it by cost.
 
     cost, length_m (n,), inf where there is no way; taken (n, 2, 2): from the place to the node and back, seconds and joules.
@@ -348,19 +348,19 @@ class _Scene:
     conditions: Conditions
     flight_rules: FlightRules
 
-    def ways(self, places: Sequence[LonLat], legs: Sequence[Attachments], flying: FlightClass | None) -> _Ways:
+    def ways(self, places: Sequence[LonLat], legs: Sequence[Attachments], flying: FlightClass | None) -> _Paths:
         """legs are those of each place."""
         all_legs = joined(list(legs))
         graph, islands = self.graph, self.islands
         if flying is None:
             found = search_from(graph, all_legs, self.at_core)
-            ways = _Ways(found.cost, found.length_m, None)
+            ways = _Paths(found.cost, found.length_m, None)
         else:
             kept = self._taken(flying)
             start = np.repeat(np.array(places, dtype=np.float64).reshape(-1, 2), [len(some) for some in legs], axis=0)
             leg_taken = self._legs_taken(start, all_legs.node, all_legs.length_m, flying)
             found = search_from(graph, all_legs, self.at_core, place_sum=kept.sums.place, leg_taken=leg_taken)
-            ways = _Ways(found.cost, found.length_m, found.taken)
+            ways = _Paths(found.cost, found.length_m, found.taken)
         if len(islands.node):
             over_cost = self.rules.off_network_factor * islands.length_m + ways.cost[islands.other]
             order = np.lexsort((over_cost, islands.node))
@@ -371,7 +371,7 @@ class _Scene:
             if ways.taken is not None and flying is not None:
                 passed_m = self._taken(flying).passed_m
                 position = graph.position
-                last = both_ways(
+                last = both_directions(
                     position[onto], passed_m[onto], position[over], passed_m[over], islands.length_m[first], self._taken(flying).air
                 )
                 ways.taken[over] = ways.taken[onto] + last
@@ -379,7 +379,7 @@ class _Scene:
             self._straight(place, ways, flying)
         return ways
 
-    def needed_wh(self, there: _Ways, back: _Ways | None, one: Flight) -> FloatArray:
+    def needed_wh(self, there: _Paths, back: _Paths | None, one: Flight) -> FloatArray:
         """Of the battery, from take-off to the end; inf where the wind is too strong, or there is no way; 0 where nothing is counted."""
         if there.taken is None or one.flying is None:
             return np.where(np.isfinite(there.length_m), 0.0, np.inf)
@@ -410,9 +410,9 @@ class _Scene:
         """Of legs from places (k, 2), at transit height, to nodes: (k, 2, 2)."""
         kept = self._taken(flying)
         transit_m = np.full(len(start), self.flight_rules.transit_agl_m)
-        return np.minimum(both_ways(start, transit_m, self.graph.position[node], kept.passed_m[node], length_m, kept.air), NO_HEADWAY)
+        return np.minimum(both_directions(start, transit_m, self.graph.position[node], kept.passed_m[node], length_m, kept.air), NO_HEADWAY)
 
-    def _straight(self, place: LonLat, ways: _Ways, flying: FlightClass | None) -> None:
+    def _straight(self, place: LonLat, ways: _Paths, flying: FlightClass | None) -> None:
         """Nodes that are flown to straight, where that costs no more."""
         position, rules, cost = self.graph.position, self.rules, ways.cost
         frame = LocalFrame.around(place.lon, place.lat)
@@ -433,13 +433,15 @@ class _Scene:
             within, straight_m = within[clear], straight_m[clear]
         self._put(place, within, straight_m, rules.off_network_factor * straight_m, ways, flying)
 
-    def _put(self, place: LonLat, nodes: IntArray, length_m: FloatArray, cost: FloatArray, ways: _Ways, flying: FlightClass | None) -> None:
+    def _put(
+        self, place: LonLat, nodes: IntArray, length_m: FloatArray, cost: FloatArray, ways: _Paths, flying: FlightClass | None
+    ) -> None:
         ways.cost[nodes], ways.length_m[nodes] = cost, length_m
         if ways.taken is not None and flying is not None:
             start = np.broadcast_to(np.array(place), (len(nodes), 2)).copy()
             ways.taken[nodes] = self._legs_taken(start, nodes, length_m, flying)
 
-    def _round(self, place: LonLat, nodes: IntArray, ways: _Ways, flying: FlightClass | None) -> None:
+    def _round(self, place: LonLat, nodes: IntArray, ways: _Paths, flying: FlightClass | None) -> None:
         """Nodes that nothing else reaches, round the zones that stand before them."""
         for node in nodes[:MAX_ROUND].tolist():
             target = Terminal(LonLat(*self.graph.position[node].tolist()))

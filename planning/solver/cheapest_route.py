@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem
-from planning.solver.cost_matrices import NO_WAY_M, Classes, Kind, Quantities, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_PATH_M, Classes, Kind, Quantities, classes_of, quantities_of
 
 MAX_TRIED = 8
 
@@ -56,25 +56,25 @@ class LeastRoutes:
         self, from_here: FloatArray, onward: FloatArray, to_end: FloatArray, visit: int, others: BoolArray
     ) -> tuple[float, list[int], list[int]]:
         """The best way to the visit, then the best on to the end over none of its targets: amount, and the visits of both from outside."""
-        there, before = least_way(from_here, onward, visit, others)
+        there, before = least_path(from_here, onward, visit, others)
         free = others & ~np.isin(self._target, self._target[before])
-        back, after = least_way(to_end, np.ascontiguousarray(onward.T), visit, free)
+        back, after = least_path(to_end, np.ascontiguousarray(onward.T), visit, free)
         passed = self._target[np.concatenate([before, after])]
         is_route = len(np.unique(passed)) == len(passed)  # a stretch is not flown from both of its ends
         return _closed(there + back) if is_route else math.inf, before.tolist(), after.tolist()
 
 
-def least_way(from_here: FloatArray, onward: FloatArray, visit: int, others: BoolArray) -> tuple[float, IntArray]:
+def least_path(from_here: FloatArray, onward: FloatArray, visit: int, others: BoolArray) -> tuple[float, IntArray]:
     """To a visit over some of the others (Dijkstra 1959): what it takes, and those visits in order."""
-    return _least_way(np.ascontiguousarray(from_here), np.ascontiguousarray(onward), visit, others)
+    return _least_path(np.ascontiguousarray(from_here), np.ascontiguousarray(onward), visit, others)
 
 
 def _closed(amount: float) -> float:
-    return math.inf if amount >= NO_WAY_M else amount
+    return math.inf if amount >= NO_PATH_M else amount
 
 
 @njit(cache=True, nogil=True)
-def _least_way(from_here: FloatArray, onward: FloatArray, visit: int, others: BoolArray) -> tuple[float, IntArray]:
+def _least_path(from_here: FloatArray, onward: FloatArray, visit: int, others: BoolArray) -> tuple[float, IntArray]:
     count = len(from_here)
     amount, before = from_here.copy(), np.full(count, -1, dtype=np.int64)
     is_done = np.zeros(count, dtype=np.bool_)

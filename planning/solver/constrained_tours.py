@@ -12,9 +12,9 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.problem_arrays import Arcs
-from planning.solver.reach import least_ways
+from planning.solver.reach import least_paths
 from planning.solver.tours import shortest_tours, walk_back
 
 MAX_LABELS = 96  # of one set and last visit
@@ -59,7 +59,7 @@ def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MAX
     back = np.empty((more, *back_m.shape))
     for at in range(more):
         back[at] = burden.onward[at, number].T
-        home[at] = (least_ways(np.where(arcs.allowed[uav], burden.onward[at, number], np.inf)) + burden.end[at, uav]).min(axis=1)
+        home[at] = (least_paths(np.where(arcs.allowed[uav], burden.onward[at, number], np.inf)) + burden.end[at, uav]).min(axis=1)
     first, end = np.ascontiguousarray(burden.first[:, uav]), np.ascontiguousarray(burden.end[:, uav])
     found = _limited(
         *own, float(arcs.limit_m[uav]), int(arcs.most[uav]), counts, first, back, end, home, burden.limit[:, uav].copy(), most_labels
@@ -211,14 +211,14 @@ def _labels(
                 continue
             rest, trials = members ^ bit, 0
             for other in range(visits if rest else 1):
-                if rest and (count[rest, other] == 0 or back_m[visit, other] >= NO_WAY_M):
+                if rest and (count[rest, other] == 0 or back_m[visit, other] >= NO_PATH_M):
                     continue
                 for number in range(count[rest, other] if rest else 1):
                     before = begin[rest, other] + number if rest else -1
                     if trials == len(tried):
                         tried, tried_from = np.append(tried, tried, axis=0), np.append(tried_from, tried_from)
                     tried[trials, 0] = label[before, 0] + back_m[visit, other] if rest else first_m[visit]
-                    may = tried[trials, 0] < NO_WAY_M
+                    may = tried[trials, 0] < NO_PATH_M
                     for at in range(more):
                         tried[trials, 1 + at] = label[before, 1 + at] + back[at, visit, other] if rest else first[at, visit]
                         may = may and tried[trials, 1 + at] + home[at, visit] <= limit[at]

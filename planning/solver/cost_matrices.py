@@ -7,10 +7,10 @@ from enum import Enum, auto
 import numpy as np
 from numba import njit
 
-from planning.problem import Amounts, FloatArray, IntArray, InvalidProblem, Objective, Problem
+from planning.problem import FloatArray, IntArray, InvalidProblem, Objective, Problem, Resources
 
-NO_WAY_M = 1e11  # a hundred million kilometres stand for no way: sums of them stay numbers, unlike those of infinities
-NO_LIMIT = NO_WAY_M / 2
+NO_PATH_M = 1e11  # a hundred million kilometres stand for no way: sums of them stay numbers, unlike those of infinities
+NO_LIMIT = NO_PATH_M / 2
 
 
 class Kind(Enum):
@@ -87,7 +87,7 @@ def _counted_kinds(problem: Problem) -> list[Kind]:
 def _write_metres(problem: Problem, classes: Classes, found: Quantities, at: int) -> None:
     along_m = np.array([visit.length_m for visit in problem.visits])[None]
     same = np.zeros(len(classes.pilots), dtype=np.int64)
-    flown = Amounts(problem.from_start_m, problem.between_m[None], problem.end_m, along=along_m)
+    flown = Resources(problem.from_start_m, problem.between_m[None], problem.end_m, along=along_m)
     _write(flown, same, classes, np.zeros(len(problem.visits)), np.zeros(len(problem.uavs)), found, at)
     found.limit[at] = [min(uav.limit_m, NO_LIMIT) for uav in problem.uavs]
 
@@ -104,7 +104,7 @@ def _write_seconds(problem: Problem, classes: Classes, found: Quantities, at: in
     speed_mps = np.array([uav.speed_mps for uav in problem.uavs])
     pilots_mps = speed_mps[list(classes.pilots)][:, None]
     along_m = np.array([visit.length_m for visit in problem.visits])
-    flown = Amounts(
+    flown = Resources(
         problem.from_start_m / speed_mps[:, None],
         problem.between_m / pilots_mps[:, :, None],
         problem.end_m / speed_mps,
@@ -135,12 +135,14 @@ def _rows(problem: Problem, classes: Classes) -> IntArray:
     return np.array([problem.class_number(uav) for uav in classes.pilots], dtype=np.int64)
 
 
-def _write(amounts: Amounts, rows: IntArray, classes: Classes, service: FloatArray, ready: FloatArray, found: Quantities, at: int) -> None:
+def _write(
+    resources: Resources, rows: IntArray, classes: Classes, service: FloatArray, ready: FloatArray, found: Quantities, at: int
+) -> None:
     """service (v,) and ready (u,) come on top of the amounts."""
     _fill(
-        np.ascontiguousarray(amounts.first), np.ascontiguousarray(amounts.onward), np.ascontiguousarray(amounts.end),
-        np.ascontiguousarray(amounts.at_visit), ready if amounts.ready is None else ready + amounts.ready, service, rows, classes.of_uav,
-        at, found.first, found.onward, found.end, found.along,
+        np.ascontiguousarray(resources.first), np.ascontiguousarray(resources.onward), np.ascontiguousarray(resources.end),
+        np.ascontiguousarray(resources.at_visit), ready if resources.ready is None else ready + resources.ready, service, rows,
+        classes.of_uav, at, found.first, found.onward, found.end, found.along,
     )  # fmt: skip
 
 
@@ -168,13 +170,13 @@ def _fill(
         for other in range(visits):
             for visit in range(visits):
                 amount = onward[rows[number], other, visit] + all_along[at, number, visit]
-                all_onward[at, number, other, visit] = amount if amount < NO_WAY_M else NO_WAY_M
+                all_onward[at, number, other, visit] = amount if amount < NO_PATH_M else NO_PATH_M
     for uav in range(uavs):
         for visit in range(visits):
             amount = first[uav, visit] + all_along[at, class_of[uav], visit] + ready[uav]
-            all_first[at, uav, visit] = amount if amount < NO_WAY_M else NO_WAY_M
+            all_first[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
             amount = end[visit, uav]
-            all_end[at, uav, visit] = amount if amount < NO_WAY_M else NO_WAY_M
+            all_end[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
 
 
 @njit(cache=True, nogil=True)
@@ -182,5 +184,5 @@ def _close_alike(first: FloatArray, onward: FloatArray, end: FloatArray) -> None
     """An arc without a way in one quantity has none in any."""
     for arcs in (first.reshape(len(first), -1), onward.reshape(len(onward), -1), end.reshape(len(end), -1)):
         for arc in range(arcs.shape[1]):
-            if arcs[:, arc].max() >= NO_WAY_M:
-                arcs[:, arc] = NO_WAY_M
+            if arcs[:, arc].max() >= NO_PATH_M:
+                arcs[:, arc] = NO_PATH_M

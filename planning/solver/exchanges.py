@@ -9,7 +9,7 @@ from typing import NamedTuple
 from numba import njit
 
 from planning.problem import IntArray
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.plan_state import NO, YES, Ground, Plan, RandomState, draw, draw_below
 
 NEIGHBOURS = 12
@@ -120,7 +120,7 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
     begin, last = plan.visit[other_uav, first], plan.visit[other_uav, end - 1]
     longer_m = 0.0
     if move.is_turned:
-        begin, last = ground.twin[last], ground.twin[begin]
+        begin, last = ground.reversed_visit[last], ground.reversed_visit[begin]
     if (move.is_turned and not ground.is_alike) or ground.class_of[uav] != ground.class_of[other_uav]:
         old_m, new_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, end, move.is_turned)
         longer_m = new_m - old_m
@@ -141,11 +141,11 @@ def measured(ground: Ground, plan: Plan, move: Move) -> Measured:
         return _with_other_tails(ground, plan, move)
     old_m, new_m, moved_s, moved, may = _carried(ground, plan, uav, other_uav, move.first, move.end, move.is_turned)
     if not may:
-        return Measured(NO_WAY_M, service_s, done, NO_WAY_M, service_s, done)
+        return Measured(NO_PATH_M, service_s, done, NO_PATH_M, service_s, done)
     before, behind = _around(plan, other_uav, move.first, move.end)
     begin, last = plan.visit[other_uav, move.first], plan.visit[other_uav, move.end - 1]
     if move.is_turned:
-        begin, last = ground.twin[last], ground.twin[begin]
+        begin, last = ground.reversed_visit[last], ground.reversed_visit[begin]
     if move.kind == TURN:
         length_m += _joined_m(ground, uav, before, begin) + new_m + _joined_m(ground, uav, last, behind)
         length_m -= plan.gap_m[uav, move.first] + old_m + plan.gap_m[uav, move.end]
@@ -175,7 +175,7 @@ def _with_other_tails(ground: Ground, plan: Plan, move: Move) -> Measured:
     _, tail_m, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, NO)
     _, other_tail_m, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, NO)
     if not (may and other_may):
-        return Measured(NO_WAY_M, 0.0, 0, NO_WAY_M, 0.0, 0)
+        return Measured(NO_PATH_M, 0.0, 0, NO_PATH_M, 0.0, 0)
     before, behind = _around(plan, uav, cut, cut)
     other_before, other_behind = _around(plan, other_uav, other_cut, other_cut)
     length_m = _joined_m(ground, uav, before, other_behind) + other_tail_m
@@ -212,9 +212,9 @@ def _carried(
         service_s += ground.service_s[here]
         done += ground.done[here]
         if is_turned:
-            here = ground.twin[here]
+            here = ground.reversed_visit[here]
             if place > first and is_new:
-                new_m += ground.onward_m[number, here, ground.twin[visit[place - 1]]]
+                new_m += ground.onward_m[number, here, ground.reversed_visit[visit[place - 1]]]
         elif place > first and is_new:
             new_m += ground.onward_m[number, visit[place - 1], here]
         if place > first:
@@ -281,4 +281,4 @@ def _move_within(ground: Ground, visit: IntArray, old: IntArray, move: Move) -> 
 @njit(cache=True, nogil=True)
 def _lay(ground: Ground, visit: IntArray, at: int, old: IntArray, first: int, end: int, is_turned: bool) -> None:
     for number in range(end - first):
-        visit[at + number] = ground.twin[old[end - 1 - number]] if is_turned else old[first + number]
+        visit[at + number] = ground.reversed_visit[old[end - 1 - number]] if is_turned else old[first + number]

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from planning.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
+from planning.problem import FloatArray, InvalidProblem, Lock, Problem, Resources, Routes, Unassigned, Visit
 
-MAX_WAYS = 16  # through a locked run between the same two visits, of which none beats another
+MAX_PATHS = 16  # through a locked run between the same two visits, of which none beats another
 
 
 @dataclass(frozen=True)
@@ -112,14 +112,14 @@ def reduced(problem: Problem) -> Reduced:
     )
 
 
-def _of_runs(amounts: Amounts, ways: Sequence[_Run]) -> Amounts:
+def _of_runs(resources: Resources, ways: Sequence[_Run]) -> Resources:
     """What whole runs take, along the ways between their visits too."""
     inside = [
-        amounts.at_visit[:, list(run.visits)].sum(axis=1) + amounts.onward[:, list(run.visits[:-1]), list(run.visits[1:])].sum(axis=1)
+        resources.at_visit[:, list(run.visits)].sum(axis=1) + resources.onward[:, list(run.visits[:-1]), list(run.visits[1:])].sum(axis=1)
         for run in ways
     ]
     first, last = np.array([run.visits[0] for run in ways], dtype=np.int64), np.array([run.visits[-1] for run in ways], dtype=np.int64)
-    return amounts.taken(first, last, np.array(inside, dtype=np.float64).reshape(len(ways), len(amounts.onward)).T)
+    return resources.taken(first, last, np.array(inside, dtype=np.float64).reshape(len(ways), len(resources.onward)).T)
 
 
 def _weights(problem: Problem, targets_of: Sequence[tuple[int, ...]], free: int) -> FloatArray:
@@ -143,8 +143,8 @@ def _runs(problem: Problem, alternatives: Sequence[Sequence[int]]) -> tuple[list
         for visits in alternatives[1:]:
             before = [run for found in ways.values() for run in found]
             ways = {visit: _unbeaten([_onward(problem, run, visit) for run in before]) for visit in visits}
-            is_whole = is_whole and all(len(found) <= MAX_WAYS for found in ways.values())
-            ways = {visit: found[:MAX_WAYS] for visit, found in ways.items()}
+            is_whole = is_whole and all(len(found) <= MAX_PATHS for found in ways.values())
+            ways = {visit: found[:MAX_PATHS] for visit, found in ways.items()}
         runs += [run for found in ways.values() for run in found if np.isfinite(run.length_m)]
     return runs, is_whole
 
@@ -159,19 +159,21 @@ def _unbeaten(runs: Sequence[_Run]) -> list[_Run]:
 
 
 def _begun(problem: Problem, visit: int) -> _Run:
-    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.at_visit[:, visit]]
+    more = [float(amount) for resources in _resources(problem) for amount in resources.at_visit[:, visit]]
     return _Run((visit,), (problem.visits[visit].length_m, *more))
 
 
 def _onward(problem: Problem, run: _Run, visit: int) -> _Run:
     last = run.visits[-1]
     length_m = run.length_m + float(problem.between_m[last, visit]) + problem.visits[visit].length_m
-    more = [float(amount) for amounts in _amounts(problem) for amount in amounts.onward[:, last, visit] + amounts.at_visit[:, visit]]
+    more = [
+        float(amount) for resources in _resources(problem) for amount in resources.onward[:, last, visit] + resources.at_visit[:, visit]
+    ]
     return _Run((*run.visits, visit), (length_m, *(own + added for own, added in zip(run.taken[1:], more, strict=True))))
 
 
-def _amounts(problem: Problem) -> list[Amounts]:
-    return [amounts for amounts in (problem.seconds, problem.wh) if amounts is not None]
+def _resources(problem: Problem) -> list[Resources]:
+    return [resources for resources in (problem.seconds, problem.wh) if resources is not None]
 
 
 def _refuse_contradictions(problem: Problem) -> None:

@@ -10,9 +10,9 @@ from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Objective, Problem, Routes
 from planning.solver import exact
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.problem_arrays import Arcs, no_burden
-from planning.solver.reach import least_ways
+from planning.solver.reach import least_paths
 
 SUBSET_TARGETS = 9
 SUBSET_TRIALS = 60
@@ -93,7 +93,7 @@ def _shift(onward_m: FloatArray) -> FloatArray:
     A route keeps its length, whatever is moved. Half of what lies along a stretch is moved so, and most of what an even wind does: by
     that a way differs from its reverse by what lies between its ends in the wind's direction. The least squares over all pairs.
     """
-    both = (onward_m < NO_WAY_M) & (onward_m.T < NO_WAY_M)
+    both = (onward_m < NO_PATH_M) & (onward_m.T < NO_PATH_M)
     uneven_m = np.where(both, onward_m - onward_m.T, 0.0)
     return np.asarray(-uneven_m.sum(axis=1) / (2 * np.maximum(both.sum(axis=1), 1)), dtype=np.float64)
 
@@ -111,7 +111,7 @@ def _farthest(alone: FloatArray, weight: FloatArray, can_be_done: BoolArray, mis
 
 def _over_others(arcs: Arcs) -> Arcs:
     """The same with the least metres between all visits, over others if that is shorter."""
-    onward_m = np.stack([np.minimum(least_ways(np.where(ways_m < NO_WAY_M, ways_m, np.inf)), NO_WAY_M) for ways_m in arcs.onward_m])
+    onward_m = np.stack([np.minimum(least_paths(np.where(paths_m < NO_PATH_M, paths_m, np.inf)), NO_PATH_M) for paths_m in arcs.onward_m])
     class_of = arcs.class_of.tolist()
     return replace(
         arcs,
@@ -154,14 +154,14 @@ def _between_targets(
     visits = np.flatnonzero(number[arcs.target] >= 0)
     of = number[arcs.target[visits]]
     n, uavs = len(certain), len(arcs.first_m)
-    apart_m, start_m, end_m = np.full((n, n), NO_WAY_M), np.full((uavs, n), NO_WAY_M), np.full((uavs, n), NO_WAY_M)
+    apart_m, start_m, end_m = np.full((n, n), NO_PATH_M), np.full((uavs, n), NO_PATH_M), np.full((uavs, n), NO_PATH_M)
     moved_m = shift_m[:, visits]
     for onward_m, out_m in zip(arcs.onward_m, moved_m, strict=True):
         np.minimum.at(apart_m, (of[:, None], of[None, :]), onward_m[np.ix_(visits, visits)] + out_m[:, None] - out_m[None, :])
     for uav, number in enumerate(arcs.class_of.tolist()):
         out_m = moved_m[number]
-        np.minimum.at(start_m[uav], of, np.where(usable[uav, visits], arcs.first_m[uav, visits] - out_m, NO_WAY_M))
-        np.minimum.at(end_m[uav], of, np.where(usable[uav, visits], arcs.end_m[uav, visits] + out_m, NO_WAY_M))
+        np.minimum.at(start_m[uav], of, np.where(usable[uav, visits], arcs.first_m[uav, visits] - out_m, NO_PATH_M))
+        np.minimum.at(end_m[uav], of, np.where(usable[uav, visits], arcs.end_m[uav, visits] + out_m, NO_PATH_M))
     apart_m = np.minimum(apart_m, apart_m.T)
     service_s = np.full(n, np.inf)
     np.minimum.at(service_s, of, arcs.service_s[visits])

@@ -7,7 +7,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.problem_arrays import Arcs
 
 RandomState = NDArray[np.uint64]  # one number
@@ -18,7 +18,7 @@ FIRST, ABSENT = cast(int, np.int64(0)), cast(int, np.int64(-1))
 MAX_NEIGHBOURS = 60
 MAX_JOINED = 12
 ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
-NO_LIMIT_M = NO_WAY_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
+NO_LIMIT_M = NO_PATH_M / 4  # a route that is longer than its limit, whatever it is, has no way somewhere
 
 
 class Ground(NamedTuple):
@@ -50,7 +50,7 @@ class Ground(NamedTuple):
     weight: FloatArray
     is_makespan: bool
     back_m: FloatArray
-    twin: IntArray
+    reversed_visit: IntArray
     is_alike: bool
     option: IntArray
     option_from: IntArray
@@ -106,8 +106,8 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     option, option_from = arcs.visits_of_target
     apart_m = _apart_m(arcs)
     near = np.argsort(apart_m, axis=1, kind="stable")[:, : MAX_NEIGHBOURS + 1]
-    far_m = np.full(len(arcs.weight), NO_WAY_M)
-    twin = _twins(problem)
+    far_m = np.full(len(arcs.weight), NO_PATH_M)
+    reversed_visit = _reversed_visits(problem)
     turned_m = arcs.onward_m.transpose(0, 2, 1)
     is_alike = np.allclose(arcs.onward_m, turned_m, rtol=0.0, atol=ALIKE_M)
     first_of, end_of = np.searchsorted(arcs.owner, arcs.owner), np.searchsorted(arcs.owner, arcs.owner, side="right")
@@ -128,8 +128,8 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
         arcs.weight,
         arcs.is_makespan,
         arcs.onward_m if is_alike else np.ascontiguousarray(turned_m),
-        twin,
-        is_alike and bool((twin == np.arange(len(twin))).all()),
+        reversed_visit,
+        is_alike and bool((reversed_visit == np.arange(len(reversed_visit))).all()),
         option,
         option_from,
         np.ascontiguousarray(usable),
@@ -148,18 +148,18 @@ def ground_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> Ground:
     )
 
 
-def _twins(problem: Problem) -> IntArray:
-    twin = np.arange(len(problem.visits))
+def _reversed_visits(problem: Problem) -> IntArray:
+    reversed_visit = np.arange(len(problem.visits))
     for visits in problem.visits_of_target():
         if len(visits) == 2 and problem.visits[visits[0]].is_reversed != problem.visits[visits[1]].is_reversed:
-            twin[visits] = visits[::-1]
-    return twin
+            reversed_visit[visits] = visits[::-1]
+    return reversed_visit
 
 
 def _apart_m(arcs: Arcs) -> FloatArray:
     """Metres between targets, over their nearest visits and the better direction, (t, t); below 0 from each to itself."""
     targets = len(arcs.weight)
-    apart_m = np.full((targets, targets), NO_WAY_M)
+    apart_m = np.full((targets, targets), NO_PATH_M)
     np.minimum.at(apart_m, (arcs.target[:, None], arcs.target[None, :]), arcs.onward_m.min(axis=0))
     apart_m = np.asarray(np.minimum(apart_m, apart_m.T), dtype=np.float64)
     np.fill_diagonal(apart_m, -1.0)

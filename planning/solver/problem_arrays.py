@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from planning.problem import BoolArray, FloatArray, IntArray, InvalidProblem, Objective, Problem
-from planning.solver.cost_matrices import NO_LIMIT, NO_WAY_M, Kind, Quantities, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_LIMIT, NO_PATH_M, Kind, Quantities, classes_of, quantities_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,5 +137,5 @@ def _with_again(first: FloatArray, problem: Problem) -> FloatArray:
     """A later sortie begins with what lies between it and the one before."""
     later = [uav for uav in range(1, len(problem.owner)) if problem.owner[uav] == problem.owner[uav - 1]]
     for uav in later:
-        first[uav] = np.minimum(first[uav] + problem.uavs[uav].turnaround_s, NO_WAY_M)
+        first[uav] = np.minimum(first[uav] + problem.uavs[uav].turnaround_s, NO_PATH_M)
     return first

@@ -10,10 +10,10 @@ from numba import njit
 from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Routes, Unassigned, UnassignedReason
 from planning.reasons import Reason
 from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import NO_WAY_M, Kind, classes_of, quantities_of
+from planning.solver.cost_matrices import NO_PATH_M, Kind, classes_of, quantities_of
 
 
-class Told(NamedTuple):
+class Cause(NamedTuple):
     """A reason with what it tells; what is missing, and which row of the problem comes so near."""
 
     reason: UnassignedReason
@@ -23,8 +23,8 @@ class Told(NamedTuple):
 
 
 THERE = {End.OPEN: Reason("there"), End.RETURN: Reason("there_and_back"), End.ANY_BASE: Reason("there_and_to_base")}
-RANGE_ALONE = Told(UnassignedReason.BEYOND_RANGE, Reason("in_range_alone"), 0.0)
-NOT_ON_ONE_ROUTE = Told(UnassignedReason.NO_PATH, Reason("not_on_one_route"))
+RANGE_ALONE = Cause(UnassignedReason.BEYOND_RANGE, Reason("in_range_alone"), 0.0)
+NOT_ON_ONE_ROUTE = Cause(UnassignedReason.NO_PATH, Reason("not_on_one_route"))
 
 
 def needed_range_m(problem: Problem) -> FloatArray:
@@ -42,7 +42,7 @@ def needed_range_m(problem: Problem) -> FloatArray:
     first_m, end_m = problem.from_start_m + along_m, problem.end_m
     allowed = np.ones((uavs, visits), dtype=bool) if problem.allowed is None else problem.allowed
     for flown, alike in _by_allowed_visits(allowed):
-        onward_m = least_ways(problem.between_m[np.ix_(flown, flown)] + along_m[flown])
+        onward_m = least_paths(problem.between_m[np.ix_(flown, flown)] + along_m[flown])
         for uav in alike:
             out_m = (first_m[uav, flown][:, None] + onward_m).min(axis=0)
             needed_m[uav, flown] = out_m + (onward_m + end_m[flown, uav]).min(axis=1)
@@ -65,11 +65,11 @@ def _needed(problem: Problem, kind: Kind) -> FloatArray:
     for number, onward_of_class in enumerate(found.onward[0]):
         of_class = np.flatnonzero(classes.of_uav == number)
         for flown, alike in _by_allowed_visits(allowed[of_class]):
-            onward = np.minimum(least_ways(onward_of_class[np.ix_(flown, flown)]), NO_WAY_M)
+            onward = np.minimum(least_paths(onward_of_class[np.ix_(flown, flown)]), NO_PATH_M)
             for uav in of_class[alike].tolist():
                 out = (first[uav, flown][:, None] + onward).min(axis=0)
                 needed[uav, flown] = out + (onward + end[uav, flown]).min(axis=1)
-    needed[needed >= NO_WAY_M] = np.inf
+    needed[needed >= NO_PATH_M] = np.inf
     return needed
 
 
@@ -82,23 +82,23 @@ def _by_allowed_visits(allowed: BoolArray) -> list[tuple[IntArray, list[int]]]:
     return [(np.flatnonzero(allowed[group[0]]), group) for group in alike.values()]
 
 
-def least_ways(onward_m: FloatArray) -> FloatArray:
+def least_paths(onward_m: FloatArray) -> FloatArray:
     """Least metres between all pairs of visits, over others if that is shorter (Floyd 1962); 0 from a visit to itself."""
-    ways_m: FloatArray = np.array(onward_m, dtype=np.float64)
-    np.fill_diagonal(ways_m, 0.0)
-    _shorten(ways_m)
-    return ways_m
+    paths_m: FloatArray = np.array(onward_m, dtype=np.float64)
+    np.fill_diagonal(paths_m, 0.0)
+    _shorten(paths_m)
+    return paths_m
 
 
 @njit(cache=True, nogil=True)
-def _shorten(ways_m: FloatArray) -> None:
-    for over in range(len(ways_m)):
-        onward_m = ways_m[over]
-        for start in range(len(ways_m)):
-            there_m = ways_m[start, over]
+def _shorten(paths_m: FloatArray) -> None:
+    for over in range(len(paths_m)):
+        onward_m = paths_m[over]
+        for start in range(len(paths_m)):
+            there_m = paths_m[start, over]
             if there_m < np.inf:
-                row_m = ways_m[start]
-                for end in range(len(ways_m)):
+                row_m = paths_m[start]
+                for end in range(len(paths_m)):
                     row_m[end] = min(row_m[end], there_m + onward_m[end])
 
 
@@ -140,15 +140,15 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
     found = []
     for target in left_out:
         visits = visits_of[target]
-        told = _beyond_reach(problem, needed_m, within_range, visits)
+        reported = _beyond_reach(problem, needed_m, within_range, visits)
         able = within_range[:, visits]
-        if told is None and used_wh is not None:
+        if reported is None and used_wh is not None:
             able = able & _within_battery(problem, used_wh[:, visits])
             if not able.any():
-                told = _beyond_battery(problem, used_wh, within_range, visits)
-        told = told or _beyond_rest(problem, able, done, visits)
-        nearest = None if told.uav is None else list(dict.fromkeys(owner)).index(owner[told.uav])
-        found.append(Unassigned(target, told.reason, told.why, told.missing, nearest))
+                reported = _beyond_battery(problem, used_wh, within_range, visits)
+        reported = reported or _beyond_rest(problem, able, done, visits)
+        nearest = None if reported.uav is None else list(dict.fromkeys(owner)).index(owner[reported.uav])
+        found.append(Unassigned(target, reported.reason, reported.why, reported.missing, nearest))
     return tuple(found)
 
 
@@ -171,25 +171,25 @@ def _on_one_route(problem: Problem, kind: Kind, needed: FloatArray, visits: Sequ
     return exact
 
 
-def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Told | None:
+def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Cause | None:
     """Why no UAV gets there at all; None if one does, if its battery lasts."""
     needed_m, within = needed_m[:, visits], within_range[:, visits]
     if not len(problem.uavs):
-        return Told(UnassignedReason.NO_PATH, Reason("no_uav_takes_off"))
+        return Cause(UnassignedReason.NO_PATH, Reason("no_uav_takes_off"))
     if visits and problem.allowed is not None and not problem.allowed[:, visits].any():
-        return Told(UnassignedReason.NOT_ALLOWED, Reason("no_uav_allowed"))
+        return Cause(UnassignedReason.NOT_ALLOWED, Reason("no_uav_allowed"))
     if not np.isfinite(needed_m).any():
-        return Told(UnassignedReason.NO_PATH, Reason("no_path"))
+        return Cause(UnassignedReason.NO_PATH, Reason("no_path"))
     if within.any():
         return None
     limit_m = np.array([uav.limit_m for uav in problem.uavs])
     missing_m = np.where(np.isfinite(needed_m), needed_m, np.inf) - np.where(np.isfinite(needed_m), limit_m[:, None], 0.0)
     uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
     figures = {"needed_m": float(needed_m[uav, visit]), "there": THERE[problem.uavs[uav].end], "missing_m": float(missing_m[uav, visit])}
-    return Told(UnassignedReason.BEYOND_RANGE, Reason("beyond_range", figures), float(missing_m[uav, visit]), int(uav))
+    return Cause(UnassignedReason.BEYOND_RANGE, Reason("beyond_range", figures), float(missing_m[uav, visit]), int(uav))
 
 
-def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Told:
+def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArray, visits: Sequence[int]) -> Cause:
     """Of the UAVs that have the range, the one that lacks least."""
     limit_wh = np.array([uav.limit_wh for uav in problem.uavs])
     within = within_range[:, visits]
@@ -197,17 +197,17 @@ def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArr
     uav, visit = np.unravel_index(np.argmin(missing_wh), missing_wh.shape)
     needed_wh, missing = float(used_wh[uav, visits[int(visit)]]), float(missing_wh[uav, visit])
     figures = {"needed_wh": needed_wh, "there": THERE[problem.uavs[uav].end], "missing_wh": missing}
-    return Told(UnassignedReason.BEYOND_ENERGY, Reason("beyond_battery", figures), missing, int(uav))
+    return Cause(UnassignedReason.BEYOND_ENERGY, Reason("beyond_battery", figures), missing, int(uav))
 
 
-def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> Told:
+def _beyond_rest(problem: Problem, able: BoolArray, done: Sequence[int], visits: Sequence[int]) -> Cause:
     """Why it is left out though some UAV could do it alone."""
     able_uavs = np.flatnonzero(able.any(axis=1)).tolist()
     if all(done[uav] + min(problem.visits[visit].done for visit in visits) > problem.uavs[uav].most for uav in able_uavs):
-        return Told(UnassignedReason.MAX_TARGETS, Reason("all_uavs_full"))
+        return Cause(UnassignedReason.MAX_TARGETS, Reason("all_uavs_full"))
     has_range = any(problem.uavs[uav].max_range_m is not None for uav in able_uavs)
     if any(problem.uavs[uav].limit_wh < math.inf for uav in able_uavs):
-        return Told(UnassignedReason.BEYOND_ENERGY, Reason("in_reach_alone"), 0.0)
+        return Cause(UnassignedReason.BEYOND_ENERGY, Reason("in_reach_alone"), 0.0)
     if has_range:
         return RANGE_ALONE
     return NOT_ON_ONE_ROUTE

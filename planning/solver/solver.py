@@ -44,14 +44,14 @@ def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_
         routes, left_out, bound, method = _solved(
             whole.problem,
             stop=stop,
-            on_progress=lambda told: on_progress(_expanded(told, lambda routes: of_uavs(whole.expanded(routes)))),
+            on_progress=lambda reported: on_progress(_expanded(reported, lambda routes: of_uavs(whole.expanded(routes)))),
             seed=seed,
             search_s=search_s,
         )
         routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
         bound = bound if whole.is_whole else 0.0  # nothing is known of the ways through the runs that were not looked at
     else:
-        tell = (lambda told: on_progress(_expanded(told, of_uavs))) if rows.owner else on_progress
+        tell = (lambda reported: on_progress(_expanded(reported, of_uavs))) if rows.owner else on_progress
         routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s)
     return _solution(rows, routes, left_out, bound, method)
 
@@ -90,8 +90,12 @@ def searched_plan(
     return found
 
 
-def _expanded(told: Progress, expanded: Callable[[Routes], Routes]) -> Progress:
-    return told if told.best_routes is None else Progress(told.share, told.message, expanded(told.best_routes), told.bound)
+def _expanded(reported: Progress, expanded: Callable[[Routes], Routes]) -> Progress:
+    return (
+        reported
+        if reported.best_routes is None
+        else Progress(reported.share, reported.message, expanded(reported.best_routes), reported.bound)
+    )
 
 
 def _solution(rows: Problem, routes: Routes, left_out: tuple[Unassigned, ...], bound: float | None, method: str) -> Solution:

@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 
 
 @njit(cache=True, nogil=True)
@@ -37,10 +37,10 @@ def shortest_tours(
                 before, arc_m = reach_m[rest], back_m[visit]
                 for other in range(visits):
                     least_m = min(least_m, before[other] + arc_m[other])
-            if least_m < NO_WAY_M:
+            if least_m < NO_PATH_M:
                 row[visit] = least_m
                 closed_m = min(closed_m, least_m + end_m[visit])
-        length_m[members] = closed_m if closed_m < NO_WAY_M else np.inf
+        length_m[members] = closed_m if closed_m < NO_PATH_M else np.inf
 
 
 @njit(cache=True, nogil=True)

@@ -7,10 +7,10 @@ import numpy as np
 from inspection.network.build.network import Network
 from inspection.network.warm_up import BESIDE, graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
-from planning.connection_points import AccessRules, Terminal, ways_between
+from planning.connection_points import AccessRules, Terminal, paths_between
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
-from planning.problem import Amounts, End, Objective, Problem, UavStart, Visit
+from planning.problem import End, Objective, Problem, Resources, UavStart, Visit
 from planning.reachability.reachability import Flight, reach
 from planning.solver import exact
 from planning.solver.solver import solve
@@ -27,7 +27,7 @@ def rehearse_ways() -> None:
     """Find the ways of a UAV and a target, and what else it reaches."""
     graph, zones = graph_to_rehearse_on(), ZoneIndex([], [], [])
     access = AccessRules(1_000.0, 1_000.0, on_asset_m=1.0, off_network_factor=2.0, zone_clearance_m=0.0)
-    ways_between(graph, zones, [Terminal(BESIDE)], [Terminal(BESIDE)], [Terminal(BESIDE)], access)
+    paths_between(graph, zones, [Terminal(BESIDE)], [Terminal(BESIDE)], [Terminal(BESIDE)], access)
     network = Network(**{field.name: getattr(graph, field.name) for field in fields(Network)})
     flights = [Flight(BESIDE, End.RETURN, 1_000.0, lands=True, flying=FlightClass(Performance(battery_wh=50.0), 10.0))]
     reach(network, graph, graph, zones, zones, flights, [], access)
@@ -46,8 +46,8 @@ def rehearse_proof() -> None:
             between_m=np.ones((2, 2)),
             to_start_m=way.T,
             objective=Objective.TIME,
-            seconds=Amounts(way, np.ones((1, 2, 2)), way.T),
-            wh=Amounts(way, np.ones((1, 2, 2)), way.T),
+            seconds=Resources(way, np.ones((1, 2, 2)), way.T),
+            wh=Resources(way, np.ones((1, 2, 2)), way.T),
         )
     )
 

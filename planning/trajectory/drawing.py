@@ -79,13 +79,13 @@ class TrajectoryBuilder(RoutingInput):
         except NoHeadway as error:  # over hills the wind of another height is met than was counted with
             raise InvalidRequest({"conditions": Reason("wind_too_strong_on_route", {"uav": asked.name})}) from error
         stops: tuple[ChargingStop, ...] = ()
-        lacks_wh = 0.0
+        shortfall_wh = 0.0
         if self.request.may_charge(uav):
             try:
                 stops = self._charging(uav, waypoints, clock)
                 clock = with_stops(clock, stops, asked.performance.battery_wh or math.inf)
             except CannotCharge as error:
-                lacks_wh = error.missing_wh
+                shortfall_wh = error.missing_wh
         return PlannedRoute(
             targets=tuple(self.targets[self.visits[visit].target].target for order, _passed in flights for visit in order),
             waypoints=waypoints,
@@ -97,7 +97,7 @@ class TrajectoryBuilder(RoutingInput):
             is_flat=any(own.is_flat for own in drawn),
             timing=clock,
             charging=stops,
-            lacks_wh=lacks_wh,
+            shortfall_wh=shortfall_wh,
             blocked_by=tuple(sorted({span for own in drawn for span in own.blocked_by})),
         )
 
@@ -155,13 +155,15 @@ class TrajectoryBuilder(RoutingInput):
         if not ways:
             return []
         graph, flight = self.airspace.graph, self.airspace.flight
-        told = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
-        is_node = told.node != BEND
-        nodes = told.node[is_node]
-        asset, agl_m = np.full(len(told.node), NONE, dtype=np.int64), np.full(len(told.node), flight.transit_agl_m)
+        reported = passed_on(self.ways.travel, np.array(list(chain.from_iterable(ways)), dtype=np.int64), graph.position)
+        is_node = reported.node != BEND
+        nodes = reported.node[is_node]
+        asset, agl_m = np.full(len(reported.node), NONE, dtype=np.int64), np.full(len(reported.node), flight.transit_agl_m)
         asset[is_node], agl_m[is_node] = graph.node_asset[nodes], pass_agl_m(node_heights_m(graph, nodes), flight)
         passed = []
         for begin, end in pairwise([0, *accumulate(map(len, ways))]):
-            own = slice(told.first[begin], told.first[end])
-            passed.append(PassedNodes(told.position[own], agl_m[own], asset[own], told.first[begin : end + 1] - told.first[begin]))
+            own = slice(reported.first[begin], reported.first[end])
+            passed.append(
+                PassedNodes(reported.position[own], agl_m[own], asset[own], reported.first[begin : end + 1] - reported.first[begin])
+            )
         return passed

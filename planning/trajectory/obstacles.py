@@ -62,8 +62,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     place = np.concatenate([leg, point])
     ground_m = np.zeros((len(span), 2))
     if is_known and ground_heights_m is not None:
-        told_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
-        ground_m = np.where(np.isnan(told_m).any(axis=1, keepdims=True), ABOVE_ALL_M, told_m)
+        reported_m = ground_heights_m(np.concatenate([spans.start[span], spans.end[span]])).reshape(2, -1).T
+        ground_m = np.where(np.isnan(reported_m).any(axis=1, keepdims=True), ABOVE_ALL_M, reported_m)
     heights_m = np.column_stack([spans.start_height_m[span], spans.end_height_m[span]])
     least_m = np.ascontiguousarray(ground_m + heights_m + rules.clearance_m)
     is_leg = np.arange(len(place)) < len(leg)
@@ -74,8 +74,8 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     under_m = np.zeros(len(at))
     if is_known and ground_heights_m is not None:
         here_m = (level_m - points.agl_m)[place[row]]
-        told_m = ground_heights_m(at)
-        under_m = np.where(np.isnan(told_m), np.tile(here_m, 2), told_m)
+        reported_m = ground_heights_m(at)
+        under_m = np.where(np.isnan(reported_m), np.tile(here_m, 2), reported_m)
     agl_m = needed_m - under_m.reshape(2, -1).min(axis=0)
     is_unknown = needed_m >= ABOVE_ALL_M
     needed_m[is_unknown] = agl_m[is_unknown] = np.inf
@@ -149,8 +149,8 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
     flown_m[new], flown_m[~is_new] = levels_m, level_m
     if is_known:
         ground_m[~is_new] = (waypoints.amsl_m - points.agl_m) if waypoints.amsl_m is not None else 0.0
-        told_m = np.full(len(new), np.nan) if ground_heights_m is None else ground_heights_m(flown.position[new])
-        ground_m[new] = np.where(np.isnan(told_m), ground_m[~is_new][place], told_m)
+        reported_m = np.full(len(new), np.nan) if ground_heights_m is None else ground_heights_m(flown.position[new])
+        ground_m[new] = np.where(np.isnan(reported_m), ground_m[~is_new][place], reported_m)
     agl_m = flown_m - ground_m
     risen = RoutePoints(flown.position, agl_m, flown.kind, flown.asset, flown.target, flown.task, flown.speed_mps)
     if waypoints.amsl_m is None:

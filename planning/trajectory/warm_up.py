@@ -7,7 +7,7 @@ from inspection.network.spans import spans_between
 from inspection.network.warm_up import graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.clearance.obstacle_clearance import spans_too_near
-from planning.connection_points import AccessRules, Terminal, ways_between
+from planning.connection_points import AccessRules, Terminal, paths_between
 from planning.energy.assignment_costs import Finish, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
@@ -58,7 +58,7 @@ def _rehearse_time_and_energy(points: RoutePoints) -> None:
     ends = [Terminal(place)]
     flight_costs(
         graph,
-        ways_between(graph, ZoneIndex([], [], []), ends, ends, ends, access),
+        paths_between(graph, ZoneIndex([], [], []), ends, ends, ends, access),
         classes=[FlightClass(performance, 10.0)],
         finishes=[Finish(End.RETURN, lands=True)],
         starts=[place],

@@ -15,7 +15,7 @@ from inspection.network.build.zone_masking import masked
 from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-from planning.connection_points import AccessRules, Terminal, ways_between
+from planning.connection_points import AccessRules, Terminal, paths_between
 from planning.energy.assignment_costs import Finish, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
@@ -171,7 +171,7 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
     known = dict(zip(found.asset.tolist(), range(len(found.asset)), strict=True))
     for node in np.flatnonzero(graph.node_asset > 0).tolist():
         target = Terminal(LonLat(*graph.position[node].tolist()), int(graph.node_asset[node]))
-        ways = ways_between(graph, zones, [Terminal(one.position) for one in flights], [target], [target], RULES, [Terminal(places[2])])
+        ways = paths_between(graph, zones, [Terminal(one.position) for one in flights], [target], [target], RULES, [Terminal(places[2])])
         needed_m = [
             ways.from_start_m[number, 0] + {End.OPEN: 0.0, End.RETURN: ways.to_start_m[0, number], End.ANY_BASE: ways.to_base_m[0]}[one.end]
             for number, one in enumerate(flights)
@@ -200,7 +200,7 @@ def needed_wh(graph, zones, one, node, bases, conditions):
     """What an assignment counts for this node as the only target."""
     place = LonLat(*graph.position[node].tolist())
     target = Terminal(place, int(graph.node_asset[node]))
-    ways = ways_between(graph, zones, [Terminal(one.position)], [target], [target], RULES, [Terminal(base) for base in bases])
+    ways = paths_between(graph, zones, [Terminal(one.position)], [target], [target], RULES, [Terminal(base) for base in bases])
     costs = flight_costs(
         graph, ways, classes=[one.flying], finishes=[Finish(one.end, one.lands)], starts=[one.position], bases=bases, courses=[[place]],
         agl_m=[45.0 + 15.0], hold_s=[10.0], conditions=conditions, rules=FlightRules(),

@@ -32,13 +32,13 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
         return [RefusalReason("no_routes", _("The plan reaches no target, so no UAV flies."))]
     return [
         *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
-        *_twins(mission),
+        *_reversed_visits(mission),
         *_height_references(mission, flown),
         *_ground(mission),
     ]
 
 
-def _twins(mission: Mission) -> list[RefusalReason]:
+def _reversed_visits(mission: Mission) -> list[RefusalReason]:
     """Separation leaves simulated twins out, so they fly the copies that were made for them and nothing else."""
     if mission.simulates_id is not None:
         return []

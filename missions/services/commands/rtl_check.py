@@ -25,7 +25,7 @@ from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.document import frozen_route
 from missions.services.approval.fence import rally_points, zones_beside
 from planning.clearance.nearby_zones import zones_near
-from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
+from planning.clearance.rtl_paths import Haven, InTheWay, Places, RtlPaths, Trouble
 from planning.clearance.zone_clearance import ZoneFacts
 
 STEP_M = 5.0  # by which a height is looked for that is clear
@@ -142,7 +142,7 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
     return checked_ways(checked, reported.own, ways, table)
 
 
-def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[WaysHome], table: ZoneTable, *, where: str = "") -> ReturnCheck:
+def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[RtlPaths], table: ZoneTable, *, where: str = "") -> ReturnCheck:
     """The check with what is in these ways. where: from where they lead, in words; empty: from waypoints of a route, by their numbers."""
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
@@ -156,7 +156,7 @@ def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[WaysHom
 class WaysNow:
     """Ways home from where a UAV may be now, and the zones that apply meanwhile."""
 
-    ways: tuple[WaysHome, ...]
+    ways: tuple[RtlPaths, ...]
     table: ZoneTable
 
     def checked(self, check: ReturnCheck, own: RtlBehaviour) -> ReturnCheck:
@@ -189,7 +189,7 @@ def ways_now(
     near, facts = zones_applying(ground.table, positions, window)
     havens = [Haven(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
     ways = [
-        WaysHome(
+        RtlPaths(
             own_places, haven, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
             spans=spans_of(ground.network()), zones=facts, margins=zone_margins(), clearance_m=settings.FLIGHT_RULES.clearance_m,
         )
@@ -226,7 +226,7 @@ def _height_names(autopilot: str) -> str:
     return " / ".join(dict.fromkeys(name for groups in own.values() for name in groups[0]))
 
 
-def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[WaysHome]]:
+def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[RtlPaths]]:
     """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer, or from everywhere."""
     ground, margins = planning_read().ground(), zone_margins()
     rally = rally_points(mission, route.mission_uav.sequence)
@@ -249,7 +249,7 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
         )
         for haven, places in _places_by_haven(along, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
             ways.append(
-                WaysHome(
+                RtlPaths(
                     places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
                     zones=facts, margins=margins, clearance_m=settings.FLIGHT_RULES.clearance_m,
                 )
@@ -271,11 +271,11 @@ def _places_by_haven(places: Places, home: Haven, rally: Sequence[Haven], *, shu
             yield haven, own
 
 
-def _levels(way: WaysHome, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def _levels(way: RtlPaths, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     return way.levels_m(own.level_m)
 
 
-def _safe_height_m(ways: Sequence[WaysHome], own: RtlBehaviour) -> float | None:
+def _safe_height_m(ways: Sequence[RtlPaths], own: RtlBehaviour) -> float | None:
     """The lowest in whole metres, or a little above it, that is clear from everywhere and comes no higher than flights may."""
     most_m = settings.FLIGHT_RULES.max_agl_m
     highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))

@@ -22,7 +22,7 @@ from planning.airspace import Airspace, airspace_on, zone_at, zone_choice
 from planning.assignment.options import may_do
 from planning.assignment.refusals import groundings, target_height_m
 from planning.assignment.routing_input import needs_flight_costs, visits_of_targets
-from planning.connection_points import Terminal, Ways, ways_between
+from planning.connection_points import TargetPaths, Terminal, paths_between
 from planning.context import ResolvedTarget
 from planning.explain import route
 from planning.problem import Objective, Problem, UavStart
@@ -55,7 +55,7 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     """target is its place in the request. Raises InvalidRequest or NoGraph."""
     airspace = _airspace(request, is_by_length=True)  # what is out of reach on the shortest ways is so on all
     found = [one for one in airspace.context.targets if one.target == target]
-    said: dict[str, Any] = {
+    reported: dict[str, Any] = {
         "target": target,
         "reason": "asset_gone",
         "message": "",
@@ -71,17 +71,17 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
         "uavs": [],
     }
     if not found:
-        return said
+        return reported
     (place,) = found
     height_m = target_height_m(place, airspace)
     network_m = _network_m(place, airspace)
-    said |= {"height_m": height_m, "needed_height_m": height_m + airspace.flight.clearance_m}
-    said |= {"network_m": network_m if np.isfinite(network_m) else None}
+    reported |= {"height_m": height_m, "needed_height_m": height_m + airspace.flight.clearance_m}
+    reported |= {"network_m": network_m if np.isfinite(network_m) else None}
     if is_above_limit(height_m, airspace.flight):
-        return said | {"reason": "above_height_limit"}
+        return reported | {"reason": "above_height_limit"}
     zones = _zones_at(place, airspace)
     if zones:
-        return said | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, airspace)}
+        return reported | {"reason": "inside_zone", "zones": zones, "stretches": _stretches_outside(place, airspace)}
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
     on_the_ground = groundings(asked, airspace)
     grounded = [number in on_the_ground for number in range(len(asked))]
@@ -109,8 +109,8 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     reason, barring = _reason(request.targets[target], place, [uav for uav in uavs if uav["is_in_mission"]], ways, airspace)
     alone = _refused_alone(request, target) if reason == "not_with_the_others" and needs_flight_costs(request) else None
     if alone is not None:
-        return said | {"reason": alone["reason"], "message": why_text(alone["why"], alone["message"]), "uavs": uavs}
-    return said | {"reason": reason, "zones": barring, "uavs": uavs}
+        return reported | {"reason": alone["reason"], "message": why_text(alone["why"], alone["message"]), "uavs": uavs}
+    return reported | {"reason": reason, "zones": barring, "uavs": uavs}
 
 
 def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
@@ -120,7 +120,7 @@ def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
 
 
 def _reason(
-    wished: TargetRequest, place: ResolvedTarget, uavs: list[dict[str, Any]], ways: Ways, airspace: Airspace
+    wished: TargetRequest, place: ResolvedTarget, uavs: list[dict[str, Any]], ways: TargetPaths, airspace: Airspace
 ) -> tuple[str, list[dict[str, Any]]]:
     if any(uav["is_enough"] for uav in uavs):
         return "not_with_the_others", []
@@ -150,7 +150,7 @@ def _zones_at(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]
     if not len(polygons):
         return []
     near = shapely.intersects(widen(polygons, airspace.access.zone_clearance_m), shape)
-    return [_told(zone, airspace) for zone in np.flatnonzero(near).tolist()]
+    return [_reported(zone, airspace) for zone in np.flatnonzero(near).tolist()]
 
 
 def _zones_around(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]:
@@ -163,10 +163,10 @@ def _zones_around(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, A
         away_m = float(distance_m(here, np.array([[nearest.x, nearest.y]]))[0])
         if away_m <= airspace.access.access_leg_m:
             found.append((away_m, zone))
-    return [_told(zone, airspace) for _, zone in sorted(found)[:3]]
+    return [_reported(zone, airspace) for _, zone in sorted(found)[:3]]
 
 
-def _told(zone: int, airspace: Airspace) -> dict[str, Any]:
+def _reported(zone: int, airspace: Airspace) -> dict[str, Any]:
     """What cannot be flown over counts as a zone and is none: it has no id."""
     key = int(airspace.zones.ids[zone])
     return {"id": None if key == NO_ZONE else key, "name": airspace.zones.names[zone]}
@@ -195,10 +195,10 @@ def _spare_uavs(request: PlanRequest, place: ResolvedTarget, organisation: Organ
     return [uav for _, uav in sorted(found, key=lambda item: item[0])[:MAX_SPARE]]
 
 
-def _needs(fleet: PlanRequest, place: ResolvedTarget, airspace: Airspace) -> tuple[Ways, np.ndarray]:
+def _needs(fleet: PlanRequest, place: ResolvedTarget, airspace: Airspace) -> tuple[TargetPaths, np.ndarray]:
     """The least range with which each UAV could do the place alone; inf where there is no way."""
     visits, courses = visits_of_targets([place])
-    ways = ways_between(
+    ways = paths_between(
         airspace.graph,
         airspace.leg_zones,
         starts=[Terminal(uav.position) for uav in fleet.uavs],

@@ -62,15 +62,15 @@ def _missed(request: PlanRequest, plan: Mapping[str, Any]) -> tuple[int, ...]:
 
 
 def _value(plan: Mapping[str, Any]) -> float:
-    told = _told(plan)
+    reported = _reported(plan)
     names = {
         Objective.TOTAL: "total_length_m", Objective.MAKESPAN: "done_s", Objective.TIME: "total_duration_s",
         Objective.ENERGY: "total_energy_wh",
     }  # fmt: skip
-    return float(told[names[Objective(plan["objective"])]] or 0.0)
+    return float(reported[names[Objective(plan["objective"])]] or 0.0)
 
 
-def _told(plan: Mapping[str, Any]) -> dict[str, Any]:
+def _reported(plan: Mapping[str, Any]) -> dict[str, Any]:
     flown = [route["departs_s"] + route["duration_s"] for route in plan["routes"] if route["geometry"] is not None]
     return {
         "left_out": len(plan["unassigned"]),
@@ -87,6 +87,6 @@ def _answer(
     return {
         "departs_at": moment_to_json(moment),
         "looked_until": moment_to_json(looked_until),
-        "before": _told(before),
-        "then": None if plan is None else _told(plan),
+        "before": _reported(before),
+        "then": None if plan is None else _reported(plan),
     }

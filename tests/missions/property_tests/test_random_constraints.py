@@ -14,7 +14,7 @@ from inspection.selectors import zones_in_force
 from missions.selectors.planning_context import current_airspace
 from missions.selectors.resolved_targets import resolved_targets
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
-from planning.connection_points import Terminal, ways_between
+from planning.connection_points import Terminal, paths_between
 from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 from planning.request import NO_BATTERY, EndAction
 from tests.exact_geometry import segment_meets_polygon
@@ -171,7 +171,7 @@ def _model(asked: PlanRequest, plan: dict[str, Any]) -> _Model:
             visits.append(Visit(number, False, path_length_m(np.array(course)), place.task.hold_s))
             courses.append((place.asset, course))
     uavs = [number for number, uav in enumerate(asked.uavs) if is_clear(uav.position)]
-    ways = ways_between(
+    ways = paths_between(
         scene.graph,
         scene.zones,
         [Terminal(asked.uavs[uav].position) for uav in uavs],

@@ -20,7 +20,7 @@ from missions.selectors.planning_context import current_airspace
 from missions.selectors.resolved_targets import NamedTarget, resolved_targets
 from missions.services import PlanRequest, make_plan
 from planning.airspace import Airspace
-from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
+from planning.connection_points import TargetPaths, Terminal, access_legs, attachments, direct_legs, paths_between
 from planning.problem import Objective, Problem, UavStart, Visit
 from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
@@ -133,7 +133,7 @@ class MissionModel:
         self.entries = [Terminal(course[0], place.asset) for place, course in self.courses]
         self.exits = [Terminal(course[-1], place.asset) for place, course in self.courses]
         bases = [Terminal(base.position) for base in request.bases if not scene.zones.contains([base.position], near)[0]]
-        self.ways: Ways = ways_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access, bases)
+        self.ways: TargetPaths = paths_between(scene.graph, scene.zones, self.starts, self.entries, self.exits, scene.access, bases)
         self.problem = Problem(
             uavs=tuple(
                 UavStart(request.uavs[uav].max_range_m, request.route_end(uav), request.uavs[uav].cruise_speed_mps) for uav in self.uavs

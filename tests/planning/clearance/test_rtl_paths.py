@@ -14,7 +14,7 @@ from shapely.geometry import box
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import spans_between
-from planning.clearance.rtl_paths import Haven, InTheWay, Places, WaysHome
+from planning.clearance.rtl_paths import Haven, InTheWay, Places, RtlPaths
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 
 HOME = LonLat(10.0, 56.0)
@@ -39,9 +39,9 @@ def wire(start, end, height_m):
 NOTHING = spans_between(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
 
 
-def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, haven=None, height_m=50.0) -> WaysHome:
+def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, haven=None, height_m=50.0) -> RtlPaths:
     places = Places.along(lonlat(CORNERS), np.full(4, height_m), [0, 1, 2, 3])
-    return WaysHome(
+    return RtlPaths(
         places,
         haven or Haven(HOME),
         home_amsl_m=None if ground is None else float(ground(np.array([HOME]))[0]),
@@ -53,7 +53,7 @@ def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, haven=None, height_m=50.
     )
 
 
-def troubles(home: WaysHome, level_m: float):
+def troubles(home: RtlPaths, level_m: float):
     return home.troubles(home.levels_m(lambda current_m, *_: max(current_m, level_m)))
 
 

@@ -17,7 +17,7 @@ from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.paths.paths import DIRECT
 from inspection.network.zones.zone_index import ZoneIndex
-from planning.connection_points import AccessRules, Terminal, Ways, ways_between
+from planning.connection_points import AccessRules, TargetPaths, Terminal, paths_between
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, NodeGround
@@ -64,7 +64,7 @@ class World:
         zones: list[shapely.Polygon] = (),
     ) -> None:
         self.graph, self.starts, self.visits, self.bases = graph, starts, visits, bases
-        self.ways: Ways = ways_between(
+        self.ways: TargetPaths = paths_between(
             graph,
             ZoneIndex(list(zones), list(range(len(zones))), [""] * len(zones)),
             [Terminal(start) for start in starts],

@@ -6,7 +6,7 @@ from itertools import permutations, product
 
 import numpy as np
 
-from planning.problem import Amounts, End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
+from planning.problem import End, Lock, Objective, Priority, Problem, Resources, Routes, UavStart, Visit, merit
 
 BY_WAYS = (Objective.TOTAL, Objective.MAKESPAN, Objective.TIME)  # what can be asked for without knowing anything of energy
 
@@ -111,8 +111,8 @@ def windy_problem(seed: int, objective: Objective, *, uavs: int = 2, targets: in
     def uneven(shape: tuple[int, ...]) -> np.ndarray:
         return draw.uniform(0.6, 1.8, shape)
 
-    def amounts(per_m: float, per_service: float, ready: float) -> Amounts:
-        return Amounts(
+    def amounts(per_m: float, per_service: float, ready: float) -> Resources:
+        return Resources(
             first=plain.from_start_m * per_m * uneven((uavs, visits)),
             onward=plain.between_m * per_m * uneven((classes, visits, visits)),
             end=plain.end_m * per_m * uneven((visits, uavs)),

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from planning.problem import Amounts, End, InvalidProblem, Lock, Objective, Problem, Routes, UavStart, UnassignedReason, Visit, merit
+from planning.problem import End, InvalidProblem, Lock, Objective, Problem, Resources, Routes, UavStart, UnassignedReason, Visit, merit
 from planning.solver.constrained_tours import limited_tours
 from planning.solver.exact import best_plan, proven_routes
 from planning.solver.lower_bounds import lower_bound
@@ -94,7 +94,7 @@ def test_in_the_wind_a_locked_run_is_flown_in_the_directions_that_are_quickest()
         to_start_m=np.zeros((4, 1)),
         objective=Objective.TOTAL,
         locks=(Lock(0, (0, 1, 2)),),
-        seconds=Amounts(np.zeros((1, 4)), zero[None], np.zeros((4, 1)), along=np.array([[0.0, 10.0, 20.0, 0.0]])),
+        seconds=Resources(np.zeros((1, 4)), zero[None], np.zeros((4, 1)), along=np.array([[0.0, 10.0, 20.0, 0.0]])),
     )
     assert solve(problem).routes == ((0, 2, 3),)
     quickest = solve(replace(problem, objective=Objective.TIME))
@@ -120,8 +120,8 @@ def on_a_road(places_km: list[float], uavs: tuple[UavStart, ...], objective: Obj
         between_m=np.abs(places[:, None] - places[None]),
         to_start_m=np.tile(np.abs(places)[:, None], (1, len(uavs))),
         objective=objective,
-        seconds=Amounts(first_s, onward_s, end_s),
-        wh=Amounts(first_s / 36.0, onward_s / 36.0, end_s / 36.0),
+        seconds=Resources(first_s, onward_s, end_s),
+        wh=Resources(first_s / 36.0, onward_s / 36.0, end_s / 36.0),
     )
 
 
@@ -137,7 +137,7 @@ def test_the_least_energy_and_the_fewest_metres_are_not_the_same_plan() -> None:
     """Both UAVs stand as near; the other takes half the Wh."""
     problem = on_a_road([1, 2], (UavStart(usable_wh=math.inf), UavStart(usable_wh=math.inf)), Objective.ENERGY)
     assert problem.wh is not None
-    wh = Amounts(problem.wh.first, np.concatenate([problem.wh.onward, problem.wh.onward / 2]), problem.wh.end)
+    wh = Resources(problem.wh.first, np.concatenate([problem.wh.onward, problem.wh.onward / 2]), problem.wh.end)
     wh.first[1] /= 2
     solution = solve(replace(problem, seconds=None, wh=wh, class_of=(0, 1)))
     assert solution.routes == ((), (0, 1))
@@ -164,7 +164,7 @@ def test_the_battery_may_choose_a_longer_way() -> None:
     """The near one first is 2 km and takes 6 Wh, the far one first 3 km and 2 Wh."""
     problem = on_a_road([1, 2], (UavStart(usable_wh=5.9),), Objective.TOTAL)
     assert problem.wh is not None
-    wh = Amounts(np.array([[3.0, 1.0]]), np.array([[[0.0, 3.0], [1.0, 0.0]]]), np.zeros((2, 1)))
+    wh = Resources(np.array([[3.0, 1.0]]), np.array([[[0.0, 3.0], [1.0, 0.0]]]), np.zeros((2, 1)))
     assert solve(problem).total_m == 2_000.0
     solution = solve(replace(problem, wh=wh))
     assert (solution.routes, solution.total_m, solution.is_proven) == (((1, 0),), 3_000.0, True)
@@ -211,5 +211,5 @@ def tight_problem() -> Problem:
         between_m=onward,
         to_start_m=np.zeros((6, 1)),
         objective=Objective.TOTAL,
-        wh=Amounts(np.full((1, 6), 1.0), wh[None], np.zeros((6, 1))),
+        wh=Resources(np.full((1, 6), 1.0), wh[None], np.zeros((6, 1))),
     )

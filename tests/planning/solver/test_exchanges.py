@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from planning.problem import Objective, Problem
-from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.cost_matrices import NO_PATH_M
 from planning.solver.exchanges import NONE, added_m, draw_move, make, measured
 from planning.solver.plan_state import copy_plan, empty_plan, ground_of, settle, workspace
 from planning.solver.problem_arrays import Arcs
@@ -34,7 +34,7 @@ def moved_as_measured(problem: Problem, seed: int) -> int:
         if move.kind == NONE:
             continue
         new, longer_m = measured(ground, plan, move), added_m(ground, plan, move)
-        if max(new.length_m, new.other_length_m) >= NO_WAY_M / 2:
+        if max(new.length_m, new.other_length_m) >= NO_PATH_M / 2:
             continue
         copy_plan(plan, old)
         make(ground, plan, old, move)
