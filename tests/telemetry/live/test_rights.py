@@ -148,7 +148,7 @@ def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Endpo
 
 
 @pytest.mark.parametrize(
-    "word",
+    "message",
     [
         pytest.param("x" * 1_000_000, id="a megabyte"),
         pytest.param(b'{"type":"again"}', id="bytes"),
