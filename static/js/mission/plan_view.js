@@ -13,6 +13,9 @@ import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
 
+/** What a plan warns of where a UAV stays on the ground. @type {string[]} */
+export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
+
 /** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
 export const OBJECTIVES = [
   { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },

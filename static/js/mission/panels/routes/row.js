@@ -5,8 +5,7 @@ import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
 import { timeAt } from "../../flight_options.js";
-import { endingOf } from "../../plan_view.js";
-import { GROUNDING } from "../../plan_words.js";
+import { endingOf, GROUNDING } from "../../plan_view.js";
 import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js";
 
 /** @import { Child } from "../../../dom.js" */

@@ -3,8 +3,7 @@
 import { byId, h, keyedList } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
 import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
-import { isPlanCurrent } from "../../plan_view.js";
-import { GROUNDING } from "../../plan_words.js";
+import { GROUNDING, isPlanCurrent } from "../../plan_view.js";
 import { figuresInMission } from "../../uav_changes.js";
 import { changeDialog, newDialog } from "./dialog.js";
 import { refreshRow, uavRow } from "./row.js";

@@ -3,7 +3,6 @@
 import { h } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText } from "../../../units.js";
-import { zoneOf } from "../../plan_words.js";
 import { showLegalTimes } from "../options/legal_times.js";
 
 /** @import { Reach, TargetExplanation, Unassigned } from "../../../api_types.d.ts" */
@@ -11,9 +10,15 @@ import { showLegalTimes } from "../options/legal_times.js";
 /** @import { MissionActions, MissionStore, PickedTarget, ShownPlan } from "../../types.d.ts" */
 /** @import { Explaining } from "./route.js" */
 
-/** @typedef {TargetExplanation} StatusText */
+const WALL = /^the \S+ m around a mast or wires that cannot be flown over$/;
 
-/** @param {StatusText} explanation @param {Unassigned} entry @param {Explaining} explaining @returns {Child[]} */
+/** A zone's name in the reader's language, where it is no name but a description. @param {string} words */
+function zoneOf(words) {
+  if (WALL.test(words)) return t("the surroundings of a mast or wires that cannot be flown over");
+  return /^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words;
+}
+
+/** @param {TargetExplanation} explanation @param {Unassigned} entry @param {Explaining} explaining @returns {Child[]} */
 export function targetExplanation(explanation, entry, { plan, store, actions, canPlan }) {
   const target = plan.targets[explanation.target];
   const full = fullUavs(explanation, plan);
@@ -31,7 +36,7 @@ export function targetExplanation(explanation, entry, { plan, store, actions, ca
 /**
  * UAVs of the mission that could fly there but for having as many targets as they may.
  *
- * @param {Pick<StatusText, "uavs">} explanation
+ * @param {Pick<TargetExplanation, "uavs">} explanation
  * @param {Pick<ShownPlan, "result">} plan
  */
 export function fullUavs(explanation, plan) {
@@ -47,7 +52,7 @@ export function fullUavs(explanation, plan) {
   );
 }
 
-/** @param {StatusText} explanation @param {Reach[]} full */
+/** @param {TargetExplanation} explanation @param {Reach[]} full */
 function sharedWords(explanation, full) {
   const able = (explanation.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
   if (!full.length)
@@ -64,14 +69,14 @@ function sharedWords(explanation, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {StatusText} explanation @param {Unassigned} entry */
+/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {TargetExplanation} explanation @param {Unassigned} entry */
 const isRangeOfPlan = ({ reason }, entry) => reason === "beyond_range" && entry.reason === reason;
 
-/** @param {StatusText} explanation @param {Reach[]} [full] see fullUavs */
+/** @param {TargetExplanation} explanation @param {Reach[]} [full] see fullUavs */
 export function reasonWords(explanation, full = []) {
   const zones = explanation.zones.map(({ name }) => zoneOf(name)).join(", ");
   const lengths = { reach: lengthText(explanation.access_limit_m), distance: lengthText(explanation.network_m) };
-  /** @type {Partial<Record<StatusText["reason"], () => string>>} */
+  /** @type {Partial<Record<TargetExplanation["reason"], () => string>>} */
   const words = {
     asset_gone: () => t("It has been deleted from the data since it was picked."),
     inside_zone: () =>
@@ -100,7 +105,7 @@ export function reasonWords(explanation, full = []) {
   return words[explanation.reason]?.() ?? "";
 }
 
-/** @param {StatusText} explanation */
+/** @param {TargetExplanation} explanation */
 function facts(explanation) {
   const needs = explanation.uavs.filter(({ is_in_mission }) => is_in_mission);
   if (!needs.length || ["beyond_energy", "wind"].includes(explanation.reason)) return null; // ranges say nothing of them
@@ -130,7 +135,7 @@ function facts(explanation) {
 /**
  * What would help.
  *
- * @param {StatusText} explanation
+ * @param {TargetExplanation} explanation
  * @param {{ target: PickedTarget, full: Reach[], store: MissionStore, actions: MissionActions }} context
  */
 function changes(explanation, { target, full, store, actions }) {

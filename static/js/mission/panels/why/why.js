@@ -6,7 +6,6 @@ import { byId, h, icon, setChildren } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../../plan_view.js";
-import { takesShortestWays } from "../../plan_words.js";
 import { requestOf } from "../../selection.js";
 import { alternatives } from "./alternatives.js";
 import { createManualEdit } from "./by_hand.js";
@@ -14,9 +13,12 @@ import { comparison } from "./compared.js";
 import { routeExplanation } from "./route.js";
 import { targetExplanation } from "./target.js";
 
-/** @import { RouteExplanation, TargetExplanation } from "../../../api_types.d.ts" */
+/** @import { Plan, RouteExplanation, TargetExplanation } from "../../../api_types.d.ts" */
 /** @import { Child } from "../../../dom.js" */
 /** @import { MissionActions, MissionPageState, MissionStore, PlanResult, ShownPlan, Why } from "../../types.d.ts" */
+
+/** Whether a plan takes shorter paths than the preferred ones. @param {Pick<Plan, "warnings">} plan */
+const takesShortestWays = ({ warnings }) => (warnings ?? []).some(({ code }) => code === "shortest_ways");
 
 /** What the server is asked: the plan as it was made, whatever has been picked since. @param {ShownPlan} plan */
 function questionOf({ result, targets, uavs, charging_w }) {
