@@ -1,0 +1,1 @@
+"""Explanations of a finished plan: of routes, of shortfalls of energy, of what keeps other UAVs from a target."""
