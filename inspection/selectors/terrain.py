@@ -45,9 +45,9 @@ def grids_around(box: tuple[float, float, float, float], most: int) -> list[Heig
     return None if len(tiles) > most else [grid for _, grid in tiles.grids()]
 
 
-def tiles_around(box: tuple[float, float, float, float]) -> TiledTerrain:
-    """The same as a terrain of their own."""
-    return _tiles(ground_dataset_version()).around(box)
+def tiles_around(box: tuple[float, float, float, float], dataset_version: DatasetVersion | None = None) -> TiledTerrain:
+    """The same as a terrain of their own. dataset_version: of the ground that was just read; None: it is read."""
+    return _tiles(dataset_version or ground_dataset_version()).around(box)
 
 
 @lru_cache(maxsize=2)

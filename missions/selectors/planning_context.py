@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
@@ -43,7 +42,11 @@ def planning_context(
         zone_index=ground.zones,
         terrain=None
         if heights_m is None
-        else Terrain(heights_m, lambda graph: node_ground_m(graph, terrain_dataset_version), tiles_around),
+        else Terrain(
+            heights_m,
+            lambda graph: node_ground_m(graph, terrain_dataset_version),
+            lambda box: tiles_around(box, dataset_version),
+        ),
         graph_version=0 if ground.snapshot is None else ground.snapshot[0],
         map_version=dataset_version[0],
         targets=targets,
@@ -67,11 +70,6 @@ def current_airspace(request: PlanRequest | None = None, *, is_by_length: bool =
     context = planning_context(request, planning_read().ground())
     chosen = None if request is None else zone_choice(context.zones, request.departs_at, context.rules.flight).widest
     return airspace_on(context, chosen, is_by_length=is_by_length)
-
-
-def airspace_without_zones(airspace: Airspace) -> Airspace:
-    """As if there were none."""
-    return airspace_on(airspace.context, np.zeros(len(airspace.context.zones), dtype=bool), is_by_length=airspace.is_by_length)
 
 
 def with_bases(request: PlanRequest, organisation: Organisation) -> PlanRequest:
