@@ -102,15 +102,15 @@ def make_plan(
     for _ in range(MAX_CONTEXTS):
         context = planning_context(request, ground, targets, deleted)
         terrain = terrain_at(ground.dataset_version)
-        with hold_planning_lock():
-            try:
+        try:
+            with hold_planning_lock():
                 found = plan(context, request, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
-            except ZonesNotSettled as error:
-                raise GraphOutdated from error
-            except PLANNER_FAULTS:
-                _keep_context(context, request)
-                raise
-            answer = plan_to_json(found, as_text=as_text)
+                answer = plan_to_json(found, as_text=as_text)
+        except ZonesNotSettled as error:
+            raise GraphOutdated from error
+        except PLANNER_FAULTS:
+            _keep_context(context, request)
+            raise
         release_planning_lock()  # which is the caller's, if it had one already: nobody waits for another turn after the last check
         if current_dataset_version() == ground.dataset_version:
             return answer
