@@ -1,4 +1,4 @@
-"""The planner's reasons in the language of whoever reads them."""
+"""Texts of the planner's reasons in the user's language."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

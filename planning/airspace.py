@@ -15,7 +15,7 @@ from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray, ZoneTable
 from planning.connection_points import AccessRules
-from planning.context import PlanningContext
+from planning.context import Box, PlanningContext
 from planning.reasons import Reason
 from planning.rules import FlightRules
 
@@ -70,13 +70,19 @@ def zone_choice(
 
 def near_positions(table: ZoneTable, positions: Sequence[LonLat]) -> BoolArray:
     """Which zones come near the box of the positions, (z,)."""
+    west, south, east, north = box_near(positions)
+    box = table.box
+    near: BoolArray = (box[:, 0] <= east) & (box[:, 2] >= west) & (box[:, 1] <= north) & (box[:, 3] >= south)
+    return near
+
+
+def box_near(positions: Sequence[LonLat]) -> Box:
+    """Return west, south, east, north [deg] of what counts as near the positions."""
     at = np.array(positions, dtype=np.float64).reshape(-1, 2)
     low, high = at.min(axis=0), at.max(axis=0)
     about = np.maximum(NEAR_SHARE * (high - low), NEAR_DEG)
-    low, high = low - about, high + about
-    box = table.box
-    near: BoolArray = (box[:, 0] <= high[0]) & (box[:, 2] >= low[0]) & (box[:, 1] <= high[1]) & (box[:, 3] >= low[1])
-    return near
+    (west, south), (east, north) = (low - about).tolist(), (high + about).tolist()
+    return west, south, east, north
 
 
 @dataclass(frozen=True, eq=False)

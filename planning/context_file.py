@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-from collections.abc import Sequence
 from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
@@ -21,8 +20,8 @@ from inspection.terrain.heights import HeightGrid
 from inspection.terrain.tiled_terrain import IntArray, TiledTerrain
 from inspection.zones.reach import BoolArray, HeightLimits, ZoneTable
 from inspection.zones.schedule import ZoneRules
-from planning.airspace import NEAR_DEG, NEAR_SHARE
-from planning.context import Box, OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
+from planning.airspace import box_near
+from planning.context import OtherFlights, PlanningContext, PlanningRules, ResolvedTarget, Terrain
 from planning.request import PlanRequest, request_from_json, request_to_json, task_from_json, task_to_json
 from planning.rules import FlightRules, Manoeuvres, RoutingRules, SeparationRules
 from planning.separation.separation import TimedRoute
@@ -58,7 +57,7 @@ def write_context(path: Path, context: PlanningContext, request: PlanRequest) ->
         },
         "has_terrain": context.terrain is not None,
     }
-    tiles = None if context.terrain is None else context.terrain.around(_box(context, request))
+    tiles = None if context.terrain is None else context.terrain.around(box_near(_places(context, request)))
     with ZipFile(path, "w", ZIP_DEFLATED) as file:
         file.writestr(ABOUT, json.dumps(about))
         file.writestr(NETWORK, to_bytes(context.network), ZIP_STORED)
@@ -181,19 +180,14 @@ def _flights_from_json(value: dict[str, Any]) -> OtherFlights:
     return OtherFlights(tuple(map(route, value["routes"])), tuple((mission, uav) for mission, uav in value["untimed"]))
 
 
-def _box(context: PlanningContext, request: PlanRequest) -> Box:
-    """West, south, east, north of all that the mission may fly over: where it begins, ends and inspects, and about that."""
-    places: Sequence[LonLat] = [
+def _places(context: PlanningContext, request: PlanRequest) -> list[LonLat]:
+    """Where the mission begins, ends and inspects."""
+    return [
         *(at for uav in request.uavs for at in (uav.position, uav.returns_to)),
         *(base.position for base in request.bases),
         *request.lost_link.rally_points,
         *(at for target in context.targets for at in target.course),
     ]
-    at = np.array(places, dtype=np.float64).reshape(-1, 2)
-    low, high = at.min(axis=0), at.max(axis=0)
-    about = np.maximum(NEAR_SHARE * (high - low), NEAR_DEG)
-    (west, south), (east, north) = (low - about).tolist(), (high + about).tolist()
-    return west, south, east, north
 
 
 def _tile_arrays(tiles: TiledTerrain) -> dict[str, np.ndarray]:

@@ -373,7 +373,7 @@ class Unassigned:
     """missing: metres or Wh that the UAV which comes nearest to it lacks, 0 where it is in reach alone; None for other reasons.
 
     `uav` is the one that lacks them, by its number in the problem with a row for each UAV. A problem has no names: where `why` has a
-    param `uav`, whoever has them puts it in.
+    param `uav`, `assignment.unassigned` fills it in.
     """
 
     target: int

@@ -1,4 +1,4 @@
-"""Reasons as a code and what fills its sentence. Sentences are English; whoever shows one translates it."""
+"""Reasons as a code and what fills its sentence. Sentences are English; `missions/reason_texts.py` translates them."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

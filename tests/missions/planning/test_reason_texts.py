@@ -1,4 +1,4 @@
-"""Reasons of the planner in the language of whoever reads them."""
+"""Texts of the planner's reasons in the user's language."""
 
 import re
 from typing import Any
