@@ -4,7 +4,7 @@
 
 A network of make_graph.py, cleared of its zones and indexed before the clock starts, as planners have it. UAVs stand anywhere on it,
 a third of each kind of end; half of them have a range of 40 km. All have the battery of one of two types, of 400 and 600 Wh, and there is
-wind of 5 m/s; with --calm there is neither. Measured is what a request costs beyond the database: the verdicts
+wind of 5 m/s; with --calm there is neither. Measured is what a request costs beyond the database: the reachabilities
 and the answer as JSON. With --write the table goes to docs/performance.md. Exits with 1 where the bar is missed.
 """
 
@@ -35,7 +35,7 @@ from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
 from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Reach, Verdict
+from planning.reachability.reachable_assets import Reach, Reachability
 from planning.rules import FlightRules, RoutingRules
 
 MAX_S = 1.0
@@ -72,14 +72,19 @@ def zones_of(graph: dict[str, np.ndarray]) -> ZoneIndex:
 
 
 def answer(found: Reach) -> bytes:
-    columns = {"ids": found.asset, "code": found.verdict, "flight": found.flight, "missing_m": np.ceil(found.missing_m).astype(np.int64)}
+    columns = {
+        "ids": found.asset,
+        "code": found.reachability,
+        "flight": found.flight,
+        "missing_m": np.ceil(found.missing_m).astype(np.int64),
+    }
     return orjson.dumps({name: column.tolist() for name, column in columns.items()})
 
 
 def measure(
     nodes: int, zone_count: int, uavs: int, count: int, types: Sequence[FlightClass | None], wind: Conditions
 ) -> tuple[list[float], Reach, int]:
-    """Seconds of each run, the last verdicts, and the bytes of the answer."""
+    """Seconds of each run, the last reachabilities, and the bytes of the answer."""
     made = make(nodes, polygons=zone_count)
     network, zones = network_of(made), zones_of(made)
     linking, flight, routing = LinkingRules(), FlightRules(), RoutingRules()
@@ -120,7 +125,10 @@ def main() -> int:
     times, found, size = measure(
         options.nodes, options.zones, options.uavs, options.count, *((CALM_TYPES, CALM) if options.calm else (TYPES, WIND))
     )
-    verdicts = ", ".join(f"{int((found.verdict == verdict).sum()):,} {verdict.name.lower().replace('_', ' ')}" for verdict in Verdict)
+    reachabilities = ", ".join(
+        f"{int((found.reachability == reachability).sum()):,} {reachability.name.lower().replace('_', ' ')}"
+        for reachability in Reachability
+    )
     head = [f"{options.nodes:,} nodes, {options.zones} zones, {options.uavs} UAVs", "median", "longest", "assets", "answer"]
     row = [
         "which assets can be inspected",
@@ -129,7 +137,7 @@ def main() -> int:
         f"{len(found.asset):,}",
         f"{size / 1e6:.1f} MB",
     ]
-    text = f"`python -m benchmarks.reachability`: {verdicts}. {machine('numba', 'numpy', 'scipy')}\n\n{table(head, [row])}"
+    text = f"`python -m benchmarks.reachability`: {reachabilities}. {machine('numba', 'numpy', 'scipy')}\n\n{table(head, [row])}"
     print(text)
     if options.write:
         write_section("What can be inspected", text)

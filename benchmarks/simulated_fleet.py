@@ -175,14 +175,14 @@ def pace_from(simulation: Simulation, simulated_s: float) -> dict[str, float]:
         simulation.refresh_from_db()
         if simulation.state == SimulationState.FAILED:
             raise SystemExit(f"the simulation failed: {simulation.reason}")
-        if simulation.pace.get("simulated_s", 0.0) >= simulated_s:
-            return dict(simulation.pace)
+        if simulation.step_timing.get("simulated_s", 0.0) >= simulated_s:
+            return dict(simulation.step_timing)
         time.sleep(0.2)
     raise SystemExit("nothing was flown")
 
 
 def step_in_simulator(port: int, program: Any, uavs: list[Uav], speed: float, seconds: float) -> Step:
-    """Of its pace what it wrote down at the beginning and at the end; `latest_s` is from when it began."""
+    """Of its step timing what it wrote down at the beginning and at the end; `latest_s` is from when it began."""
     simulation = simulation_of(uavs, speed)
     connections.close_all()
     player = multiprocessing.get_context("spawn").Process(target=simulate, args=(port,))

@@ -24,7 +24,7 @@ def autopilot_type_of(autopilot: int) -> AutopilotType:
 
 
 class Mode(StrEnum):
-    """What the ground station asks for or must know; each flavour has its own number for it."""
+    """What the ground station asks for or must know; each autopilot has its own number for it."""
 
     MISSION = "mission"
     HOLD = "hold"

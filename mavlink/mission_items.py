@@ -1,6 +1,6 @@
 """From an approved route to the mission items of its flights.
 
-Written so that both flavours of autopilot keep what is sent: ArduPilot cuts a waypoint's hold to whole seconds (so it is rounded up) and
+Written so that both autopilots keep what is sent: ArduPilot cuts a waypoint's hold to whole seconds (so it is rounded up) and
 an altitude to centimetres (so it is sent in centimetres), and forgets a waypoint's radius and yaw (so they are left to the autopilot).
 Items without a place have the frame MISSION, in which alone PX4 takes them.
 """
@@ -54,7 +54,7 @@ def flight_loads(
 
     Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
     returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
-    through zones. A flight that ends in hovering has no item for it: both flavours hover after their last waypoint. Raises CannotBeFlown.
+    through zones. A flight that ends in hovering has no item for it: both autopilots hover after their last waypoint. Raises CannotBeFlown.
 
     A route that is begun in the air has no take-off: no vehicle leaves the ground by it. As it may be begun at any waypoint until
     `begun_by`, the speed is told again after each of these.

@@ -34,7 +34,7 @@ class MissionItem:
 
 @dataclass(frozen=True)
 class FlightLoad:
-    """All that one flight of one UAV is flown from. The first mission item is flown: home, where a flavour wants it, is not among them."""
+    """All that one flight of one UAV is flown from. The first mission item is flown: home, where an autopilot wants it, is not among them."""
 
     mission: tuple[MissionItem, ...]
     fence: tuple[MissionItem, ...] = ()

@@ -9,15 +9,15 @@ from django.db.models.functions import Now
 from django.utils.translation import gettext_lazy as _
 
 from missions.models import Mission, UavType
+from simulation.vehicle_models import SimulatedAutopilotType as SimulatedAutopilotType
 from simulation.vehicle_models import SimulatedVehicle as SimulatedVehicle
 from simulation.vehicle_models import Simulation as Simulation
 from simulation.vehicle_models import SimulationChange as SimulationChange
 from simulation.vehicle_models import SimulationState as SimulationState
-from simulation.vehicle_models import VehicleFlavour as VehicleFlavour
 from workspace.models import Job, Organisation
 
 
-class VerdictLevel(models.TextChoices):
+class AssessmentLevel(models.TextChoices):
     PASS = "pass", _("Pass")
     WARNINGS = "warnings", _("Pass with warnings")
     FAIL = "fail", _("Fail")
@@ -38,14 +38,14 @@ class Rehearsal(models.Model):
     )
     uavs = models.JSONField(default=list, help_text="by place in the mission: airframe, why, battery; see services/fleet.py")
     seed = models.PositiveIntegerField(default=7, help_text="of gusts and turbulence: the same seed, the same flight")
-    level = models.CharField(max_length=10, choices=VerdictLevel.choices, blank=True, help_text="of all runs; empty until they are done")
+    level = models.CharField(max_length=10, choices=AssessmentLevel.choices, blank=True, help_text="of all runs; empty until they are done")
     limits = models.JSONField(default=dict, help_text="that it is held against, each with its source")
     created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="rehearsals")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
 
     class Meta:
         ordering = ["-created_at", "-pk"]
-        constraints = [models.CheckConstraint(condition=Q(level="") | Q(level__in=VerdictLevel.values), name="rehearsal_level_known")]
+        constraints = [models.CheckConstraint(condition=Q(level="") | Q(level__in=AssessmentLevel.values), name="rehearsal_level_known")]
         indexes = [models.Index(fields=["mission", "-created_at"], name="rehearsal_newest_idx")]
 
     def __str__(self) -> str:
@@ -58,8 +58,8 @@ class RehearsalRun(models.Model):
     rehearsal = models.ForeignKey(Rehearsal, on_delete=models.CASCADE, related_name="runs")
     sequence = models.PositiveSmallIntegerField()
     conditions = models.JSONField(help_text="wind, gusts, battery; see rehearsing/weather_scenario.py")
-    level = models.CharField(max_length=10, choices=VerdictLevel.choices, blank=True, help_text="empty until it has been flown")
-    verdict = models.JSONField(null=True, blank=True, help_text="see assessment/stored.py")
+    level = models.CharField(max_length=10, choices=AssessmentLevel.choices, blank=True, help_text="empty until it has been flown")
+    assessment = models.JSONField(db_column="verdict", null=True, blank=True, help_text="see assessment/stored.py")
     took_s = models.FloatField(null=True, blank=True, help_text="of the worker's time")
     finished_at = models.DateTimeField(null=True, blank=True)
 
@@ -67,7 +67,7 @@ class RehearsalRun(models.Model):
         ordering = ["sequence"]
         constraints = [
             models.UniqueConstraint(fields=["rehearsal", "sequence"], name="rehearsal_run_sequence"),
-            models.CheckConstraint(condition=Q(level="") | Q(level__in=VerdictLevel.values), name="rehearsal_run_level_known"),
+            models.CheckConstraint(condition=Q(level="") | Q(level__in=AssessmentLevel.values), name="rehearsal_run_level_known"),
         ]
 
     def __str__(self) -> str:

@@ -10,7 +10,7 @@ from workspace.models import JobState, Organisation
 
 
 def rehearsals_of_mission(organisation: Organisation, mission_id: UUID) -> QuerySet[Rehearsal]:
-    """Without the verdicts' details; see rehearsal_of_mission."""
+    """Without the assessments' details; see rehearsal_of_mission."""
     found = Rehearsal.objects.filter(organisation=organisation, mission=mission_id, mission__deleted_at=None)
     return found.select_related("job", "created_by").prefetch_related("runs")
 

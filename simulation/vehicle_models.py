@@ -20,7 +20,7 @@ class SimulationState(models.TextChoices):
     FAILED = "failed", _("Failed")
 
 
-class VehicleFlavour(models.TextChoices):
+class SimulatedAutopilotType(models.TextChoices):
     PX4 = "px4", "PX4"
     ARDUPILOT = "ardupilot", "ArduPilot"
 
@@ -46,7 +46,7 @@ class Simulation(models.Model):
     holder = models.CharField(max_length=120, blank=True, help_text="the simulator that flies it, and its run")
     lease_expires_at = models.DateTimeField(null=True, blank=True)
     restarts = models.PositiveIntegerField(default=0, help_text="how often a simulator was lost")
-    pace = models.JSONField(default=dict, help_text="how the clock was kept: steps, late ones, what has slipped")
+    step_timing = models.JSONField(db_column="pace", default=dict, help_text="how the clock was kept: steps, late ones, what has slipped")
     created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="simulations")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
 
@@ -80,7 +80,9 @@ class SimulatedVehicle(models.Model):
     )
     name = models.CharField(max_length=100)
     system_id = models.PositiveSmallIntegerField()
-    flavour = models.CharField(max_length=10, choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
+    autopilot_type = models.CharField(
+        db_column="flavour", max_length=10, choices=SimulatedAutopilotType.choices, default=SimulatedAutopilotType.PX4
+    )
     airframe = models.CharField(max_length=40, help_text="a code of simulation/flight/airframe.py")
     battery_wh = models.FloatField(null=True, blank=True, help_text="empty = the airframe's own")
     position = models.PointField(srid=4326, help_text="where it stands at first")
@@ -103,7 +105,7 @@ class SimulatedVehicle(models.Model):
             models.UniqueConstraint(fields=["uav"], condition=Q(state__in=PRESENT), name="simulated_vehicle_one_a_uav"),
             models.UniqueConstraint(fields=["port"], condition=Q(state__in=PRESENT), name="simulated_vehicle_one_a_port"),
             models.CheckConstraint(condition=Q(state__in=SimulationState.values), name="simulated_vehicle_state_known"),
-            models.CheckConstraint(condition=Q(flavour__in=VehicleFlavour.values), name="simulated_vehicle_flavour_known"),
+            models.CheckConstraint(condition=Q(flavour__in=SimulatedAutopilotType.values), name="simulated_vehicle_flavour_known"),
         ]
 
     def __str__(self) -> str:

@@ -136,7 +136,7 @@ class FaultSerializer(serializers.Serializer):
     position = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="lon, lat")
 
 
-class GeometryVerdictSerializer(serializers.Serializer):
+class GeometryCheckResultSerializer(serializers.Serializer):
     valid = serializers.BooleanField()
     fault = FaultSerializer(allow_null=True)
     geometry = serializers.JSONField(allow_null=True, help_text="as it would be stored: cut at the antimeridian, a circle as its polygon")

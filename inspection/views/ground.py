@@ -21,7 +21,7 @@ from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind
 from inspection.selectors import Box, GroundSummary, NoSuchTile, ground_dataset_version
 from inspection.selectors.scene import RECIPE, UnfitBox, check_box, scene_in
-from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdictSerializer
+from inspection.serializers.edits import GeometryCheckResultSerializer, GeometryCheckSerializer
 from inspection.serializers.scene import SceneSerializer, scene_json
 from inspection.services.imports.geometry import area_m2, asset_shape, length_m, zone_shape
 from inspection.views.parameters import BOX_TEXT, box_of, invalid
@@ -73,21 +73,21 @@ class GeometryCheck(APIView):
         operation_id="check_geometry",
         summary="Check a geometry that is being drawn; nothing is stored",
         request=GeometryCheckSerializer,
-        responses=GeometryVerdictSerializer,
+        responses=GeometryCheckResultSerializer,
     )
     def post(self, request: Request) -> Response:
         body = GeometryCheckSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         kind, geometry, circle = (body.validated_data.get(name) for name in ("kind", "geometry", "circle"))
-        verdict: dict[str, Any] = {"valid": True, "fault": None, "geometry": None, "length_m": None, "area_m2": None}
+        answer: dict[str, Any] = {"valid": True, "fault": None, "geometry": None, "length_m": None, "area_m2": None}
         try:
             shape = zone_shape(geometry, circle)[0] if kind == "zone" else asset_shape(AssetKind(kind), geometry)
         except GeometryFault as fault:
             position = list(fault.position) if fault.position else None
-            verdict |= {"valid": False, "fault": {"place": fault.place, "message": fault.message, "position": position}}
+            answer |= {"valid": False, "fault": {"place": fault.place, "message": fault.message, "position": position}}
         else:
-            verdict |= {"geometry": json.loads(shapely.to_geojson(shape)), "length_m": length_m(shape), "area_m2": area_m2(shape)}
-        return Response(verdict)
+            answer |= {"geometry": json.loads(shapely.to_geojson(shape)), "length_m": length_m(shape), "area_m2": area_m2(shape)}
+        return Response(answer)
 
 
 class GraphSummarySerializer(serializers.Serializer):

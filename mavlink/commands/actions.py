@@ -1,4 +1,4 @@
-"""What a UAV can be told, and the commands by which each flavour of autopilot does it."""
+"""What a UAV can be told, and the commands by which each autopilot does it."""
 
 import math
 from collections.abc import Mapping

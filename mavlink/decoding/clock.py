@@ -1,7 +1,7 @@
 """What the server's clock showed when a vehicle's clock showed a time since its boot.
 
 A message takes some time to arrive, never less than none: the earliest arrivals tell. A simulated vehicle's clock may run faster than
-ours, or slower, and change its pace; what a vehicle has kept while the link was lost arrives late, and faster than it was measured.
+ours, or slower, and change its rate; what a vehicle has kept while the link was lost arrives late, and faster than it was measured.
 """
 
 from collections import deque
@@ -10,15 +10,15 @@ from itertools import pairwise
 from statistics import median
 from typing import NamedTuple
 
-WINDOW_S = 20.0  # of receipt, from which the pace is learnt
+WINDOW_S = 20.0  # of receipt, from which the rate is learnt
 MIN_WINDOW_S = 4.0
 MIN_POINTS = 8
 POINT_INTERVAL_S = 0.2
 REFIT_INTERVAL_S = 1.0
 ON_TIME_S = 1.0  # later than the earliest arrivals
-STEADY = 0.1  # by which the pace of both halves of the window may differ
-REAL_TIME = 0.05  # as near to 1 a pace is 1: clocks are better than this window
-SAME_PACE = 0.03
+STEADY = 0.1  # by which the rate of both halves of the window may differ
+REAL_TIME = 0.05  # as near to 1 a rate is 1: clocks are better than this window
+SAME_RATE = 0.03
 CREEP = 0.2  # of a small lateness that is taken for drift, each time
 SLOWEST = 0.5  # no later record is put nearer to the one before it than so much of the time between them, unless it was here sooner
 EARLY_SHARE = 0.5  # of how much too early messages come if the vehicle's clock has become faster
@@ -39,7 +39,7 @@ class VehicleClock:
     offset_s: float | None = None
     rate: float = 1.0
     _points: deque[Point] = field(default_factory=deque)
-    _base: Point | None = None  # an early point of the present pace, as long ago as it is
+    _base: Point | None = None  # an early point of the present rate, as long ago as it is
     _fitted_at_s: float = 0.0
     _early_s: float = 0.0
     _last: tuple[float, float] | None = None  # since boot, measured
@@ -83,22 +83,22 @@ class VehicleClock:
         on_time = [point for point in points if self.lateness_s(point.boot_s, point.received_s) < ON_TIME_S]
         if len(on_time) >= MIN_POINTS:
             points = on_time
-        pace = _steady_pace(points)
-        if pace is None:
+        rate = _steady_rate(points)
+        if rate is None:
             return
-        if abs(pace - self.rate) <= SAME_PACE * self.rate:
+        if abs(rate - self.rate) <= SAME_RATE * self.rate:
             self._refine(points)
-        elif pace < self.rate or self._has_become_faster(points, pace):
-            self.rate, self._base = pace, None
-            self.offset_s = _earliest(points, pace)[1]
+        elif rate < self.rate or self._has_become_faster(points, rate):
+            self.rate, self._base = rate, None
+            self.offset_s = _earliest(points, rate)[1]
         # else it only catches up: a replay of what was kept
 
-    def _has_become_faster(self, points: list[Point], pace: float) -> bool:
+    def _has_become_faster(self, points: list[Point], rate: float) -> bool:
         took_s = points[-1].received_s - points[0].received_s
-        return points[-1].early_s - points[0].early_s > EARLY_SHARE * took_s * (pace / self.rate - 1.0)
+        return points[-1].early_s - points[0].early_s > EARLY_SHARE * took_s * (rate / self.rate - 1.0)
 
     def _refine(self, points: list[Point]) -> None:
-        """The longer a pace has been kept, the better it is known."""
+        """The longer a rate has been kept, the better it is known."""
         assert self.offset_s is not None  # noqa: S101 - there are points
         point, offset_s = _earliest(points, self.rate)
         if self._base is None:
@@ -117,7 +117,7 @@ def _earliest(points: list[Point], rate: float) -> tuple[Point, float]:
     return point, point.received_s - point.boot_s / rate
 
 
-def _steady_pace(points: list[Point]) -> float | None:
+def _steady_rate(points: list[Point]) -> float | None:
     """Seconds a second, 1 where it is as good as 1; None while there are too few points, or it changes."""
     if len(points) < MIN_POINTS or points[-1].received_s - points[0].received_s < MIN_WINDOW_S:
         return None

@@ -1,6 +1,6 @@
 """Whether a vehicle holds what was approved, item by item.
 
-What a flavour is known to change is no difference; everything else is, and is named. ArduPilot (seen in ArduCopter 4.6.0-dev and read in
+What an autopilot is known to change is no difference; everything else is, and is named. ArduPilot (seen in ArduCopter 4.6.0-dev and read in
 its AP_Mission.cpp) cuts an altitude to whole centimetres and some parameters to whole numbers, gives items without a place the frame
 GLOBAL, and forgets parameters: that is no difference where 0 or "as you choose" was asked for, but one where a figure was. It may have
 been given DO_SET_ROI in place of newer commands (see known_items). PX4 (read in its mavlink_mission.cpp) forgets some of them likewise and

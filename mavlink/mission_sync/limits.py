@@ -32,12 +32,12 @@ class LimitWarning:
 
 
 def too_many(load: FlightLoad, autopilot_type: AutopilotType) -> LimitWarning | None:
-    """The first list that no vehicle of the flavour takes."""
+    """The first list that no vehicle of the autopilot takes."""
     return next(_longer(load, autopilot_type, MAX_ITEMS, "takes", "too-many-items"), None)
 
 
 def count_warnings(load: FlightLoad, autopilot_type: AutopilotType) -> tuple[LimitWarning, ...]:
-    """Lists that are longer than most vehicles of the flavour take."""
+    """Lists that are longer than most vehicles of the autopilot take."""
     return tuple(_longer(load, autopilot_type, USUAL_ITEMS, "on most boards takes", "many-items"))
 
 

@@ -1,4 +1,4 @@
-"""Lists of items as they go over the wire, with home in front where the flavour wants it."""
+"""Lists of items as they go over the wire, with home in front where the autopilot wants it."""
 
 import hashlib
 import math

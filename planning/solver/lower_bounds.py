@@ -187,7 +187,7 @@ def _ascent(
     end_price = np.empty(uavs)
     end_at = np.empty(uavs, dtype=np.int64)
     best, best_reward = -np.inf, 0.0
-    pace, waited = 2.0, 0
+    step_size, waited = 2.0, 0
     for _ in range(steps):
         degree[:] = -2.0
         balance[:] = 0.0
@@ -244,11 +244,11 @@ def _ascent(
                 waited = 0
             best, best_reward = value, reward
         if waited >= TIMEOUT:
-            pace, waited = pace / 2.0, 0
+            step_size, waited = step_size / 2.0, 0
         square = (degree * degree).sum() + (balance * balance).sum()
-        if square == 0.0 or pace < 1e-4:
+        if square == 0.0 or step_size < 1e-4:
             break
-        length_m = pace * max(aim_m - value, 1e-4 * aim_m) / square
+        length_m = step_size * max(aim_m - value, 1e-4 * aim_m) / square
         for target in range(n):
             price[target] += length_m * degree[target]
         for uav in range(uavs):

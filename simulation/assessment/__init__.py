@@ -1,1 +1,1 @@
-"""From flown states to a verdict: pass, pass with warnings or fail, per route and target, each with its reasons."""
+"""From flown states to an assessment: pass, pass with warnings or fail, per route and target, each with its reasons."""

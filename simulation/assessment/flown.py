@@ -1,4 +1,4 @@
-"""What a simulated UAV did, as the verdict reads it: one row for each moment."""
+"""What a simulated UAV did, as the assessment reads it: one row for each moment."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A verdict as it is kept and answered: plain values, with the codes and facts that sentences are made from."""
+"""An assessment as it is kept and answered: plain values, with the codes and facts that sentences are made from."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -152,7 +152,7 @@ class RouteFlight:
             "cross_track_max_m": float(beside.max()) if len(beside) else None,
             "energy_wh": end.battery_used_wh,
             "duration_s": round(end.at_s - began_s, 2),
-            "verdict": {"result": "fail" if self.reasons else "pass", "reasons": list(self.reasons)},
+            "assessment": {"result": "fail" if self.reasons else "pass", "reasons": list(self.reasons)},
         }
 
 

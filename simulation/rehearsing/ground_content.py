@@ -10,13 +10,13 @@ from mavlink.approved_route import FrozenRoute
 from simulation.assessment.flown import FloatArray
 from simulation.assessment.judging import Surroundings
 
-BESIDE_DEG = 0.02  # some 2 km beside the waypoints, as far as verdicts tell of zones
+BESIDE_DEG = 0.02  # some 2 km beside the waypoints, as far as assessments tell of zones
 LOOK_EACH_M = 30.0  # at heights, along the routes
 DEGREE_DIGITS, METRE_DIGITS = 7, 1
 
 
 def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
-    """SHA-256 of what a verdict on the routes would be held against; what lies farther away does not change it."""
+    """SHA-256 of what an assessment on the routes would be held against; what lies farther away does not change it."""
     hashed = hashlib.sha256()
     for part in (*_zones(routes, around), *_standing(around), _heights(routes, around)):
         hashed.update(part)

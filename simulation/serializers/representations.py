@@ -86,7 +86,7 @@ def rehearsal_detail_json(rehearsal: Rehearsal, mission: Mission, **known: Any) 
     labels = {target.sequence: target.label for target in mission.targets.all()}
     return {
         **rehearsal_json(rehearsal, **known),
-        "runs": [{**_run(run, rehearsal), "verdict": _verdict(run, names, labels)} for run in rehearsal.runs.all()],
+        "runs": [{**_run(run, rehearsal), "assessment": _assessment(run, names, labels)} for run in rehearsal.runs.all()],
         "limits": [
             {"name": name, **limit, "source": _(limit["source"]), "words": _(LIMITS[name]) if name in LIMITS else name}
             for name, limit in rehearsal.limits.items()
@@ -151,12 +151,12 @@ def _run(run: RehearsalRun, rehearsal: Rehearsal) -> dict[str, Any]:
     }
 
 
-def _verdict(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any] | None:
-    if run.verdict is None:
+def _assessment(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any] | None:
+    if run.assessment is None:
         return None
-    findings = [render_finding(finding, names, labels) for finding in run.verdict["findings"]]
+    findings = [render_finding(finding, names, labels) for finding in run.assessment["findings"]]
     return {
-        **run.verdict,
+        **run.assessment,
         "findings": findings,
         "routes": [
             {
@@ -167,7 +167,7 @@ def _verdict(run: RehearsalRun, names: Mapping[int, str], labels: Mapping[int, s
                 ],
                 "reasons": [finding["reason"] for finding in findings if finding["uav"] == route["uav"] and finding["target"] is None],
             }
-            for route in run.verdict["routes"]
+            for route in run.assessment["routes"]
         ],
     }
 

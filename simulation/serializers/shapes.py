@@ -1,14 +1,14 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
 from missions.serializers.shapes import WindLayerOutputSerializer
-from simulation.models import VerdictLevel
+from simulation.models import AssessmentLevel
 from simulation.rehearsing.weather_scenario import Named
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared, JobErrorField
 from workspace.models import JobState
 
 MAX_CONDITIONS = 8
-LEVELS = VerdictLevel.choices
+LEVELS = AssessmentLevel.choices
 
 
 class RehearsalInputSerializer(serializers.Serializer):
@@ -116,7 +116,7 @@ class ClosestApproachSerializer(serializers.Serializer):
     at_s = serializers.FloatField(help_text="after the mission's departure")
 
 
-class VerdictSerializer(serializers.Serializer):
+class AssessmentSerializer(serializers.Serializer):
     level = serializers.ChoiceField(choices=LEVELS)
     findings = FindingSerializer(many=True)
     routes = RehearsedRouteSerializer(many=True)
@@ -133,8 +133,8 @@ class RehearsalRunSerializer(serializers.Serializer):
     is_reused = serializers.BooleanField(help_text="it was flown for an earlier rehearsal of the same plan in the same air")
 
 
-class RehearsalRunWithVerdictSerializer(RehearsalRunSerializer):
-    verdict = VerdictSerializer(allow_null=True)
+class RehearsalRunWithAssessmentSerializer(RehearsalRunSerializer):
+    assessment = AssessmentSerializer(allow_null=True)
 
 
 class RehearsalUavSerializer(serializers.Serializer):
@@ -178,7 +178,7 @@ class RehearsalSerializer(serializers.Serializer):
 
 
 class RehearsalDetailSerializer(RehearsalSerializer):
-    runs = RehearsalRunWithVerdictSerializer(many=True)
+    runs = RehearsalRunWithAssessmentSerializer(many=True)
     limits = RehearsalLimitSerializer(many=True)
 
 

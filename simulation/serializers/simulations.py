@@ -11,7 +11,7 @@ from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import WrongFaults, faults_from
-from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
+from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation, SimulationState
 from simulation.serializers.shapes import RehearsalConditionsSerializer
 from simulation.vehicle_models import reason_words
 from workspace.api import strict_serializers as serializers
@@ -86,7 +86,7 @@ class SimulatedFlightsInputSerializer(KnownFieldsSerializer):
     speed = serializers.ChoiceField(choices=SPEEDS, default=1, help_text="times real time")
     conditions = ConditionsField(default="as-planned", help_text=CONDITION_FIELDS)
     faults = FaultsSerializer(required=False)
-    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
+    autopilot_type = serializers.ChoiceField(choices=SimulatedAutopilotType.choices, default=SimulatedAutopilotType.PX4)
     seed = serializers.IntegerField(min_value=0, max_value=1_000_000, default=7, help_text="of gusts and turbulence")
 
 
@@ -113,7 +113,7 @@ class SimulationInputSerializer(KnownFieldsSerializer):
         help_text="then they end",
     )
     airframe = serializers.ChoiceField(choices=sorted(AIRFRAMES), default="iris", help_text="GET /airframes lists them")
-    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices, default=VehicleFlavour.PX4)
+    autopilot_type = serializers.ChoiceField(choices=SimulatedAutopilotType.choices, default=SimulatedAutopilotType.PX4)
     speed = serializers.ChoiceField(choices=SPEEDS, default=1)
     conditions = ConditionsField(default="calm", help_text=CONDITION_FIELDS)
     faults = FaultsSerializer(required=False)
@@ -143,7 +143,7 @@ class ConnectSerializer(serializers.Serializer):
     examples = ExampleSerializer(many=True)
 
 
-class ToldSerializer(serializers.Serializer):
+class VehicleReportSerializer(serializers.Serializer):
     at = serializers.DateTimeField()
     at_s = serializers.FloatField(help_text="simulated seconds since it was put on the ground")
     position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="where it truly is")
@@ -164,7 +164,7 @@ class SimulatedVehicleSerializer(serializers.Serializer):
     uav = SimulatedUavSerializer(allow_null=True, help_text="of the fleet, that it stands in for")
     name = serializers.CharField()
     system_id = serializers.IntegerField()
-    flavour = serializers.ChoiceField(choices=VehicleFlavour.choices)
+    autopilot_type = serializers.ChoiceField(choices=SimulatedAutopilotType.choices)
     airframe = serializers.CharField()
     battery_wh = serializers.FloatField(help_text="of a full battery")
     position = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="where it was put")
@@ -173,11 +173,11 @@ class SimulatedVehicleSerializer(serializers.Serializer):
     message = serializers.CharField(help_text="the reason in words")
     restarts = serializers.IntegerField(help_text="how often it was put on the ground anew because its simulator was lost")
     conditions = RehearsalConditionsSerializer()
-    told = ToldSerializer(allow_null=True, help_text="how it does, to the second")
+    report = VehicleReportSerializer(allow_null=True, help_text="how it does, to the second")
     connect = ConnectSerializer(allow_null=True, help_text="of the pool's: how ground stations reach it; others talk to the gateway")
 
 
-class PaceSerializer(serializers.Serializer):
+class StepTimingSerializer(serializers.Serializer):
     simulated_s = serializers.FloatField()
     steps = serializers.IntegerField()
     late_steps = serializers.IntegerField(help_text="that began more than a step too late")
@@ -199,7 +199,7 @@ class SimulationSerializer(serializers.Serializer):
     lifetime_ends_at = serializers.DateTimeField()
     ended_at = serializers.DateTimeField(allow_null=True)
     restarts = serializers.IntegerField(help_text="how often its simulator was lost")
-    pace = PaceSerializer(allow_null=True)
+    step_timing = StepTimingSerializer(allow_null=True)
     vehicles = SimulatedVehicleSerializer(many=True)
 
 
@@ -208,7 +208,7 @@ class SimulationPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-REPORTED_FIELDS = tuple(name for name in ToldSerializer().get_fields() if name != "at")
+REPORTED_FIELDS = tuple(name for name in VehicleReportSerializer().get_fields() if name != "at")
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
@@ -226,7 +226,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
         "lifetime_ends_at": simulation.lifetime_ends_at,
         "ended_at": simulation.ended_at,
         "restarts": simulation.restarts,
-        "pace": simulation.pace or None,
+        "step_timing": simulation.step_timing or None,
         "vehicles": [vehicle_json(vehicle) for vehicle in simulation.vehicles.all()],
     }
 
@@ -243,7 +243,7 @@ def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
         "uav": None if vehicle.uav is None else {"id": vehicle.uav_id, "name": vehicle.uav.name},
         "name": vehicle.name,
         "system_id": vehicle.system_id,
-        "flavour": vehicle.flavour,
+        "autopilot_type": vehicle.autopilot_type,
         "airframe": vehicle.airframe,
         "battery_wh": own_wh if vehicle.battery_wh is None else vehicle.battery_wh,
         "position": list(vehicle.position.coords),
@@ -252,7 +252,7 @@ def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
         "message": reason_words(vehicle.reason),
         "restarts": vehicle.restarts,
         "conditions": vehicle.conditions,
-        "told": {"at": vehicle.reported_at, **reported} if reported else None,
+        "report": {"at": vehicle.reported_at, **reported} if reported else None,
         "connect": None if vehicle.port is None else connection_json(settings.SIMULATOR_HOST, vehicle.port),
     }
 

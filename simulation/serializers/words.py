@@ -1,4 +1,4 @@
-"""Why a rehearsal did not pass, in the reader's language: a verdict keeps codes and figures, and sentences are made when it is read."""
+"""Why a rehearsal did not pass, in the reader's language: an assessment keeps codes and figures, and sentences are made when it is read."""
 
 from collections.abc import Mapping
 from typing import Any

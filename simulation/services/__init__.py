@@ -1,1 +1,1 @@
-"""Writes of simulation: rehearsals from request to verdict, airframes of types, and the rule of approvals."""
+"""Writes of simulation: rehearsals from request to assessment, airframes of types, and the rule of approvals."""

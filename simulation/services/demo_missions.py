@@ -34,7 +34,7 @@ from workspace.jobs.services import cancel_job, create_job
 from workspace.models import Job, Organisation, User
 
 MAKE_DEMO_MISSIONS = "simulation.tasks.make_demo_missions"
-FASTEST = 10.0  # times real time, of the flight that is to be over soon
+MAX_SPEED = 10.0  # times real time, of the flight that is to be over soon
 FROZEN_IN_FLIGHT = (MissionState.APPROVED, *ON_ITS_WAY)
 
 
@@ -68,7 +68,7 @@ DEMO_MISSIONS = (
         "Demo: Elmsgard and Varneck, in wind", ("Kestrel 2", "Osprey 2"), 14, (600.0, 5_000.0), Task(TaskKind.PHOTO, 30.0), None,
         wind=(WindLayer(60.0, 6.0, 240.0),), sorties=2, departs_in_h=3.0,
     ),
-    DemoMission("Demo: Elmsgard lines", ("Kestrel 1",), 4, (300.0, 1_500.0), Task(TaskKind.PHOTO, 10.0), FASTEST),
+    DemoMission("Demo: Elmsgard lines", ("Kestrel 1",), 4, (300.0, 1_500.0), Task(TaskKind.PHOTO, 10.0), MAX_SPEED),
 )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Rehearsals from request to verdict."""
+"""Rehearsals from request to assessment."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -26,7 +26,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, StatusTextSent
 from simulation.flight.states import FlightMode, Outcome, Severity, SimulatedState
 from simulation.flight.uav import SimulatedUav
-from simulation.models import Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack, VerdictLevel
+from simulation.models import AssessmentLevel, Rehearsal, RehearsalRule, RehearsalRun, RehearsalTrack
 from simulation.rehearsing.flying import MakeVehicle, RehearsedVehicle, Start, fly
 from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.scenario_weather import weather_of
@@ -104,7 +104,7 @@ def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terra
 
 
 def take_flown_before(run: RehearsalRun) -> bool:
-    """Give the run the verdict and the lines of its like, if there is one; `finished_at` stays when that was flown.
+    """Give the run the assessment and the lines of its like, if there is one; `finished_at` stays when that was flown.
 
     Its rehearsal names the ground that it would be flown over.
     """
@@ -126,7 +126,7 @@ def take_flown_before(run: RehearsalRun) -> bool:
     with transaction.atomic():
         held = RehearsalRun.objects.select_for_update().get(pk=run.pk)
         if held.finished_at is None:
-            held.verdict, held.level, held.took_s, held.finished_at = before.verdict, before.level, before.took_s, before.finished_at
+            held.assessment, held.level, held.took_s, held.finished_at = before.assessment, before.level, before.took_s, before.finished_at
             held.save()
             RehearsalTrack.objects.bulk_create(
                 RehearsalTrack(run=held, uav=track.uav, flights=track.flights) for track in before.tracks.all()
@@ -247,8 +247,8 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
     on_progress(0.0)
     flown = fly(plan.routes, maker, turnaround_s=settings.FLIGHT_RULES.turnaround_s, seed=seed, on_progress=on_progress)
     around = surroundings_of(plan, ground)
-    verdict = judge(flown, around, limits_of_settings(), known=[*_too_windy(plan, scenario), *_mid_air_starts(plan)])
-    _store(run, flown, verdict, time.monotonic() - began_s)
+    assessment = judge(flown, around, limits_of_settings(), known=[*_too_windy(plan, scenario), *_mid_air_starts(plan)])
+    _store(run, flown, assessment, time.monotonic() - began_s)
 
 
 def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[AssessmentFinding]:
@@ -265,13 +265,13 @@ def _mid_air_starts(plan: PlanToFly) -> list[AssessmentFinding]:
     return [AssessmentFinding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
 
 
-def _store(run: RehearsalRun, flown: Sequence[AssessedRoute], verdict: Assessment, took_s: float) -> None:
+def _store(run: RehearsalRun, flown: Sequence[AssessedRoute], assessment: Assessment, took_s: float) -> None:
     """Once, whole or not at all: another worker that has taken over finds either all of it or nothing."""
     with transaction.atomic():
         held = RehearsalRun.objects.select_for_update(of=("self",)).select_related("rehearsal").get(pk=run.pk)
         if held.finished_at is not None or held.rehearsal.ground_sha256 != run.rehearsal.ground_sha256:
             return
-        held.verdict, held.level, held.took_s = assessment_to_json(verdict), str(verdict.level), took_s
+        held.assessment, held.level, held.took_s = assessment_to_json(assessment), str(assessment.level), took_s
         held.finished_at = timezone.now()
         held.save()
         RehearsalTrack.objects.bulk_create(RehearsalTrack(run=held, uav=route.uav, flights=track_to_json(route.tracks)) for route in flown)
@@ -307,8 +307,8 @@ def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
             words = _("The plan has changed since it was rehearsed. Rehearse it again: your organisation approves only what has passed.")
             return [RefusalReason("rehearsal_outdated", words)]
         return [RefusalReason("not_rehearsed", _("Rehearse the mission first: your organisation approves only what has passed."))]
-    if newest.level == VerdictLevel.FAIL:
-        words = _("The rehearsal failed. Change the plan for what its verdict says, plan and rehearse it again.")
+    if newest.level == AssessmentLevel.FAIL:
+        words = _("The rehearsal failed. Change the plan for what its assessment says, plan and rehearse it again.")
         return [RefusalReason("rehearsal_failed", words)]
     if not newest.runs.filter(conditions__code=str(Named.AS_PLANNED)).exists():
         words = _("The rehearsal left out the conditions that the mission is planned for. Rehearse it again with them.")

@@ -18,7 +18,7 @@ from missions.services.approval.approval import approve_mission
 from missions.services.commands.refused import RefusalReason, refuse, refuse_for
 from missions.services.fleet.uavs import change_uav, create_uav
 from missions.services.mission_copies import duplicate_mission
-from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
+from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation
 from simulation.rehearsing.weather_scenario import WeatherScenario
 from simulation.services.idle_twins import retire_idle_twins
 from simulation.services.simulated_flights import FLOWN, start_simulated_flights
@@ -38,7 +38,7 @@ def fly_simulated_copy(
     actor: User,
     scenario: WeatherScenario,
     speed: float = 1.0,
-    flavour: VehicleFlavour = VehicleFlavour.PX4,
+    autopilot_type: SimulatedAutopilotType = SimulatedAutopilotType.PX4,
     seed: int = 7,
     faults: Mapping[str, Any] | None = None,
 ) -> Simulation:
@@ -64,7 +64,7 @@ def fly_simulated_copy(
             _bring_back_twins(copy, actor)
         loaded = mission_of_organisation(copy.organisation, copy.pk)
         return start_simulated_flights(
-            mission=loaded, actor=actor, scenario=scenario, speed=speed, flavour=flavour, seed=seed, faults=faults
+            mission=loaded, actor=actor, scenario=scenario, speed=speed, autopilot_type=autopilot_type, seed=seed, faults=faults
         )
 
 

@@ -12,7 +12,7 @@ from missions.services.commands.refused import RefusalReason, Refused, refuse, r
 from missions.services.fleet.credentials import make_credential
 from missions.services.fleet.rows import SystemIdQuota
 from missions.services.fleet.uavs import change_uav
-from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
+from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation
 from simulation.rehearsing.flying import RouteToFly
 from simulation.rehearsing.weather_scenario import WeatherScenario, scenario_to_json
 from simulation.services.fleet import StandIn
@@ -32,7 +32,7 @@ def start_simulated_flights(
     actor: User,
     scenario: WeatherScenario,
     speed: float = 1.0,
-    flavour: VehicleFlavour = VehicleFlavour.PX4,
+    autopilot_type: SimulatedAutopilotType = SimulatedAutopilotType.PX4,
     seed: int = 7,
     faults: Mapping[str, Any] | None = None,
 ) -> Simulation:
@@ -58,7 +58,7 @@ def start_simulated_flights(
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True):
             uav = places[route.uav].uav
             assert uav is not None  # noqa: S101 - _why_not looks
-            _vehicle(simulation, route, stand_in, reachable(uav, actor), scenario, flavour).save()
+            _vehicle(simulation, route, stand_in, reachable(uav, actor), scenario, autopilot_type).save()
         note_start(simulation, actor, speed=speed, uavs=len(plan.routes), faults=faults)
     return simulation
 
@@ -108,7 +108,12 @@ def _refuse_flown(places: Mapping[int, MissionUav], routes: Sequence[RouteToFly]
 
 
 def _vehicle(
-    simulation: Simulation, route: RouteToFly, stand_in: StandIn, uav: Uav, scenario: WeatherScenario, flavour: VehicleFlavour
+    simulation: Simulation,
+    route: RouteToFly,
+    stand_in: StandIn,
+    uav: Uav,
+    scenario: WeatherScenario,
+    autopilot_type: SimulatedAutopilotType,
 ) -> SimulatedVehicle:
     """On the ground where its approved route takes off."""
     take_off = route.route.take_off
@@ -118,7 +123,7 @@ def _vehicle(
         uav=uav,
         name=uav.name,
         system_id=uav.mavlink_system_id or 0,
-        flavour=flavour,
+        autopilot_type=autopilot_type,
         airframe=stand_in.airframe,
         battery_wh=stand_in.battery_wh,
         position=Point(*take_off.position, srid=4326),

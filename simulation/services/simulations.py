@@ -14,7 +14,7 @@ from django.db.models import Q
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState, VehicleFlavour
+from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation, SimulationChange, SimulationState
 from simulation.rehearsing.weather_scenario import WeatherScenario, scenario_to_json
 from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
@@ -60,7 +60,7 @@ def start_pool(
     lifetime_s: float,
     scenario: WeatherScenario,
     airframe: str,
-    flavour: VehicleFlavour = VehicleFlavour.PX4,
+    autopilot_type: SimulatedAutopilotType = SimulatedAutopilotType.PX4,
     speed: float = 1.0,
     first_system_id: int = 1,
     seed: int = 7,
@@ -80,7 +80,7 @@ def start_pool(
                 sequence=number,
                 name=uav.name or f"Sim {first_system_id + number}",
                 system_id=first_system_id + number,
-                flavour=flavour,
+                autopilot_type=autopilot_type,
                 airframe=airframe,
                 position=Point(*uav.position, srid=4326),
                 ground_amsl_m=uav.ground_amsl_m,

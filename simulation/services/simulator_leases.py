@@ -107,10 +107,10 @@ def take_changes(*, ids: Collection[UUID]) -> list[SimulationChange]:
     return changes
 
 
-def notify(*, simulation_id: UUID, holder: str, pace: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
+def notify(*, simulation_id: UUID, holder: str, step_timing: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
     """How the clock is kept, and how each vehicle does; nothing once another one holds it."""
     with transaction.atomic():
-        if not Simulation.objects.filter(pk=simulation_id, holder=holder).update(pace=dict(pace)):
+        if not Simulation.objects.filter(pk=simulation_id, holder=holder).update(step_timing=dict(step_timing)):
             return
         rows = [SimulatedVehicle(pk=pk, reported=dict(reported), reported_at=timezone.now()) for pk, reported in vehicles.items()]
         SimulatedVehicle.objects.bulk_update(rows, ["reported", "reported_at"])

@@ -1,4 +1,4 @@
-"""One simulation in the air: its fleet in a thread of its own, at its own pace."""
+"""One simulation in the air: its fleet in a thread of its own, at its own speed."""
 
 import logging
 import threading
@@ -57,7 +57,7 @@ class RunningSimulation:
         """Simulated seconds a second, over all UAVs."""
         return (len(self.vehicles) - len(self._dropped)) * self.speed
 
-    def pace(self) -> dict[str, Any]:
+    def step_timing(self) -> dict[str, Any]:
         report = self.fleet.report()
         return {
             "simulated_s": report.simulated_s, "steps": report.steps, "late_steps": report.late_steps, "latest_s": report.latest_s,

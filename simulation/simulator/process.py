@@ -1,4 +1,4 @@
-"""The simulator as a whole: it takes simulations by leases, flies each at its pace, passes changes on, and writes down how they do."""
+"""The simulator as a whole: it takes simulations by leases, flies each at its speed, passes changes on, and writes down how they do."""
 
 import errno
 import logging
@@ -62,7 +62,7 @@ def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Simula
         home=position,
         airframe=vehicle.airframe,
         battery_wh=vehicle.battery_wh,
-        autopilot_type=SimulatedAutopilot(vehicle.flavour),
+        autopilot_type=SimulatedAutopilot(vehicle.autopilot_type),
         key=None if vehicle.uav is None else _key_of(vehicle.uav),
         seed=simulation.seed + vehicle.sequence,
         heading_deg=vehicle.heading_deg,
@@ -115,7 +115,7 @@ class Simulator:
         if time.monotonic() - self._reported_s >= REPORT_INTERVAL_S:
             self._reported_s = time.monotonic()
             for key, flight in self.flights.items():
-                notify(simulation_id=key, holder=self.options.holder, pace=flight.pace(), vehicles=flight.reported())
+                notify(simulation_id=key, holder=self.options.holder, step_timing=flight.step_timing(), vehicles=flight.reported())
 
     @property
     def load(self) -> float:

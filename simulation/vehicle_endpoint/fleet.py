@@ -1,4 +1,4 @@
-"""A batch of simulated UAVs in one process, at one pace: a step for all of them, then the ears until the next."""
+"""A batch of simulated UAVs in one process, at one speed: a step for all of them, then the ears until the next."""
 
 import logging
 import math
@@ -15,7 +15,7 @@ RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up
 logger = logging.getLogger(__name__)
 UNACKNOWLEDGED_SPEED = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
 STEP_S = 0.04  # of simulated time, as SimulatedUav has it
-SLOWEST, FASTEST = 0.1, 60.0
+MIN_SPEED, MAX_SPEED = 0.1, 60.0
 
 
 @dataclass
@@ -61,7 +61,7 @@ class StepTimer:
 
 
 class InvalidSpeed(ValueError):
-    """A pace that nothing is flown at."""
+    """A speed that nothing is flown at."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class VehicleChange:
 
 @dataclass(frozen=True)
 class FleetReport:
-    """How the pace was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall.
+    """How the speed was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall.
 
     `failed` UAVs have fallen out of the batch by a fault of the program.
     """
@@ -197,5 +197,5 @@ class Fleet:
 
 
 def _check_speed(speed: float) -> None:
-    if not SLOWEST <= speed <= FASTEST:
-        raise InvalidSpeed(f"The pace must be from {SLOWEST:g} to {FASTEST:g} times real time, not {speed:g}.")
+    if not MIN_SPEED <= speed <= MAX_SPEED:
+        raise InvalidSpeed(f"The speed must be from {MIN_SPEED:g} to {MAX_SPEED:g} times real time, not {speed:g}.")

@@ -10,7 +10,7 @@ from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFa
 from simulation.vehicle_endpoint.fleet import VehicleChange
 
 WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
-ORDER = frozenset({"system", "weather", "faults", "pace"})
+ORDER = frozenset({"system", "weather", "faults", "speed"})
 WEATHER = frozenset({"wind", "gusts_mps", "turbulence_mps", "temperature_c"})
 
 
@@ -19,7 +19,7 @@ class WrongOrder(ValueError):
 
 
 def change_of(line: str) -> VehicleChange:
-    """`{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "pace": 5}`, or parts of it.
+    """`{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "speed": 5}`, or parts of it.
 
     Without a system all UAVs are meant. Weather is as the line has it, calm in all that it leaves out; faults it leaves out stay as they
     are, and those that last for a time count from now on in simulated seconds. Raises WrongOrder.
@@ -29,14 +29,14 @@ def change_of(line: str) -> VehicleChange:
     except ValueError as error:
         raise WrongOrder(f"not JSON: {error}") from error
     _known(order, ORDER)
-    system, pace = order.get("system"), order.get("pace")
+    system, speed = order.get("system"), order.get("speed")
     if system is not None and not isinstance(system, int):
         raise WrongOrder("system is a number from 1 to 255")
     return VehicleChange(
         system=system,
         weather=weather_of(order["weather"]) if "weather" in order else None,
         faults=faults_of(order["faults"]) if "faults" in order else None,
-        speed=None if pace is None else _number(pace, "pace"),
+        speed=None if speed is None else _number(speed, "speed"),
     )
 
 

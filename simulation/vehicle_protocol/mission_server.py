@@ -102,7 +102,7 @@ class _Upload:
 class MissionServer:
     """`held` are the lists without home; `replace` is told of each new one before it counts, and may refuse it.
 
-    `home` is item 0 of what ArduPilot gives back, `current` the number of the item that is being flown, as the flavour counts.
+    `home` is item 0 of what ArduPilot gives back, `current` the number of the item that is being flown, as the autopilot counts.
     """
 
     autopilot_type: SimulatedAutopilot

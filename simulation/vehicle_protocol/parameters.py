@@ -82,7 +82,7 @@ ARDUPILOT = (
 
 
 def settings_at_start(settings: Settings, autopilot_type: SimulatedAutopilot) -> Settings:
-    """What no parameter sets, and each flavour does in its own way."""
+    """What no parameter sets, and each autopilot does in its own way."""
     return replace(settings, return_adds_to_rally_point=autopilot_type is SimulatedAutopilot.PX4)
 
 

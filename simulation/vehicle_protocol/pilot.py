@@ -1,4 +1,4 @@
-"""Commands to orders for the UAV, as each flavour of autopilot understands them.
+"""Commands to orders for the UAV, as each autopilot understands them.
 
 Sources: what QGroundControl, MAVSDK and MAVProxy send; PX4's Commander; ArduCopter 4.6 in its simulator.
 """
@@ -76,7 +76,7 @@ class Pilot:
         return self.set_mode_number(usual_number(self.autopilot_type, mode))
 
     def set_current(self, number: int) -> int:
-        """number: as the flavour counts; ArduPilot's home means the first that is flown."""
+        """number: as the autopilot counts; ArduPilot's home means the first that is flown."""
         outcome = self.vehicle.set_current(max(number - self.autopilot_type.first_item, 0))
         return self._result(outcome, DENIED)
 

@@ -42,7 +42,7 @@ MISSION_STATES = {
 class SimulatedReport:
     """What messages are written from: the UAV's state, and what the MAVLink side adds to it.
 
-    `current_item` and `item_count` are as the flavour counts; `unix_s` is the vehicle's idea of the time of day.
+    `current_item` and `item_count` are as the autopilot counts; `unix_s` is the vehicle's idea of the time of day.
     """
 
     state: SimulatedState

@@ -107,7 +107,7 @@ class RehearsalRuleView(APIView):
     @extend_schema(
         operation_id="set_rehearsal_rule",
         summary="Say whether approval asks for a rehearsal that passed",
-        description="Off by default. A verdict with warnings counts; one of another plan does not. Administrators alone.",
+        description="Off by default. An assessment with warnings counts; one of another plan does not. Administrators alone.",
         request=shapes.RehearsalRuleSerializer,
         responses=shapes.RehearsalRuleSerializer,
     )

@@ -84,9 +84,9 @@ class MissionRehearsals(APIView):
         summary="Fly a mission in simulation",
         description=(
             "Every route of the present plan is flown by a simulated UAV from the very items that a UAV would be given, all of them "
-            "together in time, once for each of the conditions. A job flies them; its state, and afterwards the verdict: GET the address "
-            "in Location. What was flown alike within a day (the same plan, air, seed, limits and ground) is taken over, which the run "
-            "tells as `is_reused`; `afresh` flies it again."
+            "together in time, once for each of the conditions. A job flies them; its state, and afterwards the assessment: GET the "
+            "address in Location. What was flown alike within a day (the same plan, air, seed, limits and ground) is taken over, which the "
+            "run tells as `is_reused`; `afresh` flies it again."
         ),
         request=shapes.RehearsalInputSerializer,
         responses={202: shapes.RehearsalSerializer, **REFUSED},
@@ -114,7 +114,7 @@ class MissionRehearsals(APIView):
 class RehearsalDetail(APIView):
     @extend_schema(
         operation_id="get_rehearsal",
-        summary="A rehearsal with its verdict by route and by target",
+        summary="A rehearsal with its assessment by route and by target",
         description="Levels: pass, warnings, fail. Each reason stands in words; the limits with their sources stand beside the figures.",
         responses=shapes.RehearsalDetailSerializer,
     )
@@ -146,7 +146,7 @@ class RehearsalCancel(APIView):
     @extend_schema(
         operation_id="cancel_rehearsal",
         summary="Stop a rehearsal",
-        description="What has been flown until then is kept; without all of its conditions it has no verdict.",
+        description="What has been flown until then is kept; without all of its conditions it has no assessment.",
         request=None,
         responses=shapes.RehearsalSerializer,
     )

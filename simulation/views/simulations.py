@@ -19,7 +19,7 @@ from missions.models import Mission
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals
 from planning.energy.conditions import Conditions, conditions_from_json
-from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
+from simulation.models import SimulatedAutopilotType, SimulatedVehicle, Simulation
 from simulation.serializers import simulations as shapes
 from simulation.services.simulated_copies import fly_simulated_copy
 from simulation.services.simulated_flights import start_simulated_flights
@@ -116,7 +116,7 @@ def _flown(request: SignedInRequest, mission: Mission, fly: Callable[..., Simula
                 actor=request.user,
                 scenario=scenario_of(values["conditions"], conditions_from_json(mission.conditions or None)),
                 speed=float(values["speed"]),
-                flavour=VehicleFlavour(values["flavour"]),
+                autopilot_type=SimulatedAutopilotType(values["autopilot_type"]),
                 seed=values["seed"],
                 faults=values.get("faults"),
             )
@@ -163,7 +163,7 @@ class Simulations(APIView):
                 lifetime_s=values["lifetime_s"],
                 scenario=scenario_of(values["conditions"], CALM),
                 airframe=values["airframe"],
-                flavour=VehicleFlavour(values["flavour"]),
+                autopilot_type=SimulatedAutopilotType(values["autopilot_type"]),
                 speed=float(values["speed"]),
                 first_system_id=values["first_system_id"],
                 seed=values["seed"],

@@ -399,6 +399,20 @@ export interface components {
              */
             longest_leg_m?: number | null;
         };
+        Assessment: {
+            level: components["schemas"]["AssessmentLevel"];
+            findings: components["schemas"]["Finding"][];
+            routes: components["schemas"]["RehearsedRoute"][];
+            /** @description the nearest that two UAVs came to each other in the air */
+            meetings: components["schemas"]["ClosestApproach"][];
+        };
+        /**
+         * @description * `pass` - Pass
+         *     * `warnings` - Pass with warnings
+         *     * `fail` - Fail
+         * @enum {string}
+         */
+        AssessmentLevel: "pass" | "warnings" | "fail";
         AssetCollection: {
             type: components["schemas"]["FeatureCollectionType"];
             features: components["schemas"]["AssetFeature"][];
@@ -1439,7 +1453,7 @@ export interface components {
             now: (number | string[]) | null;
         };
         Finding: {
-            level: components["schemas"]["VerdictLevel"];
+            level: components["schemas"]["AssessmentLevel"];
             /** @description for programs: stays the same */
             code: string;
             /** @description place in the mission */
@@ -1747,6 +1761,16 @@ export interface components {
             geometry?: unknown;
             circle?: unknown;
         };
+        GeometryCheckResult: {
+            valid: boolean;
+            fault: components["schemas"]["Fault"] | null;
+            /** @description as it would be stored: cut at the antimeridian, a circle as its polygon */
+            geometry: unknown;
+            /** Format: double */
+            length_m: number | null;
+            /** Format: double */
+            area_m2: number | null;
+        };
         /**
          * @description * `Point` - Point
          *     * `MultiPoint` - MultiPoint
@@ -1757,16 +1781,6 @@ export interface components {
          * @enum {string}
          */
         GeometryType: "Point" | "MultiPoint" | "LineString" | "MultiLineString" | "Polygon" | "MultiPolygon";
-        GeometryVerdict: {
-            valid: boolean;
-            fault: components["schemas"]["Fault"] | null;
-            /** @description as it would be stored: cut at the antimeridian, a circle as its polygon */
-            geometry: unknown;
-            /** Format: double */
-            length_m: number | null;
-            /** Format: double */
-            area_m2: number | null;
-        };
         Given: {
             uav: number;
             route: components["schemas"]["GivenRoute"] | null;
@@ -3416,20 +3430,6 @@ export interface components {
          * @enum {string}
          */
         OriginEnum: "upload" | "overpass" | "subscription" | "roll_back";
-        Pace: {
-            /** Format: double */
-            simulated_s: number;
-            steps: number;
-            /** @description that began more than a step too late */
-            late_steps: number;
-            /** Format: double */
-            latest_s: number;
-            /**
-             * Format: double
-             * @description of real time, never made up for: too many UAVs, or too fast, for this machine
-             */
-            slipped_s: number;
-        };
         ParametersRequest: {
             parameters?: {
                 [key: string]: unknown;
@@ -4832,7 +4832,7 @@ export interface components {
              *     * `warnings` - Pass with warnings
              *     * `fail` - Fail
              */
-            level: components["schemas"]["VerdictLevel"] | components["schemas"]["BlankEnum"];
+            level: components["schemas"]["AssessmentLevel"] | components["schemas"]["BlankEnum"];
             /** @description the plan, its UAVs or their airframes have changed since */
             is_outdated: boolean;
             /** @description of what was flown */
@@ -4904,7 +4904,7 @@ export interface components {
              *     * `warnings` - Pass with warnings
              *     * `fail` - Fail
              */
-            level: components["schemas"]["VerdictLevel"] | components["schemas"]["BlankEnum"];
+            level: components["schemas"]["AssessmentLevel"] | components["schemas"]["BlankEnum"];
             /** @description the plan, its UAVs or their airframes have changed since */
             is_outdated: boolean;
             /** @description of what was flown */
@@ -4918,7 +4918,7 @@ export interface components {
             /** Format: date-time */
             created_at: string;
             created_by: string | null;
-            runs: components["schemas"]["RehearsalRunWithVerdict"][];
+            runs: components["schemas"]["RehearsalRunWithAssessment"][];
             limits: components["schemas"]["RehearsalLimit"][];
         };
         RehearsalInputRequest: {
@@ -4966,7 +4966,7 @@ export interface components {
              *     * `warnings` - Pass with warnings
              *     * `fail` - Fail
              */
-            level: components["schemas"]["VerdictLevel"] | components["schemas"]["BlankEnum"];
+            level: components["schemas"]["AssessmentLevel"] | components["schemas"]["BlankEnum"];
             /**
              * Format: double
              * @description of the worker's time
@@ -4980,7 +4980,7 @@ export interface components {
             /** @description it was flown for an earlier rehearsal of the same plan in the same air */
             is_reused: boolean;
         };
-        RehearsalRunWithVerdict: {
+        RehearsalRunWithAssessment: {
             sequence: number;
             conditions: components["schemas"]["RehearsalConditions"];
             /** @description what the conditions are called */
@@ -4992,7 +4992,7 @@ export interface components {
              *     * `warnings` - Pass with warnings
              *     * `fail` - Fail
              */
-            level: components["schemas"]["VerdictLevel"] | components["schemas"]["BlankEnum"];
+            level: components["schemas"]["AssessmentLevel"] | components["schemas"]["BlankEnum"];
             /**
              * Format: double
              * @description of the worker's time
@@ -5005,7 +5005,7 @@ export interface components {
             finished_at: string | null;
             /** @description it was flown for an earlier rehearsal of the same plan in the same air */
             is_reused: boolean;
-            verdict: components["schemas"]["Verdict"] | null;
+            assessment: components["schemas"]["Assessment"] | null;
         };
         RehearsalTrack: {
             run: number;
@@ -5029,7 +5029,7 @@ export interface components {
             /** @description place in the mission */
             uav: number;
             name: string;
-            level: components["schemas"]["VerdictLevel"];
+            level: components["schemas"]["AssessmentLevel"];
             /** @description of its flights; null: not begun */
             endings: (string | null)[];
             /** @description off the line between waypoints */
@@ -5069,7 +5069,7 @@ export interface components {
             /** @description place in the mission, from 0 */
             target: number;
             label: string;
-            level: components["schemas"]["VerdictLevel"];
+            level: components["schemas"]["AssessmentLevel"];
             is_reached: boolean;
             /**
              * Format: double
@@ -5954,6 +5954,12 @@ export interface components {
             /** @description address of the next page */
             next: string | null;
         };
+        /**
+         * @description * `px4` - PX4
+         *     * `ardupilot` - ArduPilot
+         * @enum {string}
+         */
+        SimulatedAutopilotType: "px4" | "ardupilot";
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         SimulatedFlightsInputRequest: {
             /**
@@ -5975,7 +5981,7 @@ export interface components {
             };
             faults?: components["schemas"]["FaultsRequest"];
             /** @default px4 */
-            flavour: components["schemas"]["VehicleFlavour"];
+            autopilot_type: components["schemas"]["SimulatedAutopilotType"];
             /**
              * @description of gusts and turbulence
              * @default 7
@@ -5999,7 +6005,7 @@ export interface components {
             uav: components["schemas"]["SimulatedUav"] | null;
             name: string;
             system_id: number;
-            flavour: components["schemas"]["VehicleFlavour"];
+            autopilot_type: components["schemas"]["SimulatedAutopilotType"];
             airframe: string;
             /**
              * Format: double
@@ -6017,7 +6023,7 @@ export interface components {
             restarts: number;
             conditions: components["schemas"]["RehearsalConditions"];
             /** @description how it does, to the second */
-            told: components["schemas"]["Told"] | null;
+            report: components["schemas"]["VehicleReport"] | null;
             /** @description of the pool's: how ground stations reach it; others talk to the gateway */
             connect: components["schemas"]["Connect"] | null;
         };
@@ -6049,7 +6055,7 @@ export interface components {
             ended_at: string | null;
             /** @description how often its simulator was lost */
             restarts: number;
-            pace: components["schemas"]["Pace"] | null;
+            step_timing: components["schemas"]["StepTiming"] | null;
             vehicles: components["schemas"]["SimulatedVehicle"][];
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
@@ -6069,7 +6075,7 @@ export interface components {
              */
             airframe: components["schemas"]["AirframeEnum"];
             /** @default px4 */
-            flavour: components["schemas"]["VehicleFlavour"];
+            autopilot_type: components["schemas"]["SimulatedAutopilotType"];
             /** @default 1 */
             speed: components["schemas"]["SpeedEnum"];
             /**
@@ -6206,6 +6212,20 @@ export interface components {
              * @default false
              */
             pilot_checked: boolean;
+        };
+        StepTiming: {
+            /** Format: double */
+            simulated_s: number;
+            steps: number;
+            /** @description that began more than a step too late */
+            late_steps: number;
+            /** Format: double */
+            latest_s: number;
+            /**
+             * Format: double
+             * @description of real time, never made up for: too many UAVs, or too fast, for this machine
+             */
+            slipped_s: number;
         };
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
@@ -6545,27 +6565,6 @@ export interface components {
          * @enum {string}
          */
         TokenScope: "read" | "plan" | "fly" | "curate" | "administer";
-        Told: {
-            /** Format: date-time */
-            at: string;
-            /**
-             * Format: double
-             * @description simulated seconds since it was put on the ground
-             */
-            at_s: number;
-            /** @description where it truly is */
-            position: number[];
-            /** Format: double */
-            altitude_relative_m: number;
-            /** Format: double */
-            battery_percent: number;
-            mode: string;
-            is_armed: boolean;
-            is_in_air: boolean;
-            is_crashed: boolean;
-            /** @description by a fault that was asked for */
-            is_link_lost: boolean;
-        };
         Totals: {
             /** Format: double */
             length_m: number;
@@ -7309,12 +7308,27 @@ export interface components {
             file_name: string;
             size_bytes: number;
         };
-        /**
-         * @description * `px4` - PX4
-         *     * `ardupilot` - ArduPilot
-         * @enum {string}
-         */
-        VehicleFlavour: "px4" | "ardupilot";
+        VehicleReport: {
+            /** Format: date-time */
+            at: string;
+            /**
+             * Format: double
+             * @description simulated seconds since it was put on the ground
+             */
+            at_s: number;
+            /** @description where it truly is */
+            position: number[];
+            /** Format: double */
+            altitude_relative_m: number;
+            /** Format: double */
+            battery_percent: number;
+            mode: string;
+            is_armed: boolean;
+            is_in_air: boolean;
+            is_crashed: boolean;
+            /** @description by a fault that was asked for */
+            is_link_lost: boolean;
+        };
         VehicleText: {
             /** @description MAV_SEVERITY: 0 emergency to 7 debug */
             severity: number;
@@ -7326,20 +7340,6 @@ export interface components {
             results: components["schemas"]["VehicleText"][];
             next: string | null;
         };
-        Verdict: {
-            level: components["schemas"]["VerdictLevel"];
-            findings: components["schemas"]["Finding"][];
-            routes: components["schemas"]["RehearsedRoute"][];
-            /** @description the nearest that two UAVs came to each other in the air */
-            meetings: components["schemas"]["ClosestApproach"][];
-        };
-        /**
-         * @description * `pass` - Pass
-         *     * `warnings` - Pass with warnings
-         *     * `fail` - Fail
-         * @enum {string}
-         */
-        VerdictLevel: "pass" | "warnings" | "fail";
         WaitingCommand: {
             /** Format: uuid */
             id: string;
@@ -7851,6 +7851,8 @@ export type Alternative = components['schemas']['Alternative'];
 export type Approach = components['schemas']['Approach'];
 export type ApprovalDocument = components['schemas']['ApprovalDocument'];
 export type ApproveInputRequest = components['schemas']['ApproveInputRequest'];
+export type Assessment = components['schemas']['Assessment'];
+export type AssessmentLevel = components['schemas']['AssessmentLevel'];
 export type AssetCollection = components['schemas']['AssetCollection'];
 export type AssetDetailFeature = components['schemas']['AssetDetailFeature'];
 export type AssetDetailProperties = components['schemas']['AssetDetailProperties'];
@@ -7960,8 +7962,8 @@ export type GapSummary = components['schemas']['GapSummary'];
 export type Geometry = components['schemas']['Geometry'];
 export type GeometryCheckKindEnum = components['schemas']['GeometryCheckKindEnum'];
 export type GeometryCheckRequest = components['schemas']['GeometryCheckRequest'];
+export type GeometryCheckResult = components['schemas']['GeometryCheckResult'];
 export type GeometryType = components['schemas']['GeometryType'];
-export type GeometryVerdict = components['schemas']['GeometryVerdict'];
 export type Given = components['schemas']['Given'];
 export type GivenParameters = components['schemas']['GivenParameters'];
 export type GivenRoute = components['schemas']['GivenRoute'];
@@ -8083,7 +8085,6 @@ export type OfferState = components['schemas']['OfferState'];
 export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonRequest'];
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
-export type Pace = components['schemas']['Pace'];
 export type ParametersRequest = components['schemas']['ParametersRequest'];
 export type PasswordChangeRequest = components['schemas']['PasswordChangeRequest'];
 export type PatchedAccountChangeRequest = components['schemas']['PatchedAccountChangeRequest'];
@@ -8177,7 +8178,7 @@ export type RehearsalPage = components['schemas']['RehearsalPage'];
 export type RehearsalRule = components['schemas']['RehearsalRule'];
 export type RehearsalRuleRequest = components['schemas']['RehearsalRuleRequest'];
 export type RehearsalRun = components['schemas']['RehearsalRun'];
-export type RehearsalRunWithVerdict = components['schemas']['RehearsalRunWithVerdict'];
+export type RehearsalRunWithAssessment = components['schemas']['RehearsalRunWithAssessment'];
 export type RehearsalTrack = components['schemas']['RehearsalTrack'];
 export type RehearsalUav = components['schemas']['RehearsalUav'];
 export type RehearsedRoute = components['schemas']['RehearsedRoute'];
@@ -8242,6 +8243,7 @@ export type SessionTimes = components['schemas']['SessionTimes'];
 export type SignIn = components['schemas']['SignIn'];
 export type SignInOutcome = components['schemas']['SignInOutcome'];
 export type SignInPage = components['schemas']['SignInPage'];
+export type SimulatedAutopilotType = components['schemas']['SimulatedAutopilotType'];
 export type SimulatedFlightsInputRequest = components['schemas']['SimulatedFlightsInputRequest'];
 export type SimulatedUav = components['schemas']['SimulatedUav'];
 export type SimulatedVehicle = components['schemas']['SimulatedVehicle'];
@@ -8256,6 +8258,7 @@ export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
 export type StartsInputRequest = components['schemas']['StartsInputRequest'];
+export type StepTiming = components['schemas']['StepTiming'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];
@@ -8285,7 +8288,6 @@ export type Token = components['schemas']['Token'];
 export type TokenInputRequest = components['schemas']['TokenInputRequest'];
 export type TokenList = components['schemas']['TokenList'];
 export type TokenScope = components['schemas']['TokenScope'];
-export type Told = components['schemas']['Told'];
 export type Totals = components['schemas']['Totals'];
 export type TrackFlight = components['schemas']['TrackFlight'];
 export type TroubleEnum = components['schemas']['TroubleEnum'];
@@ -8322,11 +8324,9 @@ export type UnknownVehicleStateEnum = components['schemas']['UnknownVehicleState
 export type Unresolved = components['schemas']['Unresolved'];
 export type Upload = components['schemas']['Upload'];
 export type UploadInputRequest = components['schemas']['UploadInputRequest'];
-export type VehicleFlavour = components['schemas']['VehicleFlavour'];
+export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];
-export type Verdict = components['schemas']['Verdict'];
-export type VerdictLevel = components['schemas']['VerdictLevel'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
 export type WaitingStart = components['schemas']['WaitingStart'];
 export type Warning = components['schemas']['Warning'];

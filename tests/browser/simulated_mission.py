@@ -108,10 +108,10 @@ def panel_of(page: Page) -> Any:
     return panel
 
 
-def flies_in_simulation(page: Page, pace: str) -> None:
+def flies_in_simulation(page: Page, speed: str) -> None:
     """From the page of its flight: starts the stand-ins, and waits until they stand there."""
     panel = panel_of(page)
-    panel.get_by_role("combobox", name="Speed").select_option(label=pace)
+    panel.get_by_role("combobox", name="Speed").select_option(label=speed)
     panel.get_by_role("button", name="Fly in simulation").click()
     expect(panel.locator(".simulation-uavs")).to_contain_text("on the ground", timeout=SOON_MS)
 

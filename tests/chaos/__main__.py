@@ -1,4 +1,4 @@
-"""./check --chaos: runs rows of the fault table, tells test, figure, target and verdict, and ends with 1 where a target is missed.
+"""./check --chaos: runs rows of the fault table, tells test, figure, target and result, and ends with 1 where a target is missed.
 
     ./check --chaos                    every row
     ./check --chaos R5 S9              these rows
@@ -22,7 +22,7 @@ from scripts.check import private_servers
 from scripts.places import CannotStart
 from tests.chaos.document import put_in_document
 from tests.chaos.fault_table import ROWS
-from tests.chaos.figures import Figure, Verdict, as_markdown
+from tests.chaos.figures import Figure, TargetResult, as_markdown
 from tests.chaos.rows import Elsewhere, Row, Tests
 from tests.chaos.running import Settings, figures_of
 
@@ -90,7 +90,7 @@ def main(arguments: Sequence[str]) -> int:
             print(f"{name}: {taken:.1f} min")
     if options.write:
         put_in_document(figures, seed=options.seed, at=begins_at, order=[row.id for row in ROWS])
-    return 1 if any(figure.verdict == Verdict.MISSED for figure in figures) else 0
+    return 1 if any(figure.result == TargetResult.MISSED for figure in figures) else 0
 
 
 if __name__ == "__main__":

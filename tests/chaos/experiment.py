@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from scripts.places import CannotStart
-from tests.chaos.figures import Figure, Verdict, write
+from tests.chaos.figures import Figure, TargetResult, write
 
 
 @dataclass
@@ -25,11 +25,11 @@ class Course:
         self.chance = random.Random(self.seed)
 
     def record(self, test: str, figure: str, target: str, is_met: bool) -> None:
-        self._put(Figure(self.row, test, figure, target, Verdict.MET if is_met else Verdict.MISSED))
+        self._put(Figure(self.row, test, figure, target, TargetResult.MET if is_met else TargetResult.MISSED))
 
     def leave_out(self, test: str, reason: str, target: str) -> None:
         """Something that this machine cannot show."""
-        self._put(Figure(self.row, test, reason, target, Verdict.NOT_RUN))
+        self._put(Figure(self.row, test, reason, target, TargetResult.NOT_RUN))
 
     def _put(self, figure: Figure) -> None:
         self.figures.append(figure)
@@ -51,7 +51,7 @@ def main(do: Callable[[Course], None]) -> None:
         do(course)
     except CannotStart as error:
         course.record("could not begin", str(error), "begins", False)
-    sys.exit(1 if any(figure.verdict == Verdict.MISSED for figure in course.figures) else 0)
+    sys.exit(1 if any(figure.result == TargetResult.MISSED for figure in course.figures) else 0)
 
 
 def percentile(values: list[float], share: float) -> float:

@@ -246,7 +246,7 @@ SECURITY = (
         "S6", "odd zones", 6.0,
         (
             Tests(
-                "the set of odd geometries, and random ones", "each has its verdict; the database is never asked to repair one",
+                "the set of odd geometries, and random ones", "each has its result; the database is never asked to repair one",
                 ("tests/inspection/zones", "tests/inspection/importers/zones", "tests/inspection/geodesy"), "{passed} of {all} tests",
             ),
             Tests(

@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 
-class Verdict(StrEnum):
+class TargetResult(StrEnum):
     MET = "met"
     MISSED = "MISSED"
     NOT_RUN = "not run"
@@ -22,14 +22,14 @@ class Figure:
     test: str
     figure: str
     target: str
-    verdict: Verdict
+    result: TargetResult
 
     @property
     def cells(self) -> tuple[str, str, str, str, str]:
-        return (self.row, self.test, self.figure, self.target, str(self.verdict))
+        return (self.row, self.test, self.figure, self.target, str(self.result))
 
 
-HEAD = ("row", "test", "figure", "target", "verdict")
+HEAD = ("row", "test", "figure", "target", "result")
 
 
 def as_markdown(figures: Sequence[Figure]) -> str:
@@ -42,7 +42,7 @@ def written(path: Path) -> list[Figure]:
     found = []
     for line in path.read_text().splitlines() if path.exists() else []:
         try:
-            found.append(Figure(**(reported := json.loads(line)) | {"verdict": Verdict(reported["verdict"])}))
+            found.append(Figure(**(reported := json.loads(line)) | {"result": TargetResult(reported["result"])}))
         except ValueError:
             continue
     return found

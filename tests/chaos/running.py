@@ -11,7 +11,7 @@ from pathlib import Path
 
 from scripts.places import PROJECT_DIR
 from scripts.processes import end_session
-from tests.chaos.figures import Figure, Verdict, written
+from tests.chaos.figures import Figure, TargetResult, written
 from tests.chaos.rows import Elsewhere, Experiment, Part, Row, Tests
 
 STOP_S = 90.0
@@ -31,7 +31,7 @@ def figures_of(row: Row, settings: Settings) -> Iterator[Figure]:
 
 def _figures_of_part(row: Row, part: Part, settings: Settings) -> list[Figure]:
     if isinstance(part, Elsewhere):
-        return [Figure(row.id, part.test, part.where, part.target, Verdict.ELSEWHERE)]
+        return [Figure(row.id, part.test, part.where, part.target, TargetResult.ELSEWHERE)]
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.jsonl"
         if isinstance(part, Tests):
@@ -52,8 +52,8 @@ def _of_tests(row: Row, part: Tests, settings: Settings, report: Path) -> Figure
     words += [f"failed: {name}" for name in failed[:3]] + [f"left out: {reason}" for reason in dict.fromkeys(skipped)]
     if code != 0 and not failed:
         words.append(f"pytest ended with {code}")
-    verdict = Verdict.MISSED if code != 0 else Verdict.MET if passed else Verdict.NOT_RUN
-    return Figure(row.id, part.test, "; ".join(words), part.target, verdict)
+    result = TargetResult.MISSED if code != 0 else TargetResult.MET if passed else TargetResult.NOT_RUN
+    return Figure(row.id, part.test, "; ".join(words), part.target, result)
 
 
 def _of_experiment(row: Row, part: Experiment, settings: Settings, report: Path) -> list[Figure]:
@@ -61,10 +61,10 @@ def _of_experiment(row: Row, part: Experiment, settings: Settings, report: Path)
     command += ["--figures", str(report), *(["--short"] if settings.is_short else []), *part.arguments]
     code = _run(command, settings.environment, row.limit_s)
     figures = written(report)
-    if code != 0 and all(figure.verdict != Verdict.MISSED for figure in figures):
-        figures.append(Figure(row.id, part.test, f"the experiment ended with {code}", part.target, Verdict.MISSED))
+    if code != 0 and all(figure.result != TargetResult.MISSED for figure in figures):
+        figures.append(Figure(row.id, part.test, f"the experiment ended with {code}", part.target, TargetResult.MISSED))
     if not figures:
-        figures.append(Figure(row.id, part.test, "it told nothing", part.target, Verdict.MISSED))
+        figures.append(Figure(row.id, part.test, "it told nothing", part.target, TargetResult.MISSED))
     return figures
 
 

@@ -10,7 +10,7 @@ import pytest
 from scripts.places import PROJECT_DIR
 from tests.chaos.document import BEGINS, DOCUMENT, ENDS, put_in_document
 from tests.chaos.fault_table import ROWS
-from tests.chaos.figures import Figure, Verdict, write, written
+from tests.chaos.figures import Figure, TargetResult, write, written
 from tests.chaos.rows import Elsewhere, Experiment, Row, Tests
 from tests.chaos.running import Settings, figures_of
 
@@ -50,7 +50,7 @@ def test_the_experiment_of_a_row_is_there(module: str) -> None:
 def test_what_is_not_run_is_said_with_its_place() -> None:
     row = Row("O9", "elsewhere", 0.0, (Elsewhere("a test", "a target", "another command"),))
     [figure] = figures_of(row, Settings(11, False, {}))
-    assert (figure.figure, figure.verdict) == ("another command", Verdict.ELSEWHERE)
+    assert (figure.figure, figure.result) == ("another command", TargetResult.ELSEWHERE)
 
 
 @pytest.mark.long
@@ -60,12 +60,12 @@ def test_a_row_of_tests_tells_figures_and_what_failed(tmp_path: Path) -> None:
     )
     row = Row("R99", "made up", 0.1, (Tests("a test", "all", (str(tmp_path / "test_one.py"),), "{passed} of {all} tests"),))
     [figure] = figures_of(row, Settings(11, False, {}))
-    assert figure.verdict == Verdict.MISSED
+    assert figure.result == TargetResult.MISSED
     assert figure.figure.startswith("1 of 2 tests; 3 of 3; failed: ")
 
 
 def test_figures_that_were_cut_off_in_the_middle_are_left_out(tmp_path: Path) -> None:
-    path, one = tmp_path / "figures", Figure("R1", "a | b", "1", "2", Verdict.MET)
+    path, one = tmp_path / "figures", Figure("R1", "a | b", "1", "2", TargetResult.MET)
     write(one, path)
     with path.open("a") as lines:
         lines.write('{"row": "R2", "te')
@@ -76,7 +76,7 @@ def test_the_document_keeps_the_lines_of_rows_that_were_not_run(tmp_path: Path) 
     document = tmp_path / "reliability.md"
     document.write_text(f"Before\n{BEGINS}\n| R2 | old | 1 | 2 | met | then |\n| R1 | old | 1 | 2 | met | then |\n{ENDS}\nAfter\n")
     put_in_document(
-        [Figure("R1", "new", "3", "4", Verdict.MISSED)],
+        [Figure("R1", "new", "3", "4", TargetResult.MISSED)],
         seed=11,
         at=datetime(2026, 11, 22, tzinfo=UTC),
         order=["R1", "R2"],

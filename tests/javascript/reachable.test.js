@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { questionOf, reachText, verdictOf } from "../../static/js/mission/map/reachable.js";
+import { questionOf, reachabilityOf, reachText } from "../../static/js/mission/map/reachable.js";
 import { EMPTY } from "../../static/js/mission/selection.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
@@ -21,9 +21,9 @@ test("the question is of UAVs, ends, departure and air, whatever is picked", () 
   assert.deepEqual(Object.keys(asked).sort(), ["departs_at", "return_to_start", "uavs"]);
 });
 
-test("each asset has its verdict, and one that the answer does not speak of has none", () => {
+test("each asset has its reachability, and one that the answer does not speak of has none", () => {
   assert.deepEqual(
-    [2, 5, 9, 1, 7, 10].map((id) => verdictOf(answer, id)),
+    [2, 5, 9, 1, 7, 10].map((id) => reachabilityOf(answer, id)),
     ["yes", "no", "partly", "", "", ""],
   );
 });

@@ -14,7 +14,7 @@ const plain = (text) => text.replaceAll("\u00a0", " ");
 const run = (words, level, targets = []) => ({
   words,
   level,
-  verdict: { routes: [{ targets: targets.map((name, target) => ({ target, level: name })) }], meetings: [] },
+  assessment: { routes: [{ targets: targets.map((name, target) => ({ target, level: name })) }], meetings: [] },
 });
 const detail = (level, ...runs) => ({ state: "done", level, runs, error: null });
 

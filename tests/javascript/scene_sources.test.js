@@ -98,7 +98,7 @@ test("a rehearsed run has the simulated attitude, and hangs level in tracks of b
       {
         words: "Calm",
         conditions: { wind: [] },
-        verdict: { routes: [{ uav: 0, targets: [{ target: 0, at_s: 40 }] }] },
+        assessment: { routes: [{ uav: 0, targets: [{ target: 0, at_s: 40 }] }] },
       },
     ],
   };

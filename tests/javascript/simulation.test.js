@@ -19,7 +19,7 @@ const vehicle = (name, more = {}) => ({
   name,
   state: "flying",
   battery_wh: 60,
-  told: { is_crashed: false },
+  report: { is_crashed: false },
   conditions: { wind: [], gusts_mps: 0 },
   ...more,
 });
@@ -27,7 +27,7 @@ const simulation = (more = {}) => ({
   state: "flying",
   speed: 5,
   message: "",
-  pace: null,
+  step_timing: null,
   vehicles: [vehicle("Tern")],
   ...more,
 });
@@ -36,15 +36,18 @@ test("a simulation says how many fly, how fast, and who is lost or has crashed",
   assert.equal(stateWords(simulation()).words, "1 simulated UAV at 5× real time.");
   assert.equal(stateWords(simulation({ speed: 1 })).words, "1 simulated UAV in real time.");
   const bad = stateWords(
-    simulation({ vehicles: [vehicle("Tern", { told: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }),
+    simulation({ vehicles: [vehicle("Tern", { report: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }),
   );
   assert.equal(bad.words, "1 simulated UAV at 5× real time. Crashed: Tern. Lost with their simulator: Kite.");
   assert.equal(bad.isBad, true);
 });
 
 test("a machine that cannot keep the pace says so", () => {
-  assert.match(stateWords(simulation({ pace: { slipped_s: 12.4 } })).words, /too slow for this speed: 12 s behind/);
-  assert.doesNotMatch(stateWords(simulation({ pace: { slipped_s: 1 } })).words, /too slow/);
+  assert.match(
+    stateWords(simulation({ step_timing: { slipped_s: 12.4 } })).words,
+    /too slow for this speed: 12 s behind/,
+  );
+  assert.doesNotMatch(stateWords(simulation({ step_timing: { slipped_s: 1 } })).words, /too slow/);
 });
 
 test("one that waits, failed or ended says why; without one the panel says what it is for", () => {
@@ -71,23 +74,23 @@ test("wind goes round once", () => {
 });
 
 test("each of its UAVs says how it does, and what is wrong with it", () => {
-  const told = {
+  const report = {
     is_crashed: false,
     is_in_air: true,
     altitude_relative_m: 42.4,
     battery_percent: 71.6,
     is_link_lost: true,
   };
-  assert.deepEqual(vehicleWords(vehicle("Tern", { told })), {
+  assert.deepEqual(vehicleWords(vehicle("Tern", { report })), {
     words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · link lost",
     isBad: false,
   });
   const air = { wind: [{ speed_mps: 9, from_deg: 180 }], gusts_mps: 2 };
   assert.match(
-    vehicleWords(vehicle("Tern", { told, conditions: air })).words,
+    vehicleWords(vehicle("Tern", { report, conditions: air })).words,
     /· wind 9\u00a0m\/s from 180°, gusts 2\u00a0m\/s ·/,
   );
-  assert.deepEqual(vehicleWords(vehicle("Tern", { told: { ...told, is_crashed: true } })), {
+  assert.deepEqual(vehicleWords(vehicle("Tern", { report: { ...report, is_crashed: true } })), {
     words: "crashed",
     isBad: true,
   });
@@ -95,10 +98,10 @@ test("each of its UAVs says how it does, and what is wrong with it", () => {
     words: "Lost.",
     isBad: true,
   });
-  assert.equal(vehicleWords(vehicle("Tern", { told: null })).words, "starting");
+  assert.equal(vehicleWords(vehicle("Tern", { report: null })).words, "starting");
 });
 
-test("a fault that lasts is told by both clocks, unless they are one", () => {
+test("a fault that lasts is report by both clocks, unless they are one", () => {
   assert.equal(lastsWords(30, 10), "30 s real time = 300 s simulated");
   assert.equal(lastsWords(30, 1), "");
   assert.equal(lastsWords(NaN, 10), "");

@@ -22,7 +22,7 @@ from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
 from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Verdict
+from planning.reachability.reachable_assets import Reachability
 from planning.rules import FlightRules
 
 RULES = AccessRules(access_leg_m=10_000.0, direct_leg_m=5_000.0, on_asset_m=250.0, off_network_factor=2.0, zone_clearance_m=5.0)
@@ -72,8 +72,8 @@ def judged(ground, flights, *, zones=None, bases=(), **more):
     return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES, **more)
 
 
-def verdicts(found):
-    return dict(zip(found.asset.tolist(), [Verdict(verdict) for verdict in found.verdict.tolist()], strict=True))
+def reachabilities(found):
+    return dict(zip(found.asset.tolist(), [Reachability(reachability) for reachability in found.reachability.tolist()], strict=True))
 
 
 def flight(lon, lat=0.0, end=End.OPEN, limit_m=np.inf):
@@ -83,8 +83,9 @@ def flight(lon, lat=0.0, end=End.OPEN, limit_m=np.inf):
 def test_within_range_there_and_beyond_it_with_the_metres_missing():
     """T1 - T2 - T3 - T4, 1,113 m each; the UAV at T1 has 2,500 m: as far as T3, and 840 m too few for T4."""
     found = judged(network([row(4)]), [flight(0.0, limit_m=2_500.0)])
-    assert verdicts(found) == {
-        1: Verdict.REACHABLE, 2: Verdict.REACHABLE, 3: Verdict.REACHABLE, 4: Verdict.BEYOND_RANGE, LINE: Verdict.PARTLY,
+    assert reachabilities(found) == {
+        1: Reachability.REACHABLE, 2: Reachability.REACHABLE, 3: Reachability.REACHABLE, 4: Reachability.BEYOND_RANGE,
+        LINE: Reachability.PARTLY,
     }  # fmt: skip
     assert found.missing_m.tolist() == pytest.approx([0, 0, 0, 3 * SPAN_M - 2_500.0, 0], abs=1.0)
     assert found.flight.tolist() == [0, 0, 0, -1, -1]
@@ -92,7 +93,7 @@ def test_within_range_there_and_beyond_it_with_the_metres_missing():
 
 def test_who_comes_back_reaches_half_as_far():
     found = judged(network([row(4)]), [flight(0.0, end=End.RETURN, limit_m=2_500.0)])
-    assert [number for number, verdict in verdicts(found).items() if verdict == Verdict.REACHABLE] == [1, 2]
+    assert [number for number, reachability in reachabilities(found).items() if reachability == Reachability.REACHABLE] == [1, 2]
 
 
 def test_who_lands_at_the_nearest_base_needs_the_way_to_it():
@@ -100,9 +101,9 @@ def test_who_lands_at_the_nearest_base_needs_the_way_to_it():
     ground = network([row(4)])
     end = row(4)[-1]
     found = judged(ground, [flight(0.0, end=End.ANY_BASE, limit_m=3_400.0)], bases=[LonLat(*end)])
-    assert set(verdicts(found).values()) == {Verdict.REACHABLE}
+    assert set(reachabilities(found).values()) == {Reachability.REACHABLE}
     found = judged(ground, [flight(0.0, end=End.ANY_BASE, limit_m=3_400.0)])
-    assert set(verdicts(found).values()) == {Verdict.CUT_OFF}
+    assert set(reachabilities(found).values()) == {Reachability.CUT_OFF}
 
 
 def test_of_those_that_can_the_one_that_flies_least_is_named():
@@ -114,32 +115,32 @@ def test_a_tower_in_a_zone_and_the_zone_it_is_in():
     """T3 is inside; the network beyond it is reached round the zone by a leg off the line."""
     zones = zone_index((9.0, 9.0, 9.1, 9.1), (0.019, -0.001, 0.021, 0.001))
     found = judged(network([row(5)]), [flight(0.0)], zones=zones)
-    assert verdicts(found)[3] == Verdict.INSIDE_ZONE
+    assert reachabilities(found)[3] == Reachability.INSIDE_ZONE
     assert found.zone.tolist()[:5] == [-1, -1, 1, -1, -1]
-    assert verdicts(found)[LINE] == Verdict.PARTLY
+    assert reachabilities(found)[LINE] == Reachability.PARTLY
 
 
 def test_a_span_that_a_zone_crosses_is_no_more_inspected():
     zones = zone_index((0.004, -0.001, 0.006, 0.001))
     found = judged(network([row(2)]), [flight(0.0), flight(SPAN_DEG)], zones=zones)
-    assert verdicts(found) == {1: Verdict.REACHABLE, 2: Verdict.REACHABLE, LINE: Verdict.INSIDE_ZONE}
+    assert reachabilities(found) == {1: Reachability.REACHABLE, 2: Reachability.REACHABLE, LINE: Reachability.INSIDE_ZONE}
 
 
 def test_a_tower_that_is_too_tall_to_be_flown_over():
     found = judged(network([row(3)], [30.0, 110.0, 30.0]), [flight(0.0)])
-    assert verdicts(found)[2] == Verdict.ABOVE_HEIGHT_LIMIT
+    assert reachabilities(found)[2] == Reachability.ABOVE_HEIGHT_LIMIT
 
 
 def test_a_line_that_stands_alone_is_reached_over_a_leg_of_its_own_or_not_at_all():
     """A second line 8 km north of the first is reached over a leg from it; one 20 km north is cut off."""
     near, far = row(2, lat=0.072), row(2, lat=0.18)
     found = judged(network([row(2), near, far]), [flight(0.0, lat=-0.05)])
-    assert verdicts(found)[3] == Verdict.REACHABLE
-    assert verdicts(found)[5] == Verdict.CUT_OFF
+    assert reachabilities(found)[3] == Reachability.REACHABLE
+    assert reachabilities(found)[5] == Reachability.CUT_OFF
 
 
 def test_without_flights_nothing_is_reached():
-    assert set(verdicts(judged(network([row(2)]), [])).values()) == {Verdict.CUT_OFF}
+    assert set(reachabilities(judged(network([row(2)]), [])).values()) == {Reachability.CUT_OFF}
 
 
 def test_an_asset_knows_where_its_nodes_are():
@@ -178,15 +179,15 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
         ]
         able = [number for number, one in enumerate(flights) if needed_m[number] <= min(one.limit_m, 1e12)]
         place = known[int(graph.node_asset[node])]
-        verdict = Verdict(found.verdict[place])
-        assert (verdict == Verdict.CUT_OFF) == np.isinf(needed_m).all()
+        reachability = Reachability(found.reachability[place])
+        assert (reachability == Reachability.CUT_OFF) == np.isinf(needed_m).all()
         if boxes:  # beside zones the legs from a line that stands alone may be others than a plan's
             continue
         if able:
-            assert verdict == Verdict.REACHABLE
+            assert reachability == Reachability.REACHABLE
             assert needed_m[found.flight[place]] == pytest.approx(min(needed_m[number] for number in able), abs=0.01)
-        elif verdict != Verdict.CUT_OFF:
-            assert verdict == Verdict.BEYOND_RANGE
+        elif reachability != Reachability.CUT_OFF:
+            assert reachability == Reachability.BEYOND_RANGE
             assert found.missing_m[place] == pytest.approx(
                 min(m - one.limit_m for m, one in zip(needed_m, flights, strict=True) if m < np.inf), abs=0.01
             )
@@ -229,14 +230,14 @@ def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
     for place in np.flatnonzero(found.asset < LINE).tolist():
         node = int(np.flatnonzero(graph.node_asset == found.asset[place])[0])
         wanted_wh = needed_wh(graph, zones, one, node, places[1:], conditions)
-        verdict = Verdict(found.verdict[place])
+        reachability = Reachability(found.reachability[place])
         if wanted_wh <= one.usable_wh:
-            assert verdict == Verdict.REACHABLE
+            assert reachability == Reachability.REACHABLE
         elif np.isfinite(wanted_wh):
-            assert verdict == Verdict.BEYOND_ENERGY
+            assert reachability == Reachability.BEYOND_ENERGY
             assert found.missing_wh[place] == pytest.approx(wanted_wh - one.usable_wh, rel=1e-3, abs=0.02)
         else:
-            assert verdict in {Verdict.WIND, Verdict.CUT_OFF}
+            assert reachability in {Reachability.WIND, Reachability.CUT_OFF}
 
 
 def test_against_the_wind_the_battery_does_for_less_and_too_much_of_it_stops_all():
@@ -246,7 +247,7 @@ def test_against_the_wind_the_battery_does_for_less_and_too_much_of_it_stops_all
     calm = judged(ground, [one])
     windy = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 9.0, 90.0),)))
     storm = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 15.0, 90.0),)))
-    done = [int((found.verdict[:9] == Verdict.REACHABLE).sum()) for found in (calm, windy, storm)]
+    done = [int((found.reachability[:9] == Reachability.REACHABLE).sum()) for found in (calm, windy, storm)]
     assert 9 > done[0] > done[1] > done[2] == 0
-    assert Verdict(calm.verdict[8]) == Verdict.BEYOND_ENERGY
-    assert set(storm.verdict[:9].tolist()) == {Verdict.WIND}
+    assert Reachability(calm.reachability[8]) == Reachability.BEYOND_ENERGY
+    assert set(storm.reachability[:9].tolist()) == {Reachability.WIND}

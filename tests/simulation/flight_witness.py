@@ -1,4 +1,4 @@
-"""What a witness would say of flown tracks, by the judges' own plane and hills and the rows of the database: no code of the verdict."""
+"""What a witness would say of flown tracks, by the judges' own plane and hills and the rows of the database: no code of the assessment."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Flights by hand for tests of the verdict: straight lines through given places at given moments.
+"""Flights by hand for tests of the assessment: straight lines through given places at given moments.
 
 Route: north along 10° E from 56.000° N, 60 m up, three waypoints 1 km apart.
 """

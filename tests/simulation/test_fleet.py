@@ -119,7 +119,7 @@ def test_weather_faults_and_pace_change_in_flight_for_one_or_all():
         wait_for(lambda: one.faults.stuck_item == 3)
         assert (other.faults.motor_failed, other.faults.stuck_item) == (1, 3), "the faults before stay"
         before_s, began_s = one.now_s, time.monotonic()
-        fleet.post(change_of('{"pace": 10}'))
+        fleet.post(change_of('{"speed": 10}'))
         wait_for(lambda: one.now_s - before_s > 5.0)
         assert time.monotonic() - began_s < 4.0
         with pytest.raises(InvalidSpeed):
@@ -174,7 +174,7 @@ def test_a_fault_of_the_program_costs_one_uav_and_not_the_batch(caplog, monkeypa
         '{"weather": {"wind": [80, 0]}}', '{"weather": {"gusts_mps": -1}}', '{"faults": {"motor_failed": 7}}',
         '{"faults": {"motor_failed": 1.5}}',
         '{"faults": {"battery_wh_left": -3}}', '{"faults": {"link_lost_for_s": NaN}}',
-        '{"pace": true}',
+        '{"speed": true}',
     ],
 )  # fmt: skip
 def test_orders_that_say_nothing_are_refused(line):
@@ -207,7 +207,7 @@ def test_a_socket_that_is_taken_is_told_and_none_is_kept():
         (["--at", "10,55", "--to", "nowhere"], "HOST:PORT"),
         (["--at", "10,55", "--at", "11,55", "--count", "3"], "--count"),
         (["--at", "10,55", "--first-system", "250", "--count", "2"], "system ids"),
-        (["--at", "10,55", "--pace", "0"], "pace"),
+        (["--at", "10,55", "--speed", "0"], "speed"),
         (["--at", "10,55", "--wind", "80,0"], "wind"),
         (["--at", "10,95"], "stands"),
     ],
@@ -230,8 +230,8 @@ def test_the_command_flies_without_a_database_until_it_is_told_to_stop(tmp_path)
     keys.write_text(json.dumps({"12": KEY.hex()}))
     with Ear() as ear:
         command = [
-            sys.executable, "manage.py", "fly_simulated", "--at", "10.4,55.4", "--count", "2", "--first-system", "11", "--pace", "10",
-            "--flavour", "ardupilot", "--to", f"127.0.0.1:{ear.port}", "--keys", str(keys), "--orders",
+            sys.executable, "manage.py", "fly_simulated", "--at", "10.4,55.4", "--count", "2", "--first-system", "11", "--speed", "10",
+            "--autopilot-type", "ardupilot", "--to", f"127.0.0.1:{ear.port}", "--keys", str(keys), "--orders",
         ]  # fmt: skip
         nowhere = {"DATABASE_URL": "postgis://nobody@127.0.0.1:1/none", "REDIS_URL": "redis://127.0.0.1:1/0"}
         pipe = subprocess.PIPE
@@ -242,7 +242,7 @@ def test_the_command_flies_without_a_database_until_it_is_told_to_stop(tmp_path)
                 reported: dict[int, bool] = {}
                 wait_for(lambda: reported.update({frame.system: frame.is_signed for frame, _ in ear.received()}) or len(reported) == 2)
                 assert reported == {11: False, 12: True}
-                process.stdin.write('{"pace": 0}\n{"weather": {"wind": [5, 90]}}\n{"system": 11, "faults": {"link_lost_for_s": 10000}}\n')
+                process.stdin.write('{"speed": 0}\n{"weather": {"wind": [5, 90]}}\n{"system": 11, "faults": {"link_lost_for_s": 10000}}\n')
                 process.stdin.flush()
                 wait_for(lambda: {frame.system for frame, _ in ear.received()} == {12}, "the lost link")
                 process.send_signal(signal.SIGTERM)

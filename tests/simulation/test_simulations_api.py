@@ -45,7 +45,7 @@ def test_uavs_of_the_pool_say_how_to_connect(settings, client):
     assert client.get(answer["Location"]).json() == shown
     assert (shown["is_simulated"], shown["mission"], shown["state"]) == (True, None, "wanted")
     first, second = shown["vehicles"]
-    assert (second["name"], second["system_id"], second["uav"], second["told"]) == ("Second", 12, None, None)
+    assert (second["name"], second["system_id"], second["uav"], second["report"]) == ("Second", 12, None, None)
     assert (first["connect"]["protocol"], first["connect"]["host"], first["connect"]["port"]) == ("udp", "127.0.0.1", 15000)
     examples = {example["program"]: example["command"] for example in first["connect"]["examples"]}
     assert examples["MAVSDK"] == "udpout://127.0.0.1:15000"

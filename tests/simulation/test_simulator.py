@@ -103,7 +103,7 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
         assert set(mission.targets.values_list("state", flat=True)) == {TargetState.COMPLETE}
         assert TelemetryRecord.objects.filter(uav=uav, is_in_air=True).exists()
         assert set(Alert.objects.filter(mission=mission).values_list("code", flat=True)) <= {"link-lost"}, "ten times as fast is no fault"
-        assert fresh(simulation).pace["steps"] > 0
+        assert fresh(simulation).step_timing["steps"] > 0
         end_simulation(simulation=simulation, actor=mission.author)
         wait_for(lambda: fresh(simulation).state == SimulationState.ENDED, "its end by hand")
     assert not UavLink.objects.get(uav=uav).losses.get("wrong-signature")

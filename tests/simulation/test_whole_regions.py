@@ -69,20 +69,20 @@ def test_a_mission_past_towers_hits_and_misses_nothing(region_file: Any, file_na
     (scenario,) = scenarios(mission, conditions)
     maker = vehicle_maker(plan.stand_ins, scenario, heights_at(ground.dataset_version))
     flown = fly(plan.routes, maker, turnaround_s=600.0, seed=5, on_progress=lambda share: None)
-    verdict = judge(flown, surroundings_of(plan, ground), limits_of_settings())
-    targets = [target for route in verdict.routes for target in route.targets]
+    assessment = judge(flown, surroundings_of(plan, ground), limits_of_settings())
+    targets = [target for route in assessment.routes for target in route.targets]
     print(
         file_name,
         conditions,
         zones,
         "zones",
-        verdict.level,
+        assessment.level,
         len(targets),
-        [(str(finding.level), finding.code, dict(finding.facts)) for finding in verdict.findings],
+        [(str(finding.level), finding.code, dict(finding.facts)) for finding in assessment.findings],
     )
     assert len(targets) >= 3 and zones >= 5
     assert all(stand_in.airframe == "inspector" for stand_in in plan.stand_ins)
     faults = [fault for route in flown for fault in (*waypoints_missed(route), *zones_entered(route), *things_hit(route, hills))]
     assert faults == []
     assert all(target.is_reached for target in targets)
-    assert not {"crashed", "unfinished", "zone-entered", "obstacle", "low"} & {finding.code for finding in verdict.findings}
+    assert not {"crashed", "unfinished", "zone-entered", "obstacle", "low"} & {finding.code for finding in assessment.findings}

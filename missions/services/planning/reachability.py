@@ -16,20 +16,20 @@ from planning.assignment.refusals import groundings
 from planning.energy.path_cost import FlightClass
 from planning.problem import UavStart
 from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Reach, Verdict
+from planning.reachability.reachable_assets import Reach, Reachability
 from planning.request import ROUTE_ENDS, BaseRequest, EndAction, PlanRequest, UavRequest
 from workspace.locale_negotiation import number_text
 
 Box = tuple[float, float, float, float]
 CODES = {
-    Verdict.PARTLY: "partly_reachable",
-    Verdict.BEYOND_RANGE: "beyond_range",
-    Verdict.BEYOND_ENERGY: "beyond_energy",
-    Verdict.WIND: "wind",
-    Verdict.CUT_OFF: "no_path",
-    Verdict.ABOVE_HEIGHT_LIMIT: "above_height_limit",
-    Verdict.INSIDE_ZONE: "inside_zone",
-    Verdict.NO_LANDING: "inside_zone",
+    Reachability.PARTLY: "partly_reachable",
+    Reachability.BEYOND_RANGE: "beyond_range",
+    Reachability.BEYOND_ENERGY: "beyond_energy",
+    Reachability.WIND: "wind",
+    Reachability.CUT_OFF: "no_path",
+    Reachability.ABOVE_HEIGHT_LIMIT: "above_height_limit",
+    Reachability.INSIDE_ZONE: "inside_zone",
+    Reachability.NO_LANDING: "inside_zone",
 }
 NO_UAV = "no_uav"
 
@@ -133,17 +133,17 @@ def _reasons(
     found: Reach, chosen: np.ndarray, zone_names: Sequence[str], *, has_flights: bool, may_charge: bool
 ) -> tuple[np.ndarray, list[dict[str, Any]]]:
     """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
-    verdict, zone = found.verdict[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
+    reachability, zone = found.reachability[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
     missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
-    kinds = len(Verdict)
-    key = verdict + np.where(verdict == Verdict.INSIDE_ZONE, (zone + 1) * kinds, 0)
+    kinds = len(Reachability)
+    key = reachability + np.where(reachability == Reachability.INSIDE_ZONE, (zone + 1) * kinds, 0)
     keys, number, count = np.unique(key, return_inverse=True, return_counts=True)
     code_of, reasons = np.zeros(len(keys), dtype=np.int64), []
     for place, (one, assets) in enumerate(zip(keys.tolist(), count.tolist(), strict=True)):
-        why = Verdict(one % kinds)
-        if why is Verdict.REACHABLE:
+        why = Reachability(one % kinds)
+        if why is Reachability.REACHABLE:
             continue
-        if why is Verdict.CUT_OFF and not has_flights:
+        if why is Reachability.CUT_OFF and not has_flights:
             reasons.append({"code": NO_UAV, "message": _("No UAV can take off."), "count": assets})
         else:
             message = _message(why, one // kinds - 1, missing[number == place], zone_names, may_charge=may_charge)
@@ -152,28 +152,28 @@ def _reasons(
     return code_of[number], reasons
 
 
-def _message(why: Verdict, zone: int, missing: np.ndarray, zone_names: Sequence[str], *, may_charge: bool) -> str:
+def _message(why: Reachability, zone: int, missing: np.ndarray, zone_names: Sequence[str], *, may_charge: bool) -> str:
     flight, access = settings.FLIGHT_RULES, settings.ROUTING_RULES
-    if why is Verdict.PARTLY:
+    if why is Reachability.PARTLY:
         return _("Some spans of the line or railway can be inspected, others cannot.")
-    if why is Verdict.BEYOND_RANGE:
+    if why is Reachability.BEYOND_RANGE:
         words = _("The range of every UAV is too short: by %(least)s at the nearest, by %(most)s at the farthest.")
         return words % {"least": _km(float(missing.min())), "most": _km(float(missing.max()))}
-    if why is Verdict.BEYOND_ENERGY:
+    if why is Reachability.BEYOND_ENERGY:
         if may_charge:
             words = _("One battery gives %(least)s to %(most)s Wh too little: whether charging on the way suffices, a plan tells.")
         else:
             words = _("No battery suffices without charging: %(least)s Wh are missing at the nearest, %(most)s Wh at the farthest.")
         return words % {"least": number_text(np.ceil(missing.min())), "most": number_text(np.ceil(missing.max()))}
-    if why is Verdict.WIND:
+    if why is Reachability.WIND:
         return _("The wind is too strong on every way to it, or back.")
-    if why is Verdict.CUT_OFF:
+    if why is Reachability.CUT_OFF:
         words = _("No way that keeps clear of every zone was found: along the network, or up to %(km)s beside it.")
         return words % {"km": _km(access.access_leg_m)}
-    if why is Verdict.ABOVE_HEIGHT_LIMIT:
+    if why is Reachability.ABOVE_HEIGHT_LIMIT:
         words = _("Too tall: it cannot be flown over with a clearance of %(clearance)s m below %(limit)s m.")
         return words % {"clearance": f"{flight.clearance_m:.0f}", "limit": f"{flight.max_agl_m:.0f}"}
-    if why is Verdict.NO_LANDING:
+    if why is Reachability.NO_LANDING:
         return _("Landing there leads through a no-fly zone.")
     if zone >= 0:
         return _("Inside %(zone)s.") % {"zone": zone_names[zone]}

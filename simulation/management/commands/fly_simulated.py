@@ -15,7 +15,7 @@ from django.core.management.base import BaseCommand, CommandError
 from inspection.geodesy import LonLat
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import FlatGround
-from simulation.vehicle_endpoint.fleet import FASTEST, SLOWEST, Fleet, InvalidSpeed
+from simulation.vehicle_endpoint.fleet import MAX_SPEED, MIN_SPEED, Fleet, InvalidSpeed
 from simulation.vehicle_endpoint.launch import MAX_SYSTEM_ID, Launch, fleet_of, in_a_row
 from simulation.vehicle_endpoint.orders import WrongOrder, change_of, weather_of
 from simulation.vehicle_endpoint.radio import InvalidStationAddress, address_of
@@ -29,11 +29,11 @@ class Command(BaseCommand):
     help = (
         "Fly simulated UAVs that speak MAVLink to a gateway or to a ground station. They stand where --at says and wait to be told.\n\n"
         "  manage.py fly_simulated --at 10.40,55.40 --to 127.0.0.1:14550                  one UAV for QGroundControl or MAVProxy\n"
-        "  manage.py fly_simulated --at 10.40,55.40 --count 5 --first-system 11 --pace 5   five in a row, five times as fast\n\n"
-        "With --orders lines of JSON on the standard input change weather, faults and pace in flight:\n"
+        "  manage.py fly_simulated --at 10.40,55.40 --count 5 --first-system 11 --speed 5   five in a row, five times as fast\n\n"
+        "With --orders lines of JSON on the standard input change weather, faults and speed in flight:\n"
         '  {"system": 11, "weather": {"wind": [8, 270], "gusts_mps": 2, "turbulence_mps": 5, "temperature_c": 15}}\n'
         '  {"faults": {"link_lost_for_s": 20, "gps_lost_for_s": 30, "battery_wh_left": 5, "motor_failed": 2, "stuck_item": 4,\n'
-        '              "clock_offset_s": -3600}, "pace": 2}'
+        '              "clock_offset_s": -3600}, "speed": 2}'
     )
     requires_system_checks: list[str] = []
 
@@ -49,20 +49,24 @@ class Command(BaseCommand):
         parser.add_argument("--listen", metavar="HOST:PORT", help="where the first UAV listens; the others at the ports that follow")
         parser.add_argument("--first-system", type=int, default=1, help="MAVLink system id of the first UAV; the others follow")
         parser.add_argument("--keys", type=Path, help='JSON file {"system id": "64 hexadecimal digits"} of the signing keys')
-        parser.add_argument("--flavour", choices=[flavour.value for flavour in SimulatedAutopilot], default=SimulatedAutopilot.PX4.value)
+        parser.add_argument(
+            "--autopilot-type",
+            choices=[autopilot_type.value for autopilot_type in SimulatedAutopilot],
+            default=SimulatedAutopilot.PX4.value,
+        )
         parser.add_argument("--airframe", choices=sorted(AIRFRAMES), default="iris")
         parser.add_argument("--battery", type=float, default=100.0, metavar="PERCENT")
         parser.add_argument("--wind", default="0,0", metavar="SPEED_MPS,FROM_DEG")
         parser.add_argument("--gusts", type=float, default=0.0, metavar="SIGMA_MPS")
         parser.add_argument("--turbulence", type=float, default=0.0, metavar="MPS", help="wind at 20 ft that makes it")
-        parser.add_argument("--pace", type=float, default=1.0, help=f"simulated seconds a second, {SLOWEST:g} to {FASTEST:g}")
+        parser.add_argument("--speed", type=float, default=1.0, help=f"simulated seconds a second, {MIN_SPEED:g} to {MAX_SPEED:g}")
         parser.add_argument("--seed", type=int, default=0, help="of the first UAV; the others follow")
         parser.add_argument("--seconds", type=float, help="end after so many simulated seconds")
         parser.add_argument("--orders", action="store_true", help="take changes from the standard input; its end ends nothing")
 
     def handle(self, **options: Any) -> None:
         try:
-            fleet = fleet_of(_launches(options), speed=options["pace"])
+            fleet = fleet_of(_launches(options), speed=options["speed"])
         except (InvalidStationAddress, WrongOrder, InvalidSpeed, ValueError) as error:
             raise CommandError(str(error)) from error
         except OSError as error:
@@ -70,7 +74,9 @@ class Command(BaseCommand):
         for number in (signal.SIGTERM, signal.SIGINT):
             signal.signal(number, lambda *_: fleet.end())
         for flying in fleet.uavs:
-            self.stdout.write(json.dumps({"system": flying.system, "port": flying.radio.port, "flavour": flying.autopilot_type.value}))
+            self.stdout.write(
+                json.dumps({"system": flying.system, "port": flying.radio.port, "autopilot_type": flying.autopilot_type.value})
+            )
         self.stdout.flush()
         if options["orders"]:
             threading.Thread(target=self._take_orders, args=(fleet,), daemon=True).start()
@@ -110,7 +116,7 @@ def _launches(options: dict[str, Any]) -> list[Launch]:
             system=first + number,
             home=place,
             airframe=options["airframe"],
-            autopilot_type=SimulatedAutopilot(options["flavour"]),
+            autopilot_type=SimulatedAutopilot(options["autopilot_type"]),
             key=keys.get(first + number),
             seed=options["seed"] + number,
             battery_percent=options["battery"],

@@ -19,7 +19,7 @@ MAX_BYTES = 10_000_000
 class Command(BaseCommand):
     help = (
         "Flies a route in simulation: takes off at the first waypoint's ground, lands after the last, writes track, deviation, energy and "
-        'verdict. ROUTE.json: {"waypoints": [{"position": [lon, lat], "altitude_relative_m": 30}], "speed_mps": 5}.'
+        'assessment. ROUTE.json: {"waypoints": [{"position": [lon, lat], "altitude_relative_m": 30}], "speed_mps": 5}.'
     )
     requires_system_checks: list[str] = []
 
@@ -47,9 +47,9 @@ class Command(BaseCommand):
             options["json"].write_text(json.dumps(written, allow_nan=False))
         except (OSError, InvalidRoute, InvalidConditions, ImpossibleWeather) as error:
             raise CommandError(str(error)) from error
-        verdict = written["verdict"]
-        self.stdout.write(f"{verdict['result']}: {written['duration_s']:.0f} s, {written['energy_wh']:.1f} Wh")
-        for reason in verdict["reasons"]:
+        assessment = written["assessment"]
+        self.stdout.write(f"{assessment['result']}: {written['duration_s']:.0f} s, {written['energy_wh']:.1f} Wh")
+        for reason in assessment["reasons"]:
             self.stdout.write(f"  {reason}")
 
 

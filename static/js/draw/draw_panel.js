@@ -98,7 +98,7 @@ class DrawPanel {
   }
 
   /** Shows what the server found. @param {{ fault: { message: string, position: number[] | null } | null } & Figures} found */
-  verdict({ fault, length_m, area_m2 }) {
+  showCheck({ fault, length_m, area_m2 }) {
     this.#reported = fault && {
       message: `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.`,
       position: fault.position,

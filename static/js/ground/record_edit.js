@@ -13,7 +13,7 @@ import { createDraft } from "./draft.js";
 import { ifMatch } from "./record_view.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { GeometryVerdict } from "../api_types.d.ts" */
+/** @import { GeometryCheckResult } from "../api_types.d.ts" */
 /** @import { EditorState, Shape } from "../draw/types.d.ts" */
 /** @import { MapLibreMap } from "../map/types.d.ts" */
 /** @import { DrawnGeometry } from "../draw/shape.js" */
@@ -261,8 +261,8 @@ export class RecordEdit {
       const kind = this.#kind.checkKind(this.#edit.choice);
       const body = { kind, geometry: geometryOf(shape) ?? undefined, circle: circleOf(shape) };
       try {
-        const { data } = /** @type {Answer<GeometryVerdict>} */ (await post("/geometry-checks", body));
-        if (this.#edit && this.editor.state.shape === shape) this.#panel.verdict(data);
+        const { data } = /** @type {Answer<GeometryCheckResult>} */ (await post("/geometry-checks", body));
+        if (this.#edit && this.editor.state.shape === shape) this.#panel.showCheck(data);
       } catch {
         /* it is checked again when it is saved */
       }

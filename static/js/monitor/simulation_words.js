@@ -19,7 +19,7 @@ export const AIRS = [
 ];
 const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;
-const BEHIND_S = 2; // of real time that was lost, from which on it is told
+const BEHIND_S = 2; // of real time that was lost, from which on it is shown
 
 /**
  * A fault by the name of its button.
@@ -116,20 +116,20 @@ function airWords({ wind: [layer], gusts_mps }) {
 }
 
 /** How one of its UAVs does: { words, isBad }. @param {SimulatedVehicle} vehicle @returns {Told} */
-export function vehicleWords({ state, message, told, conditions }) {
+export function vehicleWords({ state, message, report, conditions }) {
   if (state === "failed") return { words: message, isBad: true };
   if (state === "ended") return { words: t("Ended"), isBad: false };
-  if (state === "wanted" || !told) return { words: t("starting"), isBad: false };
-  if (told.is_crashed) return { words: t("crashed"), isBad: true };
-  const place = told.is_in_air
-    ? t("in the air at {height}", { height: heightText(told.altitude_relative_m) })
+  if (state === "wanted" || !report) return { words: t("starting"), isBad: false };
+  if (report.is_crashed) return { words: t("crashed"), isBad: true };
+  const place = report.is_in_air
+    ? t("in the air at {height}", { height: heightText(report.altitude_relative_m) })
     : t("on the ground");
   return {
     words: [
       place,
-      t("battery {figure}", { figure: percentText(told.battery_percent) }),
+      t("battery {figure}", { figure: percentText(report.battery_percent) }),
       airWords(conditions),
-      told.is_link_lost && t("link lost"),
+      report.is_link_lost && t("link lost"),
     ]
       .filter(Boolean)
       .join(" · "),
@@ -159,7 +159,7 @@ export function stateWords(simulation, canFly) {
   if (simulation.state === "failed") return { words: simulation.message, isBad: true };
   if (simulation.state === "ended")
     return { words: t("The simulation is over: {why}", { why: simulation.message }), isBad: false };
-  const crashed = flown.filter(({ told }) => told?.is_crashed);
+  const crashed = flown.filter(({ report }) => report?.is_crashed);
   const summary = [
     simulation.speed === 1
       ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.")
@@ -171,9 +171,9 @@ export function stateWords(simulation, canFly) {
         ),
     crashed.length > 0 && t("Crashed: {names}.", { names: crashed.map(({ name }) => name).join(", ") }),
     lost.length > 0 && t("Lost with their simulator: {names}.", { names: lost.map(({ name }) => name).join(", ") }),
-    (simulation.pace?.slipped_s ?? 0) > BEHIND_S &&
+    (simulation.step_timing?.slipped_s ?? 0) > BEHIND_S &&
       t("This machine is too slow for this speed: {seconds} s behind.", {
-        seconds: Math.round(simulation.pace?.slipped_s ?? 0),
+        seconds: Math.round(simulation.step_timing?.slipped_s ?? 0),
       }),
   ];
   return { words: summary.filter(Boolean).join(" "), isBad: crashed.length + lost.length > 0 };

@@ -129,7 +129,7 @@ def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_fo
         opened(page, rehearsed)
         page.get_by_role("button", name="Approve", exact=True).click()
         page.get_by_role("dialog").get_by_role("button", name="Approve", exact=True).click()
-        expect(page.locator("#notices")).to_contain_text("The rehearsal failed. Change the plan for what its verdict says")
+        expect(page.locator("#notices")).to_contain_text("The rehearsal failed. Change the plan for what its assessment says")
         picture(page, "rehearsal-refused-approval")
     assert asks(page, f"/missions/{rehearsed}")["state"] == "planned"
 

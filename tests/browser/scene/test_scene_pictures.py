@@ -76,8 +76,8 @@ def rehearsed(page: Page, name: str, uavs: dict[str, list[float]], targets: list
 def reached_s(page: Page, mission: str) -> list[list[float]]:
     """For each UAV the seconds after departure at which it reached its targets in the rehearsal, in the order of time."""
     rehearsal = asks(page, f"/missions/{mission}/rehearsals")["results"][0]["id"]
-    verdict = asks(page, f"/missions/{mission}/rehearsals/{rehearsal}")["runs"][0]["verdict"]
-    return [sorted(target["at_s"] for target in route["targets"] if target["at_s"] is not None) for route in verdict["routes"]]
+    assessment = asks(page, f"/missions/{mission}/rehearsals/{rehearsal}")["runs"][0]["assessment"]
+    return [sorted(target["at_s"] for target in route["targets"] if target["at_s"] is not None) for route in assessment["routes"]]
 
 
 def ends_s(page: Page, mission: str, uav: int = 0) -> float:

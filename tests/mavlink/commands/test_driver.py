@@ -1,4 +1,4 @@
-"""Orders to vehicles of both flavours, and their effect."""
+"""Orders to vehicles of both autopilots, and their effect."""
 
 import math
 

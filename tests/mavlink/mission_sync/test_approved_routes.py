@@ -1,4 +1,4 @@
-"""From an approved route to a vehicle that holds it: every kind of item is taken, and kept, by both flavours."""
+"""From an approved route to a vehicle that holds it: every kind of item is taken, and kept, by both autopilots."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What a flavour changes is no difference; whatever else is otherwise is one, and is named."""
+"""What an autopilot changes is no difference; whatever else is otherwise is one, and is named."""
 
 import math
 from dataclasses import replace

@@ -35,8 +35,8 @@ def test_route_is_flown_from_a_shell_without_database_and_redis(tmp_path: Path) 
     assert done.returncode == 0, done.stderr
     assert done.stdout.startswith("pass: ")
     reported = json.loads(out.read_text())
-    assert set(reported) == {"track", "cross_track_rms_m", "cross_track_max_m", "energy_wh", "duration_s", "verdict"}
-    assert reported["verdict"] == {"result": "pass", "reasons": []}
+    assert set(reported) == {"track", "cross_track_rms_m", "cross_track_max_m", "energy_wh", "duration_s", "assessment"}
+    assert reported["assessment"] == {"result": "pass", "reasons": []}
     assert reported["track"][0][0] == 0.0
     assert all(len(line) == 4 for line in reported["track"])
     assert reported["track"][-1][0] == pytest.approx(reported["duration_s"], abs=0.2)
@@ -110,7 +110,7 @@ def test_file_that_is_no_route_is_refused(tmp_path: Path, content: bytes) -> Non
 
 def test_one_waypoint_is_a_hover_and_a_landing() -> None:
     reported = fly_route(read_route(route((0, 0))), AIRFRAMES["iris"], weather=Weather(), seed=1).as_json()
-    assert reported["verdict"]["result"] == "pass"
+    assert reported["assessment"]["result"] == "pass"
     assert reported["cross_track_max_m"] < 0.2
 
 
@@ -118,15 +118,15 @@ def test_thousands_of_waypoints_are_flown_as_far_as_the_battery_goes() -> None:
     points = [(0.5 * number, 3.0 * (number % 2)) for number in range(4_000)]
     flight = fly_route(read_route(route(*points)), AIRFRAMES["iris"], weather=Weather(), seed=1, battery_percent=16.0)
     reported = flight.as_json()
-    assert reported["verdict"]["result"] == "fail"
-    assert any("Not reached: " in reason and "of 4000" in reason for reason in reported["verdict"]["reasons"])
+    assert reported["assessment"]["result"] == "fail"
+    assert any("Not reached: " in reason and "of 4000" in reason for reason in reported["assessment"]["reasons"])
     assert reported["cross_track_max_m"] < 2.0
 
 
 def test_weak_battery_fails_with_its_reasons() -> None:
     reported = fly_route(read_route(route((0, 0), (150, 0))), AIRFRAMES["iris"], weather=Weather(), seed=1, battery_percent=17.0).as_json()
-    reasons = " ".join(reported["verdict"]["reasons"])
-    assert reported["verdict"]["result"] == "fail"
+    reasons = " ".join(reported["assessment"]["reasons"])
+    assert reported["assessment"]["result"] == "fail"
     assert "Battery low: 15 %" in reasons
     assert "Not reached: waypoint 2 of 2" in reasons
     assert "limit 20 %" in reasons
@@ -134,16 +134,16 @@ def test_weak_battery_fails_with_its_reasons() -> None:
 
 def test_empty_battery_does_not_take_off() -> None:
     reported = fly_route(read_route(route((0, 0), (50, 0))), AIRFRAMES["iris"], weather=Weather(), seed=1, battery_percent=3.0).as_json()
-    assert reported["verdict"]["result"] == "fail"
-    assert "did not take off" in reported["verdict"]["reasons"][0]
+    assert reported["assessment"]["result"] == "fail"
+    assert "did not take off" in reported["assessment"]["reasons"][0]
     assert reported["track"] == []
 
 
 def test_wind_that_nobody_can_fly_fails_and_comes_to_an_end() -> None:
     flight = fly_route(read_route(route((0, 0), (60, 0))), AIRFRAMES["iris"], weather=wind(20.0), seed=1, battery_percent=16.0)
     reported = flight.as_json()
-    assert reported["verdict"]["result"] == "fail"
-    assert any("wind of 20.0 m/s" in reason for reason in reported["verdict"]["reasons"])
+    assert reported["assessment"]["result"] == "fail"
+    assert any("wind of 20.0 m/s" in reason for reason in reported["assessment"]["reasons"])
     json.dumps(reported, allow_nan=False)
 
 

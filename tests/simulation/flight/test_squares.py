@@ -35,7 +35,7 @@ def test_square_of_two_kilometres_is_kept(weather: Weather, most_rms_m: float, m
     route = square(500.0)
     flight = fly_route(route, AIRFRAMES["iris"], weather=weather, seed=seed)
     reported, found = flight.as_json(), judged(flight, route)
-    assert reported["verdict"] == {"result": "pass", "reasons": []}
+    assert reported["assessment"] == {"result": "pass", "reasons": []}
     assert np.sqrt(np.mean(found**2)) < most_rms_m
     assert found.max() < most_m
     assert reported["cross_track_rms_m"] == pytest.approx(np.sqrt(np.mean(found**2)), abs=0.03)
@@ -51,7 +51,7 @@ def test_gusts_from_any_side_are_borne(seed: int) -> None:
     route = square(150.0)
     flight = fly_route(route, AIRFRAMES["iris"], weather=wind(8.0, 18.0 * seed, gusts_mps=2.0), seed=seed)
     reported, touched_down_at = flight.as_json(), flight.flown.touched_down_at
-    assert reported["verdict"]["result"] == "pass"
+    assert reported["assessment"]["result"] == "pass"
     assert reported["cross_track_rms_m"] < 1.0
     assert reported["cross_track_max_m"] < 3.0
     assert touched_down_at is not None
@@ -72,7 +72,7 @@ def test_larger_airframe_flies_fast_in_a_gale() -> None:
     route = RouteFile((HOME, place(150.0, 0.0), place(150.0, 150.0)), (30.0, 40.0, 30.0), 10.0)
     flight = fly_route(route, AIRFRAMES["inspector"], weather=wind(12.0, 300.0, gusts_mps=2.0), seed=5)
     reported = flight.as_json()
-    assert reported["verdict"]["result"] == "pass"
+    assert reported["assessment"]["result"] == "pass"
     assert reported["cross_track_max_m"] < 1.0
 
 

@@ -1,4 +1,4 @@
-"""MAVProxy, unchanged and as it is published, over its standard input: lists, parameters, modes and a flight, with both flavours."""
+"""MAVProxy, unchanged and as it is published, over its standard input: lists, parameters, modes and a flight, with both autopilot types."""
 
 import os
 import re

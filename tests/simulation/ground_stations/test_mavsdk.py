@@ -1,4 +1,4 @@
-"""MAVSDK, unchanged and as it is published, flies simulated UAVs of both flavours."""
+"""MAVSDK, unchanged and as it is published, flies simulated UAVs of both autopilot types."""
 
 import math
 from collections.abc import Iterator
@@ -50,7 +50,7 @@ class Station:
 
 @pytest.fixture(scope="module", params=list(SimulatedAutopilot))
 def station(request) -> Iterator[Station]:
-    """One for all tests of a flavour, in their order: each leaves the UAV on the ground, disarmed."""
+    """One for all tests of an autopilot type, in their order: each leaves the UAV on the ground, disarmed."""
     port = free_port()
     launch = Launch(7, AT, autopilot_type=request.param, ground=FlatGround(GROUND_M), talks_to=[("127.0.0.1", port)])
     with flying([launch], speed=SPEED) as fleet:
@@ -72,7 +72,7 @@ def landed(station: Station) -> None:
 
 
 def raw_items(autopilot_type: SimulatedAutopilot) -> list[RawItem]:
-    """Home first for ArduPilot; figures that both flavours keep."""
+    """Home first for ArduPilot; figures that both autopilot types keep."""
     place = (round(AT.lat * 1e7) + 3_000, round(AT.lon * 1e7))
     home = [(16, 0, 0.0, *place, GROUND_M)] if autopilot_type is SimulatedAutopilot.ARDUPILOT else []
     flown = [(22, 3, 0.0, *place, 15.25), (16, 3, 2.0, place[0] + 123, place[1] - 4_567, 20.5), (21, 3, 0.0, *place, 0.0)]

@@ -34,9 +34,9 @@ TURNAROUND_S = 600.0  # from a landing to the next take-off, which planned times
 
 @dataclass(frozen=True)
 class Rehearsed:
-    """A mission's verdict, and for each UAV that flew what was planned for what was flown, in time and energy."""
+    """A mission's assessment, and for each UAV that flew what was planned for what was flown, in time and energy."""
 
-    verdict: Assessment
+    assessment: Assessment
     time: tuple[float, ...]
     energy: tuple[float, ...]
 
@@ -93,11 +93,11 @@ def rehearse_mission(mission: Mission, seed: int, scenario: str = "calm") -> Reh
     (conditions,) = scenarios(mission, scenario)
     maker = vehicle_maker(plan.stand_ins, conditions, heights_at(ground.dataset_version))
     flown = fly(plan.routes, maker, turnaround_s=TURNAROUND_S, seed=seed, on_progress=_unacknowledged)
-    verdict = judge(flown, surroundings_of(plan, ground), limits_of_settings())
+    assessment = judge(flown, surroundings_of(plan, ground), limits_of_settings())
     return Rehearsed(
-        verdict,
-        tuple(((route.planned_s or 0.0) - TURNAROUND_S * (len(route.endings) - 1)) / route.flown_s for route in verdict.routes),
-        tuple((route.planned_wh or 0.0) / route.used_wh for route in verdict.routes),
+        assessment,
+        tuple(((route.planned_s or 0.0) - TURNAROUND_S * (len(route.endings) - 1)) / route.flown_s for route in assessment.routes),
+        tuple((route.planned_wh or 0.0) / route.used_wh for route in assessment.routes),
     )
 
 

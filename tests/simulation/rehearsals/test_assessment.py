@@ -1,4 +1,4 @@
-"""The verdict against flights whose errors are known by hand."""
+"""The assessment against flights whose errors are known by hand."""
 
 import numpy as np
 import pytest
@@ -12,8 +12,8 @@ from simulation.assessment.stored import assessment_to_json, track_to_json
 from tests.simulation.flown import LIMITS, UP_M, a_route, a_track, around, flown, rows, standing, zones
 
 
-def codes(verdict: Assessment) -> list[tuple[str, str]]:
-    return [(str(finding.level), finding.code) for finding in verdict.findings]
+def codes(assessment: Assessment) -> list[tuple[str, str]]:
+    return [(str(finding.level), finding.code) for finding in assessment.findings]
 
 
 def judged(*routes: AssessedRoute, **more) -> Assessment:
@@ -21,9 +21,9 @@ def judged(*routes: AssessedRoute, **more) -> Assessment:
 
 
 def test_a_flight_as_planned_passes_with_its_figures() -> None:
-    verdict = judged(flown())
-    (route,) = verdict.routes
-    assert verdict.level is Level.PASS and not verdict.findings
+    assessment = judged(flown())
+    (route,) = assessment.routes
+    assert assessment.level is Level.PASS and not assessment.findings
     assert route.targets[0].target == 4 and route.targets[0].is_reached
     assert route.targets[0].closest_m == pytest.approx(0.0, abs=0.3)
     assert route.targets[0].late_s == pytest.approx(0.0, abs=0.5)
@@ -43,24 +43,24 @@ def test_what_is_flown_beside_the_line_is_measured_across_it(off_m: float, level
 
 
 def test_what_is_flown_too_high_is_measured_in_height() -> None:
-    verdict = judged(flown(a_track(rows(high_m=5.0))))
-    assert verdict.routes[0].following.height.max_m == pytest.approx(5.0, abs=0.1)
-    assert codes(verdict) == [("warnings", "height")]
+    assessment = judged(flown(a_track(rows(high_m=5.0))))
+    assert assessment.routes[0].following.height.max_m == pytest.approx(5.0, abs=0.1)
+    assert codes(assessment) == [("warnings", "height")]
 
 
 def test_a_battery_below_its_reserve_fails_the_route_and_its_last_target() -> None:
-    verdict = judged(flown(a_track(rows(left_percent=6.0))))
-    (finding,) = verdict.findings
+    assessment = judged(flown(a_track(rows(left_percent=6.0))))
+    (finding,) = assessment.findings
     assert (finding.code, finding.target, finding.facts["percent"], finding.facts["limit_percent"]) == ("reserve", 4, 6.0, 20.0)
-    assert verdict.routes[0].targets[0].level is Level.FAIL
+    assert assessment.routes[0].targets[0].level is Level.FAIL
 
 
 def test_a_target_that_is_passed_too_far_off_is_missed() -> None:
     far = [(t_s, east_m + 25.0, north_m, up_m, percent) for t_s, east_m, north_m, up_m, percent in rows()]
-    verdict = judged(flown(a_track(far)))
-    assert ("fail", "missed") in codes(verdict)
-    assert not verdict.routes[0].targets[0].is_reached
-    assert verdict.routes[0].targets[0].closest_m == pytest.approx(25.0, abs=0.2)
+    assessment = judged(flown(a_track(far)))
+    assert ("fail", "missed") in codes(assessment)
+    assert not assessment.routes[0].targets[0].is_reached
+    assert assessment.routes[0].targets[0].closest_m == pytest.approx(25.0, abs=0.2)
 
 
 def test_a_target_that_was_not_stayed_at_fails() -> None:
@@ -68,8 +68,8 @@ def test_a_target_that_was_not_stayed_at_fails() -> None:
 
 
 def test_whoever_comes_later_than_uavs_are_kept_apart_in_time_is_warned_of() -> None:
-    verdict = judged(flown(a_track(rows(late_s=75.0), late_s=75.0)))
-    assert ("warnings", "late") in codes(verdict)
+    assessment = judged(flown(a_track(rows(late_s=75.0), late_s=75.0)))
+    assert ("warnings", "late") in codes(assessment)
 
 
 @pytest.mark.parametrize("ending", [TrackEnding.CRASHED, TrackEnding.UNFINISHED, TrackEnding.REFUSED])
@@ -83,20 +83,20 @@ def test_a_flight_that_never_began_fails_with_its_targets() -> None:
 
 
 def test_a_zone_that_is_flown_into_fails() -> None:
-    verdict = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0)))
-    assert codes(verdict) == [("fail", "zone-entered")]
+    assessment = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0)))
+    assert codes(assessment) == [("fail", "zone-entered")]
 
 
 @pytest.mark.parametrize(("lower_m", "expected"), [(75.0, []), (65.0, [("warnings", "zone-near")]), (55.0, [("fail", "zone-entered")])])
 def test_a_zone_above_counts_from_the_flown_height(lower_m: float, expected: list[tuple[str, str]]) -> None:
-    verdict = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0), lower_m=lower_m))
-    assert codes(verdict) == expected
+    assessment = judged(flown(), zones=zones((-50.0, 700.0, 50.0, 800.0), lower_m=lower_m))
+    assert codes(assessment) == expected
 
 
 def test_a_zone_beside_is_measured_across_the_ground() -> None:
-    verdict = judged(flown(), zones=zones((6.0, 700.0, 50.0, 800.0), (40.0, 200.0, 90.0, 300.0)))
-    assert [round(zone.beside_m) for zone in verdict.routes[0].zones] == [6, 40]
-    assert codes(verdict) == [("warnings", "zone-near")]
+    assessment = judged(flown(), zones=zones((6.0, 700.0, 50.0, 800.0), (40.0, 200.0, 90.0, 300.0)))
+    assert [round(zone.beside_m) for zone in assessment.routes[0].zones] == [6, 40]
+    assert codes(assessment) == [("warnings", "zone-near")]
 
 
 def test_a_zone_counts_only_while_it_is_in_force() -> None:
@@ -111,17 +111,17 @@ def test_a_zone_counts_only_while_it_is_in_force() -> None:
 
 @pytest.mark.parametrize(("top_m", "expected"), [(40.0, []), (53.0, [("warnings", "obstacle")]), (57.0, [("fail", "obstacle")])])
 def test_a_wire_that_is_crossed_is_measured_from_above(top_m: float, expected: list[tuple[str, str]]) -> None:
-    verdict = judged(flown(), standing=standing(((-100.0, 500.0), (100.0, 520.0), top_m)))
-    assert codes(verdict) == expected
-    assert verdict.routes[0].obstacle is not None
-    assert verdict.routes[0].obstacle.away_m == pytest.approx(60.0 - top_m, abs=0.1)
+    assessment = judged(flown(), standing=standing(((-100.0, 500.0), (100.0, 520.0), top_m)))
+    assert codes(assessment) == expected
+    assert assessment.routes[0].obstacle is not None
+    assert assessment.routes[0].obstacle.away_m == pytest.approx(60.0 - top_m, abs=0.1)
 
 
 def test_a_tower_that_is_taller_than_the_flight_is_measured_across() -> None:
-    verdict = judged(flown(), standing=standing(((30.0, 500.0), (30.0, 500.0), 90.0)))
-    assert verdict.routes[0].obstacle is not None
-    assert verdict.routes[0].obstacle.away_m == pytest.approx(30.0, abs=0.1)
-    assert not verdict.findings
+    assessment = judged(flown(), standing=standing(((30.0, 500.0), (30.0, 500.0), 90.0)))
+    assert assessment.routes[0].obstacle is not None
+    assert assessment.routes[0].obstacle.away_m == pytest.approx(30.0, abs=0.1)
+    assert not assessment.findings
 
 
 def test_a_wire_beside_and_below_is_as_far_as_in_space() -> None:
@@ -138,18 +138,18 @@ def test_what_stands_beside_the_take_off_is_worth_a_warning_alone() -> None:
 
 @pytest.mark.parametrize(("ground_m", "level"), [(140.0, Level.PASS), (152.0, Level.WARNINGS), (157.0, Level.FAIL)])
 def test_a_hill_under_the_way_is_measured_from_the_flight(ground_m: float, level: Level) -> None:
-    verdict = judged(flown(), ground_amsl_m=lambda positions: np.where(positions[:, 1] > 56.004, ground_m, 100.0))
-    assert verdict.level is level
-    assert verdict.routes[0].lowest is not None and verdict.routes[0].lowest.away_m == pytest.approx(160.0 - ground_m, abs=0.1)
+    assessment = judged(flown(), ground_amsl_m=lambda positions: np.where(positions[:, 1] > 56.004, ground_m, 100.0))
+    assert assessment.level is level
+    assert assessment.routes[0].lowest is not None and assessment.routes[0].lowest.away_m == pytest.approx(160.0 - ground_m, abs=0.1)
 
 
 @pytest.mark.parametrize(("east_m", "expected"), [(40.0, Level.PASS), (20.0, Level.WARNINGS), (6.0, Level.FAIL)])
 def test_two_uavs_at_the_same_time_are_measured_from_each_other(east_m: float, expected: Level) -> None:
     other = flown(uav=1, name="Gull", east_m=east_m)
-    verdict = judged(flown(), other)
-    assert verdict.level is expected
-    assert verdict.closest_approaches[0].away_m == pytest.approx(east_m, abs=0.1)
-    assert {finding.uav for finding in verdict.findings} == ({0, 1} if expected is not Level.PASS else set())
+    assessment = judged(flown(), other)
+    assert assessment.level is expected
+    assert assessment.closest_approaches[0].away_m == pytest.approx(east_m, abs=0.1)
+    assert {finding.uav for finding in assessment.findings} == ({0, 1} if expected is not Level.PASS else set())
 
 
 def test_two_uavs_at_one_place_one_after_the_other_do_not_meet() -> None:

@@ -16,7 +16,7 @@ OPERATORS_CHOICE = "obstacle-column"  # how near to something it takes off: the 
 
 def faults_of(found: Rehearsed) -> list[str]:
     faults = [
-        f"{finding.level} {finding.code} {dict(finding.facts)}" for finding in found.verdict.findings if finding.code != OPERATORS_CHOICE
+        f"{finding.level} {finding.code} {dict(finding.facts)}" for finding in found.assessment.findings if finding.code != OPERATORS_CHOICE
     ]
     for kind, ratios in (("time", found.time), ("energy", found.energy)):
         faults += [f"{kind} planned for flown {ratio:.3f}" for ratio in ratios if abs(ratio - 1.0) > MAX_OFF]

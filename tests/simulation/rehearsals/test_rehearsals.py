@@ -58,9 +58,9 @@ def test_a_planned_mission_of_two_uavs_is_flown_and_judged(here: World, person: 
     rehearsal = rehearsed(mission, person, "calm")
     run = rehearsal.runs.get()
     assert (rehearsal.job.state, rehearsal.level, run.level) == (JobState.DONE, "pass", "pass")
-    assert [route["endings"] for route in run.verdict["routes"]] == [["landed"], ["landed"]]
-    assert all(target["is_reached"] and target["closest_m"] < 2.0 for route in run.verdict["routes"] for target in route["targets"])
-    assert run.verdict["meetings"][0]["beside_m"] == pytest.approx(250.0, abs=10.0)
+    assert [route["endings"] for route in run.assessment["routes"]] == [["landed"], ["landed"]]
+    assert all(target["is_reached"] and target["closest_m"] < 2.0 for route in run.assessment["routes"] for target in route["targets"])
+    assert run.assessment["meetings"][0]["beside_m"] == pytest.approx(250.0, abs=10.0)
     tracks = RehearsalTrack.objects.filter(run=run)
     assert [track.uav for track in tracks] == [0, 1]
     assert all(track.flights[0]["altitude_relative_m"][-1] == pytest.approx(0.0, abs=0.3) for track in tracks)
@@ -79,7 +79,7 @@ def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission,
     mission.mission_uavs.update(performance={"battery_wh": 56.6, "max_airspeed_mps": 11.0})  # an Iris
     Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
     rehearsal = rehearsed(mission, person, "as-planned")
-    findings = rehearsal.runs.get().verdict["findings"]
+    findings = rehearsal.runs.get().assessment["findings"]
     assert rehearsal.level == "fail"
     assert findings[0]["code"] == "wind" and findings[0]["facts"]["wind_mps"] == pytest.approx(14.0)
     assert any(finding["level"] == "fail" for finding in findings[1:])  # and it is seen in what was flown
@@ -90,7 +90,7 @@ def test_wind_that_its_airframe_flies_in_and_the_uav_does_not_fails(mission: Mis
     mission.mission_uavs.update(performance={"mass_kg": 3.8, "battery_wh": 260.0, "max_airspeed_mps": 12.0})
     Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
     rehearsal = rehearsed(mission, person, "as-planned")
-    finding = rehearsal.runs.get().verdict["findings"][0]
+    finding = rehearsal.runs.get().assessment["findings"][0]
     assert (rehearsal.uavs[0]["airframe"], rehearsal.level) == ("inspector", "fail")
     assert (finding["code"], finding["facts"]["limit_mps"]) == ("wind", 12.0)
 
@@ -100,7 +100,7 @@ def test_a_battery_that_is_too_small_fails_with_its_reason(here: World, person: 
     mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
     mission.mission_uavs.update(performance={"battery_wh": 10.5})
     rehearsal = rehearsed(mission, person, "calm")
-    findings = {finding["code"]: finding for finding in rehearsal.runs.get().verdict["findings"]}
+    findings = {finding["code"]: finding for finding in rehearsal.runs.get().assessment["findings"]}
     assert rehearsal.level == "fail"
     assert rehearsal.uavs[0]["battery_wh"] == 10.5
     assert findings["reserve"]["facts"]["percent"] < 20.0
@@ -112,7 +112,7 @@ def test_a_route_that_ends_in_hovering_ends_there(here: World, person: User) -> 
     )
     mission = plan_mission(mission=draft, actor=person)
     rehearsal = rehearsed(mission, person, "calm")
-    assert rehearsal.runs.get().verdict["routes"][0]["endings"] == ["hovering"]
+    assert rehearsal.runs.get().assessment["routes"][0]["endings"] == ["hovering"]
     assert rehearsal.level == "pass"
 
 
@@ -191,7 +191,7 @@ def test_what_was_flown_alike_lately_is_taken_over_and_not_flown_again(mission: 
         again = rehearsed(mission, person, "calm")
     run = again.runs.get()
     assert (again.job.state, again.level) == (JobState.DONE, "pass")
-    assert (run.verdict, run.finished_at) == (first.verdict, first.finished_at)
+    assert (run.assessment, run.finished_at) == (first.assessment, first.finished_at)
     assert run.tracks.get().flights == first.tracks.get().flights
 
 
@@ -220,10 +220,10 @@ class Flown(Exception):
 def test_a_worker_that_takes_over_flies_only_what_is_left(mission: Mission, person: User) -> None:
     rehearsal = asked(mission, person, "calm", "as-planned")
     kept = {"level": "pass", "findings": [], "routes": [], "meetings": []}
-    rehearsal.runs.filter(sequence=0).update(level="pass", verdict=kept, finished_at=timezone.now())
+    rehearsal.runs.filter(sequence=0).update(level="pass", assessment=kept, finished_at=timezone.now())
     rehearse_mission(str(rehearsal.job_id))
     assert Rehearsal.objects.get().level == "pass"
-    assert rehearsal.runs.get(sequence=0).verdict == kept
+    assert rehearsal.runs.get(sequence=0).assessment == kept
     assert list(RehearsalTrack.objects.values_list("run__sequence", flat=True)) == [1]
 
 
@@ -319,6 +319,6 @@ def test_a_route_that_begins_in_the_air_says_that_its_rehearsal_took_off(mission
     with mock.patch("simulation.services.rehearsals.plan_to_fly", return_value=begun):
         reported = rehearsed(mission, person, "calm")
     assert reported.level == "warnings"
-    (finding,) = reported.runs.get().verdict["findings"]
+    (finding,) = reported.runs.get().assessment["findings"]
     assert (finding["level"], finding["code"]) == ("warnings", "begun-in-air")
     assert "took off by itself first" in reason_of(finding, {})

@@ -97,13 +97,13 @@ def test_the_verdict_says_in_words_by_route_and_target_why(mission: Mission, per
     mission.mission_uavs.update(performance={"battery_wh": 11.1})
     rehearsal = rehearsed(mission, person, "calm")
     body = client_of(person).get(f"/api/v1/{path(mission)}/{rehearsal.pk}").json()
-    verdict = body["runs"][0]["verdict"]
-    (target,) = verdict["routes"][0]["targets"]
-    percent = round(verdict["routes"][0]["energy"][0]["left_percent"])
+    assessment = body["runs"][0]["assessment"]
+    (target,) = assessment["routes"][0]["targets"]
+    percent = round(assessment["routes"][0]["energy"][0]["left_percent"])
     assert body["level"] == target["level"] == "fail"
     assert target["reasons"] == [f"{percent} % battery at return, limit 20 %"]
-    assert f"{percent} % battery at return, limit 20 %" in verdict["findings"][0]["message"]
-    assert verdict["findings"][0]["message"].startswith("target 1 ")
+    assert f"{percent} % battery at return, limit 20 %" in assessment["findings"][0]["message"]
+    assert assessment["findings"][0]["message"].startswith("target 1 ")
     assert body["uavs"][0]["words"] == "Tern: the simulated Iris, the nearest by mass and endurance, with its own battery of 11 Wh"
     limit = next(one for one in body["limits"] if one["name"] == "obstacle_fail_m")
     assert (limit["value"], limit["source"]) == (5.0, "arms of a tower beside its middle")

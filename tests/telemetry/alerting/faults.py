@@ -58,18 +58,18 @@ def link_lost(flight: TrueFlight, random: np.random.Generator) -> Fault:
 
 def off_route(flight: TrueFlight, random: np.random.Generator) -> Fault:
     begins = _begin(flight, random)
-    side, pace = random.choice([-1, 1]), float(random.uniform(2, 8))
+    side, speed_mps = random.choice([-1, 1]), float(random.uniform(2, 8))
     east, north = _across(flight, begins)
     far_m = float(random.uniform(45, 90))
 
     def truth(state: State) -> State:
         if state.seconds < begins:
             return state
-        off_m = min(far_m, pace * (state.seconds - begins))
+        off_m = min(far_m, speed_mps * (state.seconds - begins))
         moved = flight.states[min(int(state.seconds), begins + 10)]
         return replace(moved, seconds=state.seconds, east=moved.east + side * east * off_m, north=moved.north + side * north * off_m)
 
-    due_s = begins + math.ceil((LIMITS.off_route_m + 8.0) / pace)
+    due_s = begins + math.ceil((LIMITS.off_route_m + 8.0) / speed_mps)
     return Fault("off the route", begins, [("off-route", ANY_LEVEL, due_s)], truth=truth, lasts_s=30)
 
 
@@ -179,14 +179,14 @@ def mode_changed(flight: TrueFlight, random: np.random.Generator) -> Fault:
     begins = _begin(flight, random)
     mode = str(random.choice(["RTL", "LAND", "POSCTL", "LOITER", "STABILIZE", "GUIDED"]))
     stops = _stops(flight, begins)
-    pace = float(random.uniform(3, 10))
+    speed_mps = float(random.uniform(3, 10))
     here = flight.states[begins]
     home_m = math.hypot(here.east, here.north)
 
     def truth(state: State) -> State:
         if state.seconds < begins or mode in ("LAND", "LOITER"):
             return stops(state)
-        gone = min(1.0, pace * (state.seconds - begins) / max(home_m, 1.0))
+        gone = min(1.0, speed_mps * (state.seconds - begins) / max(home_m, 1.0))
         return replace(here, seconds=state.seconds, east=here.east * (1 - gone), north=here.north * (1 - gone), height_m=here.height_m + 10)
 
     levels = (CRITICAL,) if mode in ("RTL", "LAND") else (WARNING,)

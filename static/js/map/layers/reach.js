@@ -64,12 +64,12 @@ function layers() {
 const stated = new WeakMap(); // map → Set of "layer id" that have a state
 
 /**
- * verdictOf(id): "yes", "partly", "no" or "". Called again for what is loaded later.
+ * reachabilityOf(id): "yes", "partly", "no" or "". Called again for what is loaded later.
  *
  * @param {MapLibreMap} map
- * @param {(id: number) => string} verdictOf
+ * @param {(id: number) => string} reachabilityOf
  */
-export function update(map, verdictOf) {
+export function update(map, reachabilityOf) {
   if (!map.getLayer("reach-lines")) {
     const before = map.getLayer("routes-casing") ? "routes-casing" : undefined;
     for (const layer of layers()) map.addLayer(layer, before);
@@ -83,7 +83,7 @@ export function update(map, verdictOf) {
       const key = `${sourceLayer} ${id}`;
       if (known.has(key)) continue;
       known.add(key);
-      map.setFeatureState({ source: TILES, sourceLayer, id }, { reach: CODE[verdictOf(id)] ?? 0 });
+      map.setFeatureState({ source: TILES, sourceLayer, id }, { reach: CODE[reachabilityOf(id)] ?? 0 });
     }
   }
 }

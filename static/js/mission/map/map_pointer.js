@@ -78,8 +78,8 @@ export function mountMapPointer(context) {
   function clickThing(thing, place, point) {
     const isPicked = canPlan && thing.kind !== "zone";
     if (isPicked) picking.pick(thing, place, point);
-    const verdict = context.reach()?.verdict(thing.id);
-    if (!isPicked || verdict === "no" || verdict === "partly")
+    const reachability = context.reach()?.reachability(thing.id);
+    if (!isPicked || reachability === "no" || reachability === "partly")
       tip(keyOf(thing), point, tipTextOf(thing, place), { soon: true });
   }
 

@@ -8,7 +8,7 @@ import { h, icon, setChildren, svg } from "../../dom.js";
 import * as layer from "../../map/layers/reach.js";
 import { t } from "../../text.js";
 import { numberText } from "../../units.js";
-import { questionOf, reachText, verdictOf } from "./reachable.js";
+import { questionOf, reachabilityOf, reachText } from "./reachable.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Reachability } from "../../api_types.d.ts" */
@@ -58,7 +58,7 @@ const LEGEND = [
 /** @typedef {{ answer: Reachability, uavs: PickedUav[] }} Answered uavs: as they were asked about */
 
 /**
- * Returns { entry: for the layers menu, textOf(id), verdict(id), recolour(), close(): whether it was on }.
+ * Returns { entry: for the layers menu, textOf(id), reachability(id), recolour(), close(): whether it was on }.
  *
  * @param {MapLibreMap} map
  * @param {HTMLElement} frame
@@ -77,7 +77,7 @@ export function mountReachLayer(map, frame, store) {
 
   function draw() {
     const { answer } = answered ?? {};
-    if (isOn && answer) layer.update(map, (id) => verdictOf(answer, id));
+    if (isOn && answer) layer.update(map, (id) => reachabilityOf(answer, id));
   }
 
   function clear() {
@@ -142,7 +142,7 @@ export function mountReachLayer(map, frame, store) {
     /** @param {number} id */
     textOf: (id) => (isOn && answered ? reachText(answered.answer, id, answered.uavs) : ""),
     /** @param {number} id */
-    verdict: (id) => (isOn && answered ? verdictOf(answered.answer, id) : ""),
+    reachability: (id) => (isOn && answered ? reachabilityOf(answered.answer, id) : ""),
     recolour() {
       if (isOn) layer.recolour(map);
     },

@@ -34,7 +34,7 @@ function placeOf(ids, id) {
 }
 
 /** @param {Reachability} answer @param {number} id */
-export function verdictOf({ assets, reasons }, id) {
+export function reachabilityOf({ assets, reasons }, id) {
   const place = placeOf(assets.ids, id);
   if (place < 0) return "";
   const code = assets.code[place];

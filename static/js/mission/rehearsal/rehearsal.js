@@ -3,7 +3,7 @@
 import { t, tn } from "../../text.js";
 import { durationText, energyText, heightText, percentText } from "../../units.js";
 
-/** @import { Rehearsal, RehearsalConditions, RehearsalDetail, RehearsalLimit, RehearsedRoute, RouteTrack, Verdict, VerdictLevel } from "../../api_types.d.ts" */
+/** @import { Rehearsal, RehearsalConditions, RehearsalDetail, RehearsalLimit, RehearsedRoute, RouteTrack, Assessment, AssessmentLevel } from "../../api_types.d.ts" */
 
 /** @type {RehearsalConditions["code"][]} */
 export const CONDITIONS = ["calm", "as-planned", "strong-wind", "weak-battery"];
@@ -15,9 +15,9 @@ export const conditionWords = (code) =>
     "strong-wind": t("Strong wind"),
     "weak-battery": t("Weak battery"),
   })[code];
-/** @type {Record<VerdictLevel, string>} */
+/** @type {Record<AssessmentLevel, string>} */
 export const LEVELS = { pass: "circle-check", warnings: "triangle-alert", fail: "circle-x" };
-/** @param {VerdictLevel | "" | null | undefined} level */
+/** @param {AssessmentLevel | "" | null | undefined} level */
 export const levelWords = (level) =>
   level ? { pass: t("Pass"), warnings: t("Pass with warnings"), fail: t("Fail") }[level] : t("Not flown");
 
@@ -36,13 +36,13 @@ export function sentenceOf(detail) {
   if (detail.state === "cancelled") return t("Stopped before it was done.");
   if (detail.state === "failed") return detail.error?.message ?? t("It could not be flown.");
   if (!detail.level) return t("It has not been flown yet.");
-  /** @param {VerdictLevel} level */
+  /** @param {AssessmentLevel} level */
   const of = (level) => detail.runs.filter((run) => run.level === level);
   if (detail.level === "pass") return t("It passes: {conditions}.", { conditions: namesOf(of("pass")) });
   if (detail.level === "warnings")
     return t("It passes with warnings: {conditions}.", { conditions: namesOf(of("warnings")) });
   const failing = of("fail");
-  const targets = failing.flatMap(({ verdict }) => (verdict?.routes ?? []).flatMap((route) => route.targets));
+  const targets = failing.flatMap(({ assessment }) => (assessment?.routes ?? []).flatMap((route) => route.targets));
   const failed = new Set(targets.filter(({ level }) => level === "fail").map(({ target }) => target));
   const all = new Set(targets.map(({ target }) => target)).size;
   const conditions = namesOf(failing);
@@ -115,11 +115,11 @@ export function figuresOf(route, limits) {
 /**
  * The nearest that the route's UAV came to another one in the air: { away_m, other } or null.
  *
- * @param {Verdict} verdict
+ * @param {Assessment} assessment
  * @param {number} uav
  */
-export function nearestOther(verdict, uav) {
-  const met = verdict.meetings
+export function nearestOther(assessment, uav) {
+  const met = assessment.meetings
     .filter(({ uavs }) => uavs.includes(uav))
     .map(({ uavs, beside_m, height_m }) => ({
       away_m: Math.hypot(beside_m, height_m),

@@ -9,7 +9,7 @@ import { t } from "../../text.js";
 import { isRunning } from "./rehearsal.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Rehearsal, RehearsalDetail, RehearsalInputRequest, RehearsalPage, RehearsalRunWithVerdict, RehearsalTrack } from "../../api_types.d.ts" */
+/** @import { Rehearsal, RehearsalDetail, RehearsalInputRequest, RehearsalPage, RehearsalRunWithAssessment, RehearsalTrack } from "../../api_types.d.ts" */
 /** @import { MissionStore, RehearsalState } from "../types.d.ts" */
 
 /** @type {RehearsalState} */
@@ -17,7 +17,7 @@ export const NOTHING = { list: null, detail: null, run: 0, track: null, running:
 
 const LEVELS = ["fail", "warnings", "pass"];
 
-/** The worst run that was flown comes first, then in order. @param {RehearsalRunWithVerdict[]} runs */
+/** The worst run that was flown comes first, then in order. @param {RehearsalRunWithAssessment[]} runs */
 function worstOf(runs) {
   const flown = runs.filter(({ level }) => level);
   flown.sort((a, b) => LEVELS.indexOf(a.level) - LEVELS.indexOf(b.level) || a.sequence - b.sequence);

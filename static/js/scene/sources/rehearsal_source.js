@@ -3,7 +3,7 @@
 import { completed, firstOf, lastOf, MEASURED } from "./pieces.js";
 import { NO_DATE_MS, spanOf, targetsOf, windAtHeight } from "./plan_source.js";
 
-/** @import { Mission, RehearsalDetail, RehearsalTrack, TrackFlight, Verdict } from "../../api_types.d.ts" */
+/** @import { Mission, RehearsalDetail, RehearsalTrack, TrackFlight, Assessment } from "../../api_types.d.ts" */
 /** @import { ReplayEvent } from "../../record/timeline.js" */
 /** @import { FlightRoute, FlightSource } from "../types.d.ts" */
 
@@ -60,7 +60,7 @@ export function rehearsalSource({ detail, track, mission }) {
     colours: mission.colours,
     span: spanOf(routes),
     targets: targetsOf(routes, mission.targets),
-    events: eventsOfRun(run.verdict, routes, departs_ms),
+    events: eventsOfRun(run.assessment, routes, departs_ms),
     windAt: (_at_ms, height_m) => windAtHeight(run.conditions.wind ?? [], height_m),
   };
 }
@@ -68,11 +68,11 @@ export function rehearsalSource({ detail, track, mission }) {
 /**
  * Take-offs, targets and landings of a run, as the record page has them.
  *
- * @param {Verdict | null | undefined} verdict
+ * @param {Assessment | null | undefined} assessment
  * @param {readonly FlightRoute[]} routes
  * @param {number} departs_ms
  */
-export function eventsOfRun(verdict, routes, departs_ms) {
+export function eventsOfRun(assessment, routes, departs_ms) {
   /** @type {ReplayEvent[]} */
   const events = routes.flatMap(({ place, pieces }) =>
     pieces.flatMap((piece) => [
@@ -80,7 +80,7 @@ export function eventsOfRun(verdict, routes, departs_ms) {
       { at_ms: lastOf(piece).at_ms, kind: "landing", place },
     ]),
   );
-  for (const { uav: place, targets } of verdict?.routes ?? [])
+  for (const { uav: place, targets } of assessment?.routes ?? [])
     for (const { at_s, target } of targets)
       if (at_s !== null) events.push({ at_ms: departs_ms + at_s * 1_000, kind: "target", place, target });
   return events.sort((a, b) => a.at_ms - b.at_ms);

@@ -157,10 +157,10 @@ def test_a_geopackage_without_system_is_refused_or_read_in_the_one_that_the_user
     ],
     ids=lambda shape: shape.geom_type,
 )
-@pytest.mark.parametrize("flavour", ["iso", "extended"])
+@pytest.mark.parametrize("flavor", ["iso", "extended"])
 @pytest.mark.parametrize("byte_order", [0, 1])
-def test_well_known_binary_of_each_kind_and_flavour(tmp_path: Path, shape: Any, flavour: str, byte_order: int) -> None:
-    wkb = shapely.to_wkb(shape, flavor=flavour, byte_order=byte_order)
+def test_well_known_binary_of_each_kind_and_flavor(tmp_path: Path, shape: Any, flavor: str, byte_order: int) -> None:
+    wkb = shapely.to_wkb(shape, flavor=flavor, byte_order=byte_order)
     read = rows_of(geopackage(tmp_path / "a.gpkg", [("A", gpkg_blob(wkb))]))[0].geometry
     assert read.equals(shapely.force_2d(shape))
 

@@ -1,12 +1,12 @@
-/** The panel of rehearsals: conditions, progress, and the verdict by route and by target. Everything in it is simulated, and says so. */
+/** The panel of rehearsals: conditions, progress, and the assessment by route and by target. Everything in it is simulated, and says so. */
 
 import { byId, h, refill } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { percentText, whenText } from "../../../units.js";
 import { isPlanCurrent, isUnsaved } from "../../plan_view.js";
 import { isRunning, levelWords } from "../../rehearsal/rehearsal.js";
+import { createAssessment } from "./assessment.js";
 import { mountForm } from "./form.js";
-import { createVerdict } from "./verdict.js";
 
 /** @import { Rehearsal, RehearsalDetail } from "../../../api_types.d.ts" */
 /** @import { Binding } from "../../../page/keyboard.js" */
@@ -38,7 +38,7 @@ export function whyNotRehearsed(state) {
 export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isStage, seeInSpace }) {
   const section = byId("rehearsal");
   const earlier = byId("rehearsal-list", HTMLSelectElement);
-  const verdict = createVerdict(store, rehearsing, { canRehearse, seeInSpace });
+  const assessment = createAssessment(store, rehearsing, { canRehearse, seeInSpace });
   const form = canRehearse ? mountForm({ onStart: start, onChange: () => draw(store.state) }) : null;
   if (form) place("cancel").addEventListener("click", () => void rehearsing.cancel());
   earlier.addEventListener("change", () => void rehearsing.show(earlier.value));
@@ -60,9 +60,9 @@ export function mountRehearsal(store, rehearsing, { canRehearse, isFrozen, isSta
     place("fault").textContent = rehearsal.fault;
     drawEarlier(earlier, rehearsal.list ?? [], rehearsal.detail);
     const isKnown = Boolean(rehearsal.detail?.runs);
-    place("verdict").hidden = !isKnown;
+    place("assessment").hidden = !isKnown;
     place("empty").hidden = isKnown || rehearsal.list === null || rehearsal.list.some(isRunning);
-    verdict.draw(rehearsal, mission?.revision);
+    assessment.draw(rehearsal, mission?.revision);
   }
 
   store.listen(

@@ -8,18 +8,18 @@ import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../r
 import { drawCharts } from "../../rehearsal/rehearsal_charts.js";
 
 /**
- * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithVerdict, RehearsalTrack, RehearsedRoute, RehearsedTarget,
- *   Verdict, VerdictLevel } from "../../../api_types.d.ts"
+ * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithAssessment, RehearsalTrack, RehearsedRoute, RehearsedTarget,
+ *   Assessment, AssessmentLevel } from "../../../api_types.d.ts"
  */
 /** @import { Child } from "../../../dom.js" */
 /** @import { MissionStore, RehearsalState } from "../../types.d.ts" */
 /** @import { Rehearsing } from "./rehearsal.js" */
 
-/** @typedef {{ canRehearse: boolean, seeInSpace: () => unknown }} VerdictHow */
+/** @typedef {{ canRehearse: boolean, seeInSpace: () => unknown }} AssessmentHow */
 
-/** @param {MissionStore} store @param {Rehearsing} rehearsing @param {VerdictHow} how */
-export function createVerdict(store, rehearsing, { canRehearse, seeInSpace }) {
-  const place = byId("rehearsal-verdict");
+/** @param {MissionStore} store @param {Rehearsing} rehearsing @param {AssessmentHow} how */
+export function createAssessment(store, rehearsing, { canRehearse, seeInSpace }) {
+  const place = byId("rehearsal-assessment");
   /** @type {number | null} */
   let chosenRoute = null;
 
@@ -69,7 +69,7 @@ export function createVerdict(store, rehearsing, { canRehearse, seeInSpace }) {
       ageNotice(detail),
       detail.runs.length > 1 && runButtons(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
       run?.is_reused && reusedNote(run, canRehearse && !detail.is_outdated && againButton(detail)),
-      run?.verdict && [
+      run?.assessment && [
         h("p", { class: "rehearsal-air" }, airWords(run.conditions)),
         h(
           "button",
@@ -77,7 +77,7 @@ export function createVerdict(store, rehearsing, { canRehearse, seeInSpace }) {
           icon("move-3d", "small"),
           t("See it in 3D"),
         ),
-        routesOf(run.verdict, detail, track, { open: chosenRoute ?? worstRoute(run.verdict), choose }),
+        routesOf(run.assessment, detail, track, { open: chosenRoute ?? worstRoute(run.assessment), choose }),
       ],
       limitsOf(detail),
     ];
@@ -136,7 +136,7 @@ const runButtons = ({ runs }, shown, choose) =>
     ),
   );
 
-/** @param {RehearsalRunWithVerdict} run @param {Child} again */
+/** @param {RehearsalRunWithAssessment} run @param {Child} again */
 const reusedNote = (run, again) =>
   h(
     "p",
@@ -165,13 +165,13 @@ const limitsOf = ({ uavs, limits }) =>
   );
 
 /**
- * @param {Verdict} verdict
+ * @param {Assessment} assessment
  * @param {RehearsalDetail} detail
  * @param {RehearsalTrack | null} track
  * @param {{ open: number | undefined, choose: (uav: number) => void }} chosen
  */
-const routesOf = (verdict, { limits }, track, { open, choose }) =>
-  verdict.routes.map((route) => {
+const routesOf = (assessment, { limits }, track, { open, choose }) =>
+  assessment.routes.map((route) => {
     const flown = track?.routes.find(({ uav }) => uav === route.uav);
     const element = h(
       "details",
@@ -190,7 +190,7 @@ const routesOf = (verdict, { limits }, track, { open, choose }) =>
           { class: "rehearsal-reasons" },
           route.reasons.map((words) => h("li", {}, words)),
         ),
-      figuresTable(route, limits, verdict),
+      figuresTable(route, limits, assessment),
       flown && drawCharts(flown, route.reserve_percent),
       h("h4", {}, t("Targets")),
       h("ol", { class: "rehearsal-targets" }, route.targets.map(targetRow)),
@@ -201,9 +201,9 @@ const routesOf = (verdict, { limits }, track, { open, choose }) =>
     return element;
   });
 
-/** @param {RehearsedRoute} route @param {RehearsalDetail["limits"]} limits @param {Verdict} verdict */
-function figuresTable(route, limits, verdict) {
-  const other = nearestOther(verdict, route.uav);
+/** @param {RehearsedRoute} route @param {RehearsalDetail["limits"]} limits @param {Assessment} assessment */
+function figuresTable(route, limits, assessment) {
+  const other = nearestOther(assessment, route.uav);
   const rows = [
     ...figuresOf(route, limits).map(({ words, flown, beside }) => [words, flown, beside]),
     ...(other?.other === undefined
@@ -247,10 +247,10 @@ function targetRow({ target, label, level, closest_m, is_reached, battery_percen
   );
 }
 
-/** @param {VerdictLevel | ""} level */
+/** @param {AssessmentLevel | ""} level */
 const iconOf = (level) => (level ? LEVELS[level] : "circle-dashed");
 
-/** @param {VerdictLevel} level */
+/** @param {AssessmentLevel} level */
 const levelMark = (level) =>
   h("span", { class: `rehearsal-level ${level || "open"}` }, icon(iconOf(level), "small"), levelWords(level));
 
@@ -258,7 +258,7 @@ const levelMark = (level) =>
 const askedAgain = ({ code, name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent }) =>
   code === "own" ? { name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent } : code;
 
-/** @param {Verdict} verdict */
+/** @param {Assessment} assessment */
 const worstRoute = ({ routes }) =>
   (routes.find(({ level }) => level === "fail") ?? routes.find(({ level }) => level === "warnings") ?? routes.at(0))
     ?.uav;
