@@ -53,7 +53,7 @@ def main(count: int) -> None:
         spent_s, queries = [], 0
         for second in range(WARM + SECONDS):
             now = begun + timedelta(seconds=second)
-            UavLink.objects.update(heard_at=now)
+            UavLink.objects.update(last_message_at=now)
             watched = [_watched(uav, number, mission, approval, waypoints, second, now) for number, uav in enumerate(uavs)]
             with CaptureQueriesContext(connection) as seen:
                 before_s, cpu_s = time.perf_counter(), _cpu_s()

@@ -34,7 +34,7 @@ class MissionItem:
 
 @dataclass(frozen=True)
 class FlightLoad:
-    """All that one flight of one UAV is flown from. The first mission item is flown: home, where an autopilot wants it, is not among them."""
+    """All that one flight of one UAV is flown from. Home, where an autopilot wants it, is not among the mission items."""
 
     mission: tuple[MissionItem, ...]
     fence: tuple[MissionItem, ...] = ()

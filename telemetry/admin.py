@@ -13,11 +13,21 @@ class UnknownVehicleAdmin(ReadOnlyAdmin):
 
     organisation_path = "uav__organisation"
 
-    list_display = ["mavlink_system_id", "autopilot", "vehicle_type", "address", "is_signed", "state", "heard_at", "uav", "settled_by"]
+    list_display = [
+        "mavlink_system_id",
+        "autopilot",
+        "vehicle_type",
+        "address",
+        "is_signed",
+        "state",
+        "last_message_at",
+        "uav",
+        "settled_by",
+    ]
     list_filter = ["state", "autopilot", "is_signed"]
     list_select_related = ["uav", "settled_by"]
     search_fields = ["mavlink_system_id", "address", "uav__name"]
-    date_hierarchy = "heard_at"
+    date_hierarchy = "last_message_at"
 
     def own_rows(self, organisation_id: int) -> Q:
         is_unsettled = Q(uav=None) & (Q(settled_by=None) | Q(settled_by__organisation=organisation_id))

@@ -124,13 +124,13 @@ def _steady_rate(points: list[Point]) -> float | None:
     if any(later.boot_s < earlier.boot_s for earlier, later in pairwise(points)):
         return None
     half = len(points) // 2
-    first, second, whole = _pace(points[:half]), _pace(points[half:]), _pace(points)
+    first, second, whole = _rate(points[:half]), _rate(points[half:]), _rate(points)
     if whole <= 0 or abs(first - second) > STEADY * max(first, second):
         return None
     return 1.0 if abs(whole - 1.0) <= REAL_TIME else whole
 
 
-def _pace(points: list[Point]) -> float:
+def _rate(points: list[Point]) -> float:
     """The median slope of pairs that lie half the points apart: single late ones do not matter."""
     half = len(points) // 2
     pairs = zip(points, points[half:], strict=False)

@@ -2519,7 +2519,7 @@ export interface components {
         LiveLink: {
             kind: components["schemas"]["LinkKind"];
             /** Format: date-time */
-            heard_at: string | null;
+            last_message_at: string | null;
             mode: string;
             is_armed: boolean | null;
             is_in_air: boolean | null;
@@ -6661,14 +6661,14 @@ export interface components {
              * Format: date-time
              * @description when anything was last received, by the server's clock
              */
-            heard_at: string | null;
+            last_message_at: string | null;
             /**
              * @description the door by which it was
              *
              *     * `mavlink` - MAVLink
              *     * `http` - Companion computer over HTTP
              */
-            heard_by: (components["schemas"]["LinkKind"] | components["schemas"]["NullEnum"]) | null;
+            last_message_link: (components["schemas"]["LinkKind"] | components["schemas"]["NullEnum"]) | null;
             address: string;
             autopilot: string;
             firmware: string;
@@ -7249,9 +7249,9 @@ export interface components {
             position: number[] | null;
             state: components["schemas"]["UnknownVehicleStateEnum"];
             /** Format: date-time */
-            first_heard_at: string;
+            first_message_at: string;
             /** Format: date-time */
-            heard_at: string;
+            last_message_at: string;
             settled_by: string | null;
             /** Format: date-time */
             settled_at: string | null;

@@ -76,7 +76,7 @@ class UnknownSenders:
                 vehicle_type=type_name(heartbeat.type),
                 address=peer.name[:100],
                 is_signed=frame.is_signed,
-                heard_at=datetime.fromtimestamp(now_s, UTC),
+                last_message_at=datetime.fromtimestamp(now_s, UTC),
                 longitude_deg=None if position is None else position.lon,
                 latitude_deg=None if position is None else position.lat,
             )

@@ -97,7 +97,7 @@ def _link_json(kind: str, link: UavLink) -> dict[str, Any]:
     }
     return {
         "kind": kind,
-        "heard_at": link.heard_at,
+        "last_message_at": link.last_message_at,
         "mode": link.mode,
         "is_armed": link.is_armed,
         "is_in_air": link.is_in_air,

@@ -15,7 +15,9 @@ class UavLink(models.Model):
     uav = models.OneToOneField(Uav, on_delete=models.CASCADE, related_name="connection", primary_key=True)
     holder = models.CharField(max_length=100, blank=True, help_text="the gateway that serves it")
     lease_expires_at = models.DateTimeField(null=True, blank=True)
-    heard_at = models.DateTimeField(null=True, blank=True, help_text="when anything was last received, by the server's clock")
+    last_message_at = models.DateTimeField(
+        db_column="heard_at", null=True, blank=True, help_text="when anything was last received, by the server's clock"
+    )
     address = models.CharField(max_length=100, blank=True, help_text="whence it was received: transport, host and port")
     autopilot = models.CharField(max_length=20, blank=True, help_text="px4, ardupilot or other")
     firmware = models.CharField(max_length=50, blank=True)
@@ -86,14 +88,14 @@ class UnknownVehicle(models.Model):
     is_signed = models.BooleanField(default=False)
     location = models.PointField(srid=4326, null=True, blank=True)
     state = models.CharField(max_length=10, choices=UnknownVehicleState.choices, default=UnknownVehicleState.NEW)
-    first_heard_at = models.DateTimeField(db_default=Now(), editable=False)
-    heard_at = models.DateTimeField()
+    first_message_at = models.DateTimeField(db_column="first_heard_at", db_default=Now(), editable=False)
+    last_message_at = models.DateTimeField(db_column="heard_at")
     settled_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     settled_at = models.DateTimeField(null=True, blank=True)
     uav = models.ForeignKey(Uav, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
 
     class Meta:
-        ordering = ["-heard_at"]
+        ordering = ["-last_message_at"]
         constraints = [models.CheckConstraint(condition=Q(state__in=UnknownVehicleState.values), name="unknown_vehicle_state_known")]
 
     def __str__(self) -> str:

@@ -38,16 +38,16 @@ class LoadedFacts:
 def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, LoadedFacts]]:
     """A clock that runs at another rate is believed of a simulated UAV alone: a real one's only seems to, while its link lags."""
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
-        "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
+        "uav_id", "last_message_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot", "battery_state",
         "uav__autopilot_return",
     )  # fmt: skip
     found = {}
     for row in rows:
-        uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
+        uav_id, last_message_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
         sha256, approval, flight, doubt, autopilot, battery, reported = row[7:]
         rate = plausible_rate(clock_rate if is_simulated else None)
-        last_message_s = None if heard_at is None else heard_at.timestamp()
+        last_message_s = None if last_message_at is None else last_message_at.timestamp()
         facts = LinkFacts(last_message_s, mode, is_armed, is_in_air, rate, battery, autopilot, _rtl_behaviour(reported))
         found[uav_id] = (facts, LoadedFacts(sha256, approval, flight, doubt, autopilot))
     return found

@@ -13,4 +13,4 @@ MAX_SILENCE = timedelta(hours=1)  # no flight lasts longer
 def is_in_flight(uav: Uav) -> bool:
     """One that was in the air when it was last heard, within the hour, may be so still."""
     since = timezone.now() - MAX_SILENCE
-    return UavLink.objects.filter(uav=uav, is_in_air=True, heard_at__gte=since).exclude(is_armed=False).exists()
+    return UavLink.objects.filter(uav=uav, is_in_air=True, last_message_at__gte=since).exclude(is_armed=False).exists()

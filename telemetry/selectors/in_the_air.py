@@ -17,7 +17,7 @@ BELIEVED_FOR = timedelta(minutes=10)  # after its last word: longer flights with
 
 def reported_in_the_air(uav_ids: Collection[int]) -> set[int]:
     """Of these UAVs, by link or by their newest report."""
-    by_link = UavLink.objects.filter(uav__in=uav_ids, is_in_air=True, heard_at__gt=Now() - BELIEVED_FOR)
+    by_link = UavLink.objects.filter(uav__in=uav_ids, is_in_air=True, last_message_at__gt=Now() - BELIEVED_FOR)
     by_report = UavWatch.objects.filter(uav__in=uav_ids, measured__state__is_in_air=True, updated_at__gt=Now() - BELIEVED_FOR)
     down = UavLink.objects.filter(uav__in=uav_ids, is_in_air=False).values_list("uav_id", flat=True)
     return set(by_link.values_list("uav_id", flat=True)) | (set(by_report.values_list("uav_id", flat=True)) - set(down))
@@ -34,14 +34,14 @@ def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
 
 def reported_on_the_ground(uav_ids: Collection[int]) -> set[int]:
     """Of these UAVs, by link, as far as it was heard lately; not those to which was sent since what may have set them in motion."""
-    moved = UavCommand.objects.filter(uav=OuterRef("uav"), kind__in=SETS_IN_MOTION, sent_at__gt=OuterRef("heard_at"))
-    links = UavLink.objects.filter(~Exists(moved), uav__in=uav_ids, is_in_air=False, heard_at__gt=Now() - BELIEVED_FOR)
+    moved = UavCommand.objects.filter(uav=OuterRef("uav"), kind__in=SETS_IN_MOTION, sent_at__gt=OuterRef("last_message_at"))
+    links = UavLink.objects.filter(~Exists(moved), uav__in=uav_ids, is_in_air=False, last_message_at__gt=Now() - BELIEVED_FOR)
     return set(links.values_list("uav_id", flat=True))
 
 
 def never_connected(uav_ids: Collection[int]) -> set[int]:
     """Of these UAVs, neither by a link nor by a report."""
-    by_link = UavLink.objects.filter(uav__in=uav_ids, heard_at__isnull=False).values_list("uav_id", flat=True)
+    by_link = UavLink.objects.filter(uav__in=uav_ids, last_message_at__isnull=False).values_list("uav_id", flat=True)
     by_report = UavWatch.objects.filter(uav__in=uav_ids, measured__isnull=False).values_list("uav_id", flat=True)
     return set(uav_ids) - set(by_link) - set(by_report)
 

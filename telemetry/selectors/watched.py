@@ -24,8 +24,8 @@ STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UA
 class WatchedFlight:
     """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
 
-    From `home` on, what UavLink has of it; `heard_at` only by a gateway, which tells with it how the UAV does. `clock_rate` is how fast its
-    clock runs; None of a real UAV, whose link may be learnt as another pace while it lags or catches up.
+    From `home` on, what UavLink has of it; `last_message_at` is set for UAVs that a gateway serves. `clock_rate` is how fast its clock runs;
+    None for a real UAV, whose rate would be learnt wrongly while the link lags or catches up.
     """
 
     uav_id: int
@@ -35,7 +35,7 @@ class WatchedFlight:
     approval_id: UUID
     flight: int
     home: LonLat | None
-    heard_at: datetime | None
+    last_message_at: datetime | None
     mode: str
     is_armed: bool | None
     is_in_air: bool | None
@@ -102,31 +102,13 @@ def watched_flights() -> list[WatchedFlight]:
     with connection.cursor() as cursor:
         cursor.execute(_FLYING, {"on_its_way": list(ON_ITS_WAY), "over": list(ENDED_STATES), "longest_s": STILL_IN_THE_AIR_S})
         rows = cursor.fetchall()
-    return [_flight(*row) for row in rows]
+    return [_flight(row) for row in rows]
 
 
-def _flight(
-    uav_id: int, organisation_id: int, name: str, mission_id: UUID, approval_id: UUID, flight: int, lon: float | None, lat: float | None,
-    heard_at: datetime | None, mode: str, is_armed: bool | None, is_in_air: bool | None, waypoint: int | None, clock_rate: float | None,
-    is_twin: bool,
-) -> WatchedFlight:  # fmt: skip
-    home = None if lon is None or lat is None else LonLat(lon, lat)
-    return WatchedFlight(
-        uav_id,
-        organisation_id,
-        name,
-        mission_id,
-        approval_id,
-        flight,
-        home,
-        heard_at,
-        mode,
-        is_armed,
-        is_in_air,
-        waypoint,
-        clock_rate,
-        is_twin,
-    )
+def _flight(row: Sequence[Any]) -> WatchedFlight:
+    """A row of _FLYING: the fields of WatchedFlight in their order, home as longitude and latitude."""
+    *flown, lon, lat = row[:8]
+    return WatchedFlight(*flown, None if lon is None or lat is None else LonLat(lon, lat), *row[8:])
 
 
 def last_record_id() -> int:

@@ -19,7 +19,7 @@ class LoadedSerializer(serializers.Serializer):
 
 class LiveLinkSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=LinkKind.choices)
-    heard_at = serializers.DateTimeField(allow_null=True)
+    last_message_at = serializers.DateTimeField(allow_null=True)
     mode = serializers.CharField(allow_blank=True)
     is_armed = serializers.BooleanField(allow_null=True)
     is_in_air = serializers.BooleanField(allow_null=True)

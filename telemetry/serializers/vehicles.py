@@ -22,8 +22,8 @@ class UnknownVehicleSerializer(serializers.Serializer):
     is_signed = serializers.BooleanField()
     position = PositionField(allow_null=True)
     state = serializers.ChoiceField(choices=UnknownVehicleState.choices)
-    first_heard_at = serializers.DateTimeField()
-    heard_at = serializers.DateTimeField()
+    first_message_at = serializers.DateTimeField()
+    last_message_at = serializers.DateTimeField()
     settled_by = serializers.CharField(allow_null=True)
     settled_at = serializers.DateTimeField(allow_null=True)
     uav = serializers.IntegerField(allow_null=True, help_text="that it was adopted as")
@@ -59,8 +59,8 @@ def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
         "is_signed": vehicle.is_signed,
         "position": list(vehicle.location.coords[:2]) if vehicle.location else None,
         "state": vehicle.state,
-        "first_heard_at": vehicle.first_heard_at,
-        "heard_at": vehicle.heard_at,
+        "first_message_at": vehicle.first_message_at,
+        "last_message_at": vehicle.last_message_at,
         "settled_by": by.display_name if by else None,
         "settled_at": vehicle.settled_at,
         "uav": vehicle.uav_id,
@@ -71,8 +71,8 @@ class UavConnectionSerializer(serializers.Serializer):
     """What is known of a UAV's connection; null or empty where nothing is."""
 
     link = serializers.ChoiceField(choices=LinkKind.choices, help_text="the door by which it is told what to do")
-    heard_at = serializers.DateTimeField(allow_null=True, help_text="when anything was last received, by the server's clock")
-    heard_by = serializers.ChoiceField(choices=LinkKind.choices, allow_null=True, help_text="the door by which it was")
+    last_message_at = serializers.DateTimeField(allow_null=True, help_text="when anything was last received, by the server's clock")
+    last_message_link = serializers.ChoiceField(choices=LinkKind.choices, allow_null=True, help_text="the door by which it was")
     address = serializers.CharField(allow_blank=True)
     autopilot = serializers.CharField(allow_blank=True)
     firmware = serializers.CharField(allow_blank=True)
@@ -96,11 +96,11 @@ class UavConnectionSerializer(serializers.Serializer):
 
 
 def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
-    by = None if link.heard_at is None else LinkKind.HTTP if link.address.startswith("http ") else LinkKind.MAVLINK
+    by = None if link.last_message_at is None else LinkKind.HTTP if link.address.startswith("http ") else LinkKind.MAVLINK
     return {
         "link": uav.link,
-        "heard_at": link.heard_at,
-        "heard_by": by,
+        "last_message_at": link.last_message_at,
+        "last_message_link": by,
         "address": link.address,
         "autopilot": link.autopilot,
         "firmware": link.firmware,

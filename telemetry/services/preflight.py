@@ -196,7 +196,7 @@ def _crash(uav: Uav, down: Collection[int]) -> Iterator[Check]:
 
 def _link(link: UavLink, reported: Reported, now: datetime) -> Check:
     received = parse_datetime(reported["report"]["received_at"]) if "report" in reported else None
-    links = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
+    links = max((moment for moment in (link.last_message_at, received) if moment is not None), default=None)
     if links is None:
         words = _("Never connected. Switch it on, and check its connection.")
         if link.uav.is_simulated:

@@ -39,7 +39,7 @@ class UnknownVehicles(APIView):
     )
     def get(self, request: Request) -> Response:
         state = asked_choice(request, "state", UnknownVehicleState.values) or UnknownVehicleState.NEW
-        page = page_of(request, unknown_vehicles().filter(state=state), order=("-heard_at", "-pk"))
+        page = page_of(request, unknown_vehicles().filter(state=state), order=("-last_message_at", "-pk"))
         return Response({"results": [vehicle_json(vehicle) for vehicle in page.rows], "next": page.next})
 
 

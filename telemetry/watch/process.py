@@ -324,9 +324,9 @@ def _watched_uav(watched: Watched, made: Made | None) -> WatchedUav:
 def _reported_by_link(watched: Watched) -> Report | None:
     """How it does, where no record has told for a while: an autopilot without a position makes none."""
     flight, newest = watched.flight, watched.tracker.newest
-    if flight.heard_at is None or newest is None or flight.heard_at.timestamp() < newest.measured_s + WITHOUT_RECORD_S:
+    if flight.last_message_at is None or newest is None or flight.last_message_at.timestamp() < newest.measured_s + WITHOUT_RECORD_S:
         return None
-    last_message_s = flight.heard_at.timestamp()
+    last_message_s = flight.last_message_at.timestamp()
     reported = Measurement(
         mode=flight.mode, is_armed=flight.is_armed, is_in_air=flight.is_in_air, waypoint_sequence=flight.waypoint_sequence
     )

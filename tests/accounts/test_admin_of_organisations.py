@@ -45,7 +45,7 @@ def rows_in_the_admin(home: Organisation) -> dict[type[Model], Model]:
         Approval.objects.create(mission=mission, approved_by=keeper, document={}, content_sha256="0" * 64),
         AuditEntry.objects.create(organisation=home, actor=keeper, action="x", subject_type="x", subject_id="1"),
         SignInEntry.objects.create(user=keeper, outcome=SignInOutcome.SIGNED_IN, address="192.0.2.1"),
-        UnknownVehicle.objects.create(mavlink_system_id=home.pk % 200 + 1, heard_at=timezone.now(), uav=uav, settled_by=keeper),
+        UnknownVehicle.objects.create(mavlink_system_id=home.pk % 200 + 1, last_message_at=timezone.now(), uav=uav, settled_by=keeper),
     ]
     return {model: row for model, row in (rows | {type(row): row for row in more}).items() if model in SCOPED}
 

@@ -23,7 +23,7 @@ from telemetry.models import UnknownVehicle
 for system_id, place in ((41, Point({YARD[0]}, {YARD[1]})), (42, None)):
     UnknownVehicle.objects.create(
         mavlink_system_id=system_id, autopilot="ardupilot", vehicle_type="Quadrotor", address="udp 10.0.0.7:14550", location=place,
-        heard_at=timezone.now(),
+        last_message_at=timezone.now(),
     )
 """
 

@@ -18,7 +18,7 @@ const uav = (id, mission, isInAir = true, place = 0) => ({
   mission,
   place,
   measured: null,
-  link: { heard_at: HEARD, is_in_air: isInAir },
+  link: { last_message_at: HEARD, is_in_air: isInAir },
 });
 const missions = [
   { id: "south", name: "South", state: "active" },
@@ -85,7 +85,7 @@ test("each choice names its mission and its UAVs, all of them the missions", () 
 
 test("a command that makes no sense has its reason", () => {
   assert.equal(whyNot(uav(2, "south", false)), "UAV 2 is on the ground.");
-  assert.equal(whyNot({ ...uav(6, "south", null), link: { heard_at: null } }), "UAV 6 never connected.");
+  assert.equal(whyNot({ ...uav(6, "south", null), link: { last_message_at: null } }), "UAV 6 never connected.");
   assert.equal(whyNot(uav(3, "north", null)), "", "nobody knows that it is not in the air");
 });
 

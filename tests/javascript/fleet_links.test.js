@@ -5,8 +5,8 @@ import { loadedText, receivedWords } from "../../static/js/fleet/connection.js";
 import { aboutVehicle } from "../../static/js/fleet/unknown_vehicles.js";
 import { agoText } from "../../static/js/units.js";
 
-const received = (heard_at, heard_by = "mavlink") =>
-  receivedWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
+const received = (last_message_at, last_message_link = "mavlink") =>
+  receivedWords({ last_message_at, last_message_link, server_time: "2026-11-22T12:00:12Z" });
 
 test("when a UAV was heard is told by the server's clock, with the door", () => {
   assert.deepEqual(received("2026-11-22T12:00:00Z"), { words: "Last contact 12 s ago by MAVLink.", isReceived: false });
@@ -33,7 +33,7 @@ test("of a vehicle that nobody knows only what is known is told", () => {
     vehicle_type: "",
     address: "udp 10.0.0.7:14550",
     is_signed: false,
-    heard_at: "2026-11-22T12:00:00Z",
+    last_message_at: "2026-11-22T12:00:00Z",
   };
   assert.equal(
     aboutVehicle(vehicle, Date.parse("2026-11-22T12:00:03Z")),

@@ -280,7 +280,7 @@ test("the time that is left to take an offer counts down to zero", () => {
 test("of UAVs that are not heard it is said who is told all the same", () => {
   const named = (name, kind, received_s) => ({
     name,
-    link: { kind, heard_at: received_s === null ? null : ago(received_s) },
+    link: { kind, last_message_at: received_s === null ? null : ago(received_s) },
   });
   const uavs = [
     named("Tern", "mavlink", 60),
@@ -300,7 +300,7 @@ test("who is in the air can be told something, also after its mission", () => {
     id,
     mission,
     measured: null,
-    link: { is_in_air: isInAir, heard_at: ago(received_s) },
+    link: { is_in_air: isInAir, last_message_at: ago(received_s) },
   });
   const missions = [
     { id: "m", state: "active" },

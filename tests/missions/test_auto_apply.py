@@ -198,7 +198,7 @@ def test_an_aborted_mission_counts_until_its_uavs_are_down(client: Client) -> No
     Mission.objects.filter(pk=mission.pk).update(ended_at=timezone.now())
     uav = a_uav()
     mission.mission_uavs.update(uav=uav)
-    UavLink.objects.create(uav=uav, is_in_air=True, heard_at=timezone.now())
+    UavLink.objects.create(uav=uav, is_in_air=True, last_message_at=timezone.now())
     held = brought_in(client, zone_file(("Fire", 9.99), south=55.95))
     assert codes(held) == ["flown_missions"]
     UavLink.objects.filter(uav=uav).update(is_in_air=False)

@@ -30,7 +30,7 @@ def record(uav: Uav, sequence: int, *, measured_s: float | None = None, received
 def received(*uavs: Uav, **measured: Any) -> None:
     """Each of these stands at its take-off place and is connected: a link, and a report of now."""
     for uav in uavs:
-        UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "is_in_air": False})
+        UavLink.objects.update_or_create(uav=uav, defaults={"last_message_at": timezone.now(), "is_in_air": False})
         start = uav.mission_uavs.get().start
         values = {"longitude_deg": start.x, "latitude_deg": start.y, "gps_fix": 3, "battery_percent": 98.0} | measured
         store_records([record(uav, 1, measured_s=(timezone.now() - START).total_seconds(), **values)])

@@ -18,7 +18,7 @@ def rows() -> dict[str, object]:
     (uav,) = fleet("Tern")
     dispatched(an_operator(), [uav], world().towers[:2])
     carry(uav)
-    vehicle = UnknownVehicle.objects.create(mavlink_system_id=99, heard_at=timezone.now())
+    vehicle = UnknownVehicle.objects.create(mavlink_system_id=99, last_message_at=timezone.now())
     return {
         "missions/approval": Approval.objects.get().pk,
         "missions/uavcommand": UavCommand.objects.get().pk,

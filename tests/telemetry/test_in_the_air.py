@@ -28,7 +28,7 @@ def warned(uav: Uav, targets: list) -> list[str]:
 def test_a_plan_for_a_uav_in_the_air_says_that_it_begins_with_a_take_off(uav) -> None:
     targets = worlds.world().towers[:1]
     assert warned(uav, targets) == []
-    link = UavLink.objects.create(uav=uav, is_in_air=True, heard_at=timezone.now())
+    link = UavLink.objects.create(uav=uav, is_in_air=True, last_message_at=timezone.now())
     (words,) = warned(uav, targets)
     assert words.startswith("Tern is reported to be in the air")
     link.is_in_air = False
@@ -37,5 +37,5 @@ def test_a_plan_for_a_uav_in_the_air_says_that_it_begins_with_a_take_off(uav) ->
 
 
 def test_what_was_said_long_ago_is_no_sign(uav) -> None:
-    UavLink.objects.create(uav=uav, is_in_air=True, heard_at=timezone.now() - timedelta(hours=1))
+    UavLink.objects.create(uav=uav, is_in_air=True, last_message_at=timezone.now() - timedelta(hours=1))
     assert reported_in_the_air([uav.pk]) == set()

@@ -16,7 +16,7 @@ export const inAir = ({ measured, link }) =>
 
 /** @param {Pick<LiveUav, "link">} uav @param {number} now_ms */
 const wasReceived = ({ link }, now_ms) =>
-  link?.heard_at ? now_ms - Date.parse(link.heard_at) < RECEIVED_WITHIN_MS : false;
+  link?.last_message_at ? now_ms - Date.parse(link.last_message_at) < RECEIVED_WITHIN_MS : false;
 
 /**
  * UAVs that can be told something: on a mission that is on its way and not known to stand on the ground, or still in the air after it, as

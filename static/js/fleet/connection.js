@@ -15,14 +15,14 @@ const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 /**
  * One sentence, and whether it is heard at present.
  *
- * @param {Pick<UavConnection, "heard_at" | "heard_by" | "server_time">} connection
+ * @param {Pick<UavConnection, "last_message_at" | "last_message_link" | "server_time">} connection
  */
-export function receivedWords({ heard_at, heard_by, server_time }) {
-  if (!heard_at) return { words: t("Never connected."), isReceived: false };
-  const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
-  const endpoint = heard_by ? LINKS[heard_by].by : "";
+export function receivedWords({ last_message_at, last_message_link, server_time }) {
+  if (!last_message_at) return { words: t("Never connected."), isReceived: false };
+  const seconds = (Date.parse(server_time) - Date.parse(last_message_at)) / 1_000;
+  const endpoint = last_message_link ? LINKS[last_message_link].by : "";
   return {
-    words: t("Last contact {ago} {link}.", { ago: agoText(seconds, heard_at), link: endpoint }),
+    words: t("Last contact {ago} {link}.", { ago: agoText(seconds, last_message_at), link: endpoint }),
     isReceived: seconds <= LOST_AFTER_S,
   };
 }

@@ -14,17 +14,17 @@ const NEW = "";
 const NONE = t("None. Vehicles with an unknown system ID seen by the gateway are listed here.");
 
 /**
- * @param {Pick<UnknownVehicle, "heard_at" | "autopilot" | "vehicle_type" | "address" | "is_signed">} vehicle
+ * @param {Pick<UnknownVehicle, "last_message_at" | "autopilot" | "vehicle_type" | "address" | "is_signed">} vehicle
  * @param {number} [now]
  */
 export function aboutVehicle(vehicle, now = Date.now()) {
-  const seconds = (now - Date.parse(vehicle.heard_at)) / 1_000;
+  const seconds = (now - Date.parse(vehicle.last_message_at)) / 1_000;
   const facts = [
     vehicle.autopilot,
     vehicle.vehicle_type,
     vehicle.address,
     vehicle.is_signed ? t("signed") : t("not signed"),
-    t("last contact {ago}", { ago: agoText(seconds, vehicle.heard_at) }),
+    t("last contact {ago}", { ago: agoText(seconds, vehicle.last_message_at) }),
   ];
   return facts.filter(Boolean).join(" · ");
 }

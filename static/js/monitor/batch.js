@@ -16,7 +16,7 @@ const REACHABLE = ["dispatched", "active", "aborted", "failed"];
 
 /** Why a command to a UAV makes no sense now; "" where it does. @param {Pick<LiveUav, "name" | "measured" | "link">} uav */
 export function whyNot({ name, measured, link }) {
-  if (!measured && !link?.heard_at) return t("{name} never connected.", { name });
+  if (!measured && !link?.last_message_at) return t("{name} never connected.", { name });
   return inAir({ measured, link }) === false ? t("{name} is on the ground.", { name }) : "";
 }
 

@@ -18,7 +18,7 @@ const RECEIVED_WITHIN_MS = 3_600_000;
 export function unreachableLines(uavs, kind, now_ms) {
   /** @param {LiveUav} uav */
   const isSent = ({ link }) =>
-    SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.heard_at ?? "") < RECEIVED_WITHIN_MS;
+    SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.last_message_at ?? "") < RECEIVED_WITHIN_MS;
   const sent = uavs.filter(isSent);
   const waiting = uavs.filter((uav) => !isSent(uav));
   /** @param {LiveUav[]} some */

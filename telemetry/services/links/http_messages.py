@@ -19,7 +19,7 @@ def note_received_over_http(*, uav_id: int, address: str) -> None:
     """Nobody waits for the disk: the next request says it again."""
     words = f"http {address}"[:100]
     if not prepared_rows(_RECEIVED, [words, uav_id]):
-        UavLink.objects.get_or_create(uav_id=uav_id, defaults={"heard_at": timezone.now(), "address": words})
+        UavLink.objects.get_or_create(uav_id=uav_id, defaults={"last_message_at": timezone.now(), "address": words})
 
 
 def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:

@@ -83,7 +83,7 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
     """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
     with connection.cursor() as cursor:
         cursor.execute(_ADD, [sorted(uav_ids)])
-    may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(heard_at__lt=from_now(-UNREACHABLE_S))
+    may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(last_message_at__lt=from_now(-UNREACHABLE_S))
     links = take(UavLink.objects.filter(may_take, uav__in=uav_ids), holder=holder, lease_s=lease_s)
     release_claims_of_others(uav_ids=[link.uav_id for link in links], holder=holder)
     return [_lease_of(link) for link in links]

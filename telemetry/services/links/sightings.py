@@ -9,9 +9,10 @@ from django.db import connection
 NOTE = """
 INSERT INTO telemetry_unknownvehicle
     (mavlink_system_id, autopilot, vehicle_type, address, is_signed, state, heard_at, location)
-SELECT system, autopilot, vehicle_type, address, is_signed, 'new', heard_at, ST_SetSRID(ST_MakePoint(longitude_deg, latitude_deg), 4326)
+SELECT system, autopilot, vehicle_type, address, is_signed, 'new', last_message_at,
+    ST_SetSRID(ST_MakePoint(longitude_deg, latitude_deg), 4326)
 FROM unnest(%s::int4[], %s::text[], %s::text[], %s::text[], %s::bool[], %s::timestamptz[], %s::float8[], %s::float8[])
-    AS received(system, autopilot, vehicle_type, address, is_signed, heard_at, longitude_deg, latitude_deg)
+    AS received(system, autopilot, vehicle_type, address, is_signed, last_message_at, longitude_deg, latitude_deg)
 WHERE system BETWEEN 1 AND 254 AND NOT EXISTS (SELECT 1 FROM missions_uav uav WHERE uav.mavlink_system_id = received.system)
 ORDER BY system
 ON CONFLICT (mavlink_system_id) DO UPDATE SET heard_at = excluded.heard_at, autopilot = excluded.autopilot,
@@ -30,7 +31,7 @@ class Sighting:
     vehicle_type: str
     address: str
     is_signed: bool
-    heard_at: datetime
+    last_message_at: datetime
     longitude_deg: float | None = None
     latitude_deg: float | None = None
 
@@ -39,6 +40,6 @@ def note_unknown_vehicles(*, sightings: Sequence[Sighting]) -> None:
     """At most one sighting a system id. One that was adopted and is unknown again, its UAV being gone, is new; one ignored stays so."""
     if not sightings:
         return
-    columns = ("system", "autopilot", "vehicle_type", "address", "is_signed", "heard_at", "longitude_deg", "latitude_deg")
+    columns = ("system", "autopilot", "vehicle_type", "address", "is_signed", "last_message_at", "longitude_deg", "latitude_deg")
     with connection.cursor() as cursor:
         cursor.execute(NOTE, [[getattr(sighting, column) for sighting in sightings] for column in columns])

@@ -41,7 +41,7 @@ def client(person: User) -> Client:
 
 def flies(*uavs: Uav, in_air: bool | None = True) -> None:
     for uav in uavs:
-        UavLink.objects.update_or_create(uav=uav, defaults={"is_in_air": in_air, "heard_at": timezone.now()})
+        UavLink.objects.update_or_create(uav=uav, defaults={"is_in_air": in_air, "last_message_at": timezone.now()})
 
 
 def started(mission: Mission, person: User, *uavs: Uav) -> None:
@@ -141,7 +141,7 @@ def test_each_uav_is_answered_for_by_itself(two: Any, person: User) -> None:
 
 def test_one_whose_start_was_sent_after_its_last_report_may_be_in_the_air(two: Any, person: User) -> None:
     south, (_tern, kite), _north, _second = two
-    UavLink.objects.filter(uav=kite).update(is_in_air=False, heard_at=timezone.now() - timedelta(minutes=5))
+    UavLink.objects.filter(uav=kite).update(is_in_air=False, last_message_at=timezone.now() - timedelta(minutes=5))
     assert codes(given(south, "return", person))["Kite"] == []
 
 
@@ -182,9 +182,9 @@ def test_several_missions_are_commanded_in_one_request(two: Any, person: User) -
 def test_a_uav_that_was_on_the_ground_when_last_heard_long_ago_is_given_its_command(two: Any, person: User) -> None:
     south, (_tern, kite), _north, _second = two
     flies(kite, in_air=False)
-    heard_at = timezone.now() - BELIEVED_FOR - timedelta(seconds=1)
-    UavLink.objects.filter(uav=kite).update(heard_at=heard_at)
-    UavCommand.objects.filter(uav=kite).update(sent_at=heard_at - timedelta(seconds=1))
+    last_message_at = timezone.now() - BELIEVED_FOR - timedelta(seconds=1)
+    UavLink.objects.filter(uav=kite).update(last_message_at=last_message_at)
+    UavCommand.objects.filter(uav=kite).update(sent_at=last_message_at - timedelta(seconds=1))
     assert codes(given(south, "return", person)) == {"Tern": [], "Kite": []}
 
 

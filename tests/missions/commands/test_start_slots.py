@@ -91,7 +91,7 @@ def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_
     _, (first, second) = crossing
     start(first, person)
     took_off(first, ago_s=1_000.0)
-    UavLink.objects.update_or_create(uav=first.uav, defaults={"is_in_air": is_in_air, "heard_at": timezone.now()})
+    UavLink.objects.update_or_create(uav=first.uav, defaults={"is_in_air": is_in_air, "last_message_at": timezone.now()})
     if reported == "hold":
         hold = command_uav(uav=first.uav, kind=CommandKind.HOLD, actor=person)
         UavCommand.objects.filter(pk=hold.pk).update(state="applied", sent_at=timezone.now(), finished_at=timezone.now())
@@ -109,7 +109,7 @@ def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_
 def test_one_that_is_flown_by_hand_near_the_route_is_waited_for(crossing, person, place: str) -> None:
     _, (first, _second) = crossing
     (free,) = fleet("Gull")
-    UavLink.objects.create(uav=free, is_in_air=place != "on the ground", heard_at=timezone.now())
+    UavLink.objects.create(uav=free, is_in_air=place != "on the ground", last_message_at=timezone.now())
     if place != "untold":
         position = [UAV_AT.lon + (1.0 if place == "far" else 0.0), UAV_AT.lat]
         reported = {"measured_at": time_text(timezone.now()), "position": position}
@@ -123,7 +123,7 @@ def test_one_that_is_flown_by_hand_near_the_route_is_waited_for(crossing, person
 def test_a_simulated_uav_that_was_retired_in_the_air_is_in_nobodys_way(crossing, person, is_simulated: bool) -> None:
     _, (first, _second) = crossing
     (gone,) = fleet("Gull", is_simulated=is_simulated, state=UavState.RETIRED)
-    UavLink.objects.create(uav=gone, is_in_air=True, heard_at=timezone.now())
+    UavLink.objects.create(uav=gone, is_in_air=True, last_message_at=timezone.now())
     reasons = reasons_to_wait(uav=first.uav, route=first.route, flight=1, now=timezone.now())
     assert [reason.code for reason in reasons] == ([] if is_simulated else ["start_slot"])
 

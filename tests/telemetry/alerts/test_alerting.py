@@ -46,7 +46,7 @@ def watched_uav(uav: Uav, approval: Approval, reported_s: float = 0.0, **values)
 
 
 def received(uav: Uav, seconds: float) -> None:
-    UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": at(seconds)})
+    UavLink.objects.update_or_create(uav=uav, defaults={"last_message_at": at(seconds)})
 
 
 def watching(uav: Uav, approval: Approval) -> DetectorStates:

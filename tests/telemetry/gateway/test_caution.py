@@ -225,7 +225,7 @@ def test_when_a_vehicle_was_heard_is_told_by_the_databases_clock(monkeypatch, tm
     session.serve(lease, time.monotonic() + 8.0)
     session.authentication.last_message_s = hour_ago_s - 1.0
     save_links(states=[session.link_state()], holder="one/1")
-    (ago_s,) = UavLink.objects.annotate(ago=Now() - F("heard_at")).values_list("ago", flat=True)
+    (ago_s,) = UavLink.objects.annotate(ago=Now() - F("last_message_at")).values_list("ago", flat=True)
     assert 1.0 <= ago_s.total_seconds() < 4.0
     assert take_leases(uav_ids=[uav.pk], holder="two/1", lease_s=10.0) == []
 

@@ -75,7 +75,7 @@ def test_command_to_a_uav_whose_frames_are_copied_is_carried_out_by_it(tmp_path)
         gateway = running.enter_context(gateway_at_work(tmp_path))
         thief = running.enter_context(Link(port_of(gateway), 7))
         with CopiedFlyer(vehicle, port_of(gateway), key=key, thief=thief):
-            wait_for(lambda: UavLink.objects.filter(uav=uav, heard_at__isnull=False).exists())
+            wait_for(lambda: UavLink.objects.filter(uav=uav, last_message_at__isnull=False).exists())
             hold = queue_command(uav=uav, kind=CommandKind.HOLD, actor=None)
 
             def is_applied() -> bool:

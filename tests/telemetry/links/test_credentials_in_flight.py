@@ -44,7 +44,7 @@ def revoke(client: Client, uav: Uav, kind: str, query: str = ""):
 
 
 def fly(uav: Uav) -> None:
-    UavLink.objects.update_or_create(uav=uav, defaults={"is_armed": True, "is_in_air": True, "heard_at": timezone.now()})
+    UavLink.objects.update_or_create(uav=uav, defaults={"is_armed": True, "is_in_air": True, "last_message_at": timezone.now()})
 
 
 @pytest.mark.parametrize("role", [Role.OPERATOR, Role.ADMINISTRATOR])
@@ -81,7 +81,7 @@ def test_the_first_one_is_made_in_flight_as_well(kind: str) -> None:
 
 def test_one_that_was_heard_in_the_air_long_ago_is_not_in_flight(uav: Uav, kind: str) -> None:
     fly(uav)
-    UavLink.objects.update(heard_at=timezone.now() - timedelta(hours=2))
+    UavLink.objects.update(last_message_at=timezone.now() - timedelta(hours=2))
     assert make(client_of(a_user(Role.OPERATOR)), uav, kind).status_code == 201
 
 

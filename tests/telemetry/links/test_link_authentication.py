@@ -22,7 +22,7 @@ def test_a_uav_is_let_in_and_has_been_heard() -> None:
     kite = linked_uav()
     assert kite.report(report()).status_code == 200
     link = UavLink.objects.get(uav=kite.uav)
-    assert link.heard_at is not None
+    assert link.last_message_at is not None
     assert link.address == "http 127.0.0.1"
     assert UavCredential.objects.get(uav=kite.uav).last_used_at is not None
 

@@ -31,7 +31,7 @@ def delete(client: Client, uav: Uav) -> HttpResponse:
 
 
 def fly(uav: Uav, *, is_in_air: bool = True) -> None:
-    UavLink.objects.update_or_create(uav=uav, defaults={"is_armed": is_in_air, "is_in_air": is_in_air, "heard_at": timezone.now()})
+    UavLink.objects.update_or_create(uav=uav, defaults={"is_armed": is_in_air, "is_in_air": is_in_air, "last_message_at": timezone.now()})
 
 
 def test_by_the_api(uav: Uav, administrator: Client) -> None:

@@ -27,8 +27,10 @@ def client() -> Client:
 
 
 def vehicle(system_id: int = 41, place: Point | None = None, **facts: Any) -> UnknownVehicle:
-    heard_at = facts.pop("heard_at", timezone.now())
-    return UnknownVehicle.objects.create(mavlink_system_id=system_id, location=place, heard_at=heard_at, autopilot="px4", **facts)
+    last_message_at = facts.pop("last_message_at", timezone.now())
+    return UnknownVehicle.objects.create(
+        mavlink_system_id=system_id, location=place, last_message_at=last_message_at, autopilot="px4", **facts
+    )
 
 
 def listed(client: Client, query: str = "") -> list[int]:
@@ -40,8 +42,8 @@ def listed(client: Client, query: str = "") -> list[int]:
 def test_new_ones_are_listed_the_last_heard_first(client: Client) -> None:
     assert listed(client) == []
     now = timezone.now()
-    vehicle(41, heard_at=now - timedelta(hours=1))
-    vehicle(42, Point(9.5, 47.1), heard_at=now)
+    vehicle(41, last_message_at=now - timedelta(hours=1))
+    vehicle(42, Point(9.5, 47.1), last_message_at=now)
     vehicle(43, state=UnknownVehicleState.IGNORED)
     assert listed(client) == [42, 41]
     assert listed(client, "?state=ignored") == [43]
@@ -131,7 +133,7 @@ def test_others_neither_see_nor_settle_them(role: Role) -> None:
 
 def test_a_uav_that_was_never_heard_says_so(client: Client) -> None:
     reported = client.get(f"/api/v1/uavs/{a_uav('Kite').pk}/connection").json()
-    assert (reported["link"], reported["heard_at"], reported["heard_by"], reported["mode"], reported["is_in_air"]) == (
+    assert (reported["link"], reported["last_message_at"], reported["last_message_link"], reported["mode"], reported["is_in_air"]) == (
         "mavlink",
         None,
         None,
@@ -146,15 +148,15 @@ def test_a_companions_newest_report_says_how_the_uav_does(client: Client) -> Non
     kite.report(report(1, mode="Standby", is_in_air=False, measured_at=seconds_ago(600)))
     kite.report(report(3, mode="Nonsense", measured_at=seconds_ago(-86_400)))
     reported = client.get(f"/api/v1/uavs/{kite.uav.pk}/connection").json()
-    assert (reported["link"], reported["heard_by"], reported["mode"], reported["is_in_air"]) == ("http", "http", "Mission", True)
+    assert (reported["link"], reported["last_message_link"], reported["mode"], reported["is_in_air"]) == ("http", "http", "Mission", True)
     assert (reported["battery_percent"], reported["waypoint_sequence"]) == (64.0, 3)
-    assert reported["heard_at"] <= reported["server_time"]
+    assert reported["last_message_at"] <= reported["server_time"]
 
 
 def test_the_door_by_which_a_uav_was_heard_is_told(client: Client) -> None:
     kite = a_uav("Kite")
-    UavLink.objects.create(uav=kite, heard_at=timezone.now(), address="udp 10.0.0.7:14550", mode="AUTO")
-    assert client.get(f"/api/v1/uavs/{kite.pk}/connection").json()["heard_by"] == "mavlink"
+    UavLink.objects.create(uav=kite, last_message_at=timezone.now(), address="udp 10.0.0.7:14550", mode="AUTO")
+    assert client.get(f"/api/v1/uavs/{kite.pk}/connection").json()["last_message_link"] == "mavlink"
 
 
 def test_what_a_companion_flies_to_is_in_progress() -> None:

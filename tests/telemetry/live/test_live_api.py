@@ -45,7 +45,7 @@ def test_what_flies_is_shown_as_it_is_described(tmp_path: Path) -> None:
     mark_started(mission_id=mission.pk, uav_id=uav.pk)
     mark_target(mission_id=mission.pk, target=0, state="complete")
     store_records([record(uav, 1, battery_percent=80.0, mode="AUTO")])
-    UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "loaded_sha256": "a" * 64, "loaded_flight": 1})
+    UavLink.objects.update_or_create(uav=uav, defaults={"last_message_at": timezone.now(), "loaded_sha256": "a" * 64, "loaded_flight": 1})
     Alert.objects.create(uav=uav, mission=mission, level=AlertLevel.WARNING, code="link-late", message="Late", opened_at=timezone.now())
     ReplanOffer.objects.create(mission=mission, code="uav-out", state=OfferState.OPEN)
     answer = asked(user)
@@ -85,8 +85,8 @@ def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
     Mission.objects.create(name="deleted", ended_at=now, deleted_at=now)
     Mission.objects.create(name="a draft")
     received, silent = a_uav("heard"), a_uav("silent")
-    UavLink.objects.create(uav=received, heard_at=now - timedelta(hours=23))
-    UavLink.objects.create(uav=silent, heard_at=now - timedelta(hours=25))
+    UavLink.objects.create(uav=received, last_message_at=now - timedelta(hours=23))
+    UavLink.objects.create(uav=silent, last_message_at=now - timedelta(hours=25))
     for code, closed_ago in {"closed": timedelta(minutes=59), "long closed": timedelta(minutes=61)}.items():
         facts = {"opened_at": now - timedelta(hours=3), "closed_at": now - closed_ago}
         Alert.objects.create(uav=received, level=AlertLevel.ADVISORY, code=code, message=code, **facts)
@@ -123,7 +123,7 @@ def test_of_a_mission_only_what_belongs_to_it_is_shown_whatever_its_state() -> N
     mission = Mission.objects.create(name="a draft")
     MissionUav.objects.create(mission=mission, uav=own, sequence=0, name="own", start=own.location, cruise_speed_mps=10.0)
     for uav in (own, other):
-        UavLink.objects.create(uav=uav, heard_at=timezone.now())
+        UavLink.objects.create(uav=uav, last_message_at=timezone.now())
         Alert.objects.create(uav=uav, level=AlertLevel.WARNING, code="link-late", message="Late", opened_at=timezone.now())
         give(uav, CommandKind.HOLD)
     live = shown(user, f"?mission={mission.pk}")
@@ -135,7 +135,7 @@ def test_of_a_mission_only_what_belongs_to_it_is_shown_whatever_its_state() -> N
 def test_nothing_of_another_organisation_is_shown() -> None:
     elsewhere = Organisation.objects.create(name="Elsewhere")
     theirs = Mission.objects.create(name="theirs", organisation=elsewhere, ended_at=timezone.now())
-    UavLink.objects.create(uav=a_uav("their UAV", elsewhere), heard_at=timezone.now())
+    UavLink.objects.create(uav=a_uav("their UAV", elsewhere), last_message_at=timezone.now())
     user = a_user()
     assert shown(user) == {kind: [] for kind in KINDS}
     assert asked(user, f"?mission={theirs.pk}").status_code == 404

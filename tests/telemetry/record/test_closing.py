@@ -63,7 +63,7 @@ def test_each_open_target_needs_a_reason(client: Client, mission: Mission) -> No
 
 
 def test_a_uav_in_the_air_keeps_its_mission_open(client: Client, mission: Mission, tern: Uav) -> None:
-    UavLink.objects.update_or_create(uav=tern, defaults={"is_in_air": True, "heard_at": timezone.now()})
+    UavLink.objects.update_or_create(uav=tern, defaults={"is_in_air": True, "last_message_at": timezone.now()})
     answer = close(client, mission)
     assert (answer.status_code, answer.json()["error"]["code"]) == (409, "in_the_air")
     assert "Tern is in the air" in answer.json()["error"]["message"]
@@ -72,7 +72,7 @@ def test_a_uav_in_the_air_keeps_its_mission_open(client: Client, mission: Missio
 def test_a_uav_that_flies_another_mission_by_now_does_not(client: Client, mission: Mission, tern: Uav, here: World, person: User) -> None:
     abort_mission(mission=mission, actor=person, why="thunderstorm")
     mark_started(mission_id=dispatched(person, [tern], [here.towers[2]], name="Afternoon").pk, uav_id=tern.pk)
-    UavLink.objects.update_or_create(uav=tern, defaults={"is_in_air": True, "heard_at": timezone.now()})
+    UavLink.objects.update_or_create(uav=tern, defaults={"is_in_air": True, "last_message_at": timezone.now()})
     assert close(client, mission).status_code == 200
 
 

@@ -155,7 +155,7 @@ def test_a_battery_that_would_land_below_its_reserve_blocks(two: tuple[Mission, 
 
 def test_what_is_not_told_is_unknown_and_no_state(two: tuple[Mission, Uav, Uav]) -> None:
     mission, tern, _kite = two
-    UavLink.objects.create(uav=tern, heard_at=timezone.now())
+    UavLink.objects.create(uav=tern, last_message_at=timezone.now())
     found = states(checks(mission), tern)
     assert (found["battery"], found["position"], found["mission"]) == (CheckState.UNKNOWN,) * 3
     assert (found["home"], found["wind"]) == (CheckState.UNKNOWN,) * 2

@@ -57,7 +57,7 @@ def flies(
         uav=uav, defaults={"organisation_id": uav.organisation_id, "measured": groups, "estimated": reported.get("estimated")}
     )
     link = {
-        "heard_at": timezone.now(),
+        "last_message_at": timezone.now(),
         "is_in_air": reported.get("is_in_air", True),
         "mode": mode,
         "home": Point(*home, srid=4326),

@@ -43,7 +43,9 @@ def flying(*, is_simulated: bool) -> list[Uav]:
     carry(*uavs)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ACTIVE)
     for uav, rate in zip(uavs, (1.0, learnt_rate()), strict=True):
-        UavLink.objects.update_or_create(uav=uav, defaults={"clock_rate": rate, "heard_at": NOW, "is_in_air": True, "autopilot": "px4"})
+        UavLink.objects.update_or_create(
+            uav=uav, defaults={"clock_rate": rate, "last_message_at": NOW, "is_in_air": True, "autopilot": "px4"}
+        )
     return uavs
 
 
@@ -59,7 +61,7 @@ def alerts_of(uavs: list[Uav]) -> set[str]:
                 velocity_north_mps=0.0, velocity_east_mps=-side * SPEED_MPS, velocity_down_mps=0.0,
             )  # fmt: skip
             store_records([NewRecord(uav.pk, "mavlink", "boot", second * 1_000, at, at, reported)])
-        UavLink.objects.update(heard_at=at)
+        UavLink.objects.update(last_message_at=at)
         watch.round(at.timestamp() + 0.1)
     return set(Alert.objects.filter(uav__in=uavs).values_list("code", flat=True))
 

@@ -123,7 +123,7 @@ def test_without_a_record_the_link_tells_how_it_does(uav):
     """An autopilot without GPS makes no record; its heartbeat still names the mode."""
     for second in range(10):
         report(uav, float(second), mode="MISSION", velocity_east_mps=10.0, velocity_north_mps=0.0, altitude_relative_m=60.0)
-    facts = {"autopilot": "px4", "mode": "LOITER", "is_in_air": True, "heard_at": NOW + timedelta(seconds=14)}
+    facts = {"autopilot": "px4", "mode": "LOITER", "is_in_air": True, "last_message_at": NOW + timedelta(seconds=14)}
     UavLink.objects.update_or_create(uav=uav, defaults=facts)
     one = watch()
     one.round(NOW.timestamp() + 15.01)
