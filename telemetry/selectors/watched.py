@@ -24,7 +24,7 @@ STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UA
 class WatchedFlight:
     """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
 
-    From `home` on, what UavLink has of it; `last_message_at` is set for UAVs that a gateway serves. `clock_rate` is how fast its clock runs;
+    From `home` on, what UavLink has of it; `last_message_at` is set for UAVs that a gateway serves. `clock_rate` is how fast its clock is;
     None for a real UAV, whose rate would be learnt wrongly while the link lags or catches up.
     """
 
