@@ -92,13 +92,13 @@ class Page:
                 text = await socket.receive()
                 self.take(orjson.loads(text), began_s)
                 self.bytes += len(text)
-                socket.report({"type": "have", "sequence": self._sequence})
+                socket.report({"type": "ack", "sequence": self._sequence})
         except (Closed, OSError, asyncio.IncompleteReadError) as error:
             self.error = repr(error)
 
     def take(self, value: dict[str, Any], began_s: float) -> None:
         now_ms = (time.monotonic() - began_s) * 1000
-        if value["type"] == "still-there":
+        if value["type"] == "keepalive":
             return
         self.messages += 1
         if value["type"] == "changes":

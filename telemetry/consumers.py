@@ -25,9 +25,9 @@ class LiveConsumer(SignedInSocket):
     """`/ws/live` and `/ws/missions/{id}/live`: everything that such a page shows, then what changes.
 
     `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […],
-    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "gone": {"uavs": [… ids …], …}}`, numbered one
-    by one, and `{"type": "still-there"}` after two seconds of silence. The page says `{"type": "have", "sequence": n}` of each that has a
-    number of its own, and is told the latest of each object once it has the one before the last; or `{"type": "again"}` where it has lost
+    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "removed": {"uavs": [… ids …], …}}`, numbered one
+    by one, and `{"type": "keepalive"}` after two seconds of silence. The page says `{"type": "ack", "sequence": n}` of each that has a
+    number of its own, and is told the latest of each object once it has the one before the last; or `{"type": "resync"}` where it has lost
     count. Closed with 4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is
     deleted, and at once with 4429 where the user or the network has as many websockets open as are allowed.
     """
@@ -73,7 +73,7 @@ class LiveConsumer(SignedInSocket):
                 full_s = 0.0
                 await self.send(feed.next_message(reader))
             elif not reader.is_full:
-                await self.send(message("still-there", reader.sequence))
+                await self.send(message("keepalive", reader.sequence))
             elif (full_s := full_s + HEARTBEAT_INTERVAL_S) >= STALLED_S:
                 return self.hang_up(STALLED)
 
@@ -83,9 +83,9 @@ def _heed(reader: Reader, stated: str | None) -> None:
     if stated is None or len(stated) > MAX_MESSAGE_LENGTH:
         raise ValueError
     match orjson.loads(stated):
-        case {"type": "have", "sequence": int(sequence), **rest} if not rest:
+        case {"type": "ack", "sequence": int(sequence), **rest} if not rest:
             reader.confirm(sequence)
-        case {"type": "again", **rest} if not rest:
+        case {"type": "resync", **rest} if not rest:
             reader.again()
         case _:
             raise SaysNonsense

@@ -35,14 +35,14 @@ def live_text(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) 
 def changes(read_snapshot: LiveSnapshot, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
     """The body of a message of changes: what is shown, whole; of the rest that it is gone."""
     there: dict[str, list[str]] = {kind: [] for kind in KINDS}
-    gone: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    removed: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for key in sorted(keys):
         kind, name = key
         text = read_snapshot.text(key, language) if read_snapshot.is_shown(key, mission) else None
         if text is not None:
             there[kind].append(text)
         else:
-            gone[kind].append(name if name.isdigit() else f'"{name}"')
+            removed[kind].append(name if name.isdigit() else f'"{name}"')
     parts = [f'"{kind}":[{",".join(there[kind])}]' for kind in KINDS]
-    ended = ",".join(f'"{kind}":[{",".join(gone[kind])}]' for kind in KINDS)
-    return ",".join(parts) + f',"gone":{{{ended}}}'
+    ended = ",".join(f'"{kind}":[{",".join(removed[kind])}]' for kind in KINDS)
+    return ",".join(parts) + f',"removed":{{{ended}}}'

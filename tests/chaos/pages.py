@@ -71,7 +71,7 @@ class Page:
             self._socket.close()
 
     def _take(self, message: dict[str, Any]) -> None:
-        if message["type"] == "still-there":
+        if message["type"] == "keepalive":
             return
         self.messages += 1
         self.gaps += message["type"] == "changes" and message["sequence"] != self._sequence + 1
@@ -80,7 +80,7 @@ class Page:
             if uav["measured"]:
                 self.measured_at = max(self.measured_at, datetime.fromisoformat(uav["measured"]["received_at"]))
         assert self._socket is not None
-        self._socket.send(json.dumps({"type": "have", "sequence": self._sequence}))
+        self._socket.send(json.dumps({"type": "ack", "sequence": self._sequence}))
 
 
 @dataclass

@@ -52,12 +52,12 @@ class Socket {
 }
 
 const snapshot = (sequence, live) => ({ type: "snapshot", sequence, live: { ...EMPTY, ...live } });
-const changes = (sequence, some, gone = {}) => ({
+const changes = (sequence, some, removed = {}) => ({
   type: "changes",
   sequence,
   ...EMPTY,
   ...some,
-  gone: { ...EMPTY, ...gone },
+  removed: { ...EMPTY, ...removed },
 });
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
@@ -111,8 +111,8 @@ test("a page shows everything, then what changes, and confirms each word", (cont
   assert.deepEqual([...feed.shown.uavs.values()], [{ id: 1, name: "Arctic tern" }]);
   assert.deepEqual([...reported.at(-1).uavs], [1, 2]);
   assert.deepEqual(Socket.last.sent, [
-    { type: "have", sequence: 1 },
-    { type: "have", sequence: 2 },
+    { type: "ack", sequence: 1 },
+    { type: "ack", sequence: 2 },
   ]);
   assert.deepEqual(states, ["connecting", "live"]);
   feed.close();
@@ -131,7 +131,7 @@ test("after a gap the page asks once for everything and takes nothing before tha
   assert.equal(feed.shown.uavs.get(1).at, "a");
   assert.deepEqual(
     Socket.last.sent.map(({ type }) => type),
-    ["have", "again", "have", "have"],
+    ["ack", "resync", "ack", "ack"],
   );
   Socket.last.receives(snapshot(5, { uavs: [{ id: 1, at: "e" }] }));
   Socket.last.receives(changes(6, { uavs: [{ id: 1, at: "f" }] }));
@@ -143,17 +143,17 @@ test("after a gap the page asks once for everything and takes nothing before tha
 test("a word that was lost last of all is found missing by the next sign of life", (context) => {
   const { feed } = page(context);
   Socket.last.receives(snapshot(1));
-  Socket.last.receives({ type: "still-there", sequence: 1 });
+  Socket.last.receives({ type: "keepalive", sequence: 1 });
   assert.equal(Socket.last.sent.length, 1);
-  Socket.last.receives({ type: "still-there", sequence: 2 });
-  assert.deepEqual(Socket.last.sent.at(-1), { type: "again" });
+  Socket.last.receives({ type: "keepalive", sequence: 2 });
+  assert.deepEqual(Socket.last.sent.at(-1), { type: "resync" });
   feed.close();
 });
 
 test("a page that fails to draw confirms all the same, so that it is told the next", (context) => {
   const { feed } = page(context, { onChange: () => assert.fail("not drawn") });
   assert.throws(() => Socket.last.receives(snapshot(1)), /not drawn/);
-  assert.deepEqual(Socket.last.sent, [{ type: "have", sequence: 1 }]);
+  assert.deepEqual(Socket.last.sent, [{ type: "ack", sequence: 1 }]);
   feed.close();
 });
 
@@ -221,7 +221,7 @@ test("a live socket that falls silent is replaced after 5 s: the server sends a 
   const { feed, states, pass } = page(context);
   Socket.last.receives(snapshot(1));
   await pass(4_000);
-  Socket.last.receives({ type: "still-there", sequence: 1 });
+  Socket.last.receives({ type: "keepalive", sequence: 1 });
   await pass(4_000);
   assert.deepEqual(states, ["connecting", "live"]);
   await pass(1_000);
@@ -275,7 +275,7 @@ test("a page that hears nothing says so after 5 s, with the time of the last mes
   assert.match(sent().rest, /^Last message \d\d:00:00: everything here is as of then\./);
   clock.pass(40_000);
   assert.equal(feed.shown_ms(), received_ms);
-  Socket.last.receives({ type: "still-there", sequence: 1 });
+  Socket.last.receives({ type: "keepalive", sequence: 1 });
   assert.deepEqual([sent(), feed.silent_ms()], [null, 0]);
   feed.close();
 });

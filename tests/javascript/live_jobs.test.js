@@ -32,7 +32,7 @@ test("a job is told over its socket until it has ended", async () => {
   const ended = followLive("j1", { Socket, onProgress: (job) => received.push(job.progress) });
   assert.equal(Socket.last.address, "wss://spanwise.example/ws/jobs/j1");
   Socket.last.says({ state: "running", progress: 0.5 });
-  Socket.last.dispatchEvent(new MessageEvent("message", { data: '{"type":"still-there"}' }));
+  Socket.last.dispatchEvent(new MessageEvent("message", { data: '{"type":"keepalive"}' }));
   Socket.last.says({ state: "done", result: { routes: [] } });
   assert.deepEqual((await ended).result, { routes: [] });
   assert.deepEqual(received, [0.5]);

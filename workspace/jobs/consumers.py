@@ -30,7 +30,7 @@ _encode = DjangoJSONEncoder(separators=(",", ":")).encode
 class JobConsumer(SignedInSocket):
     """`/ws/jobs/{id}`: the job as `GET /api/v1/jobs/{id}` shows it, at once and after every change, until it has ended.
 
-    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "still-there"}`; nothing is to be sent here. Closed
+    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "keepalive"}`; nothing is to be sent here. Closed
     with 4401 soon after whoever listens may not any more, and at once with 4429 where they have too many websockets open.
     """
 
@@ -78,7 +78,7 @@ class JobConsumer(SignedInSocket):
                     if not is_open:
                         return self.hang_up(ENDED)
             if loop.time() - answered_s >= KEEPALIVE_INTERVAL_S:
-                await self.send('{"type":"still-there"}')
+                await self.send('{"type":"keepalive"}')
                 answered_s = loop.time()
             if await wait_for_event(self._has_message, POLL_INTERVAL_S):
                 await asyncio.sleep(MESSAGE_INTERVAL_S)

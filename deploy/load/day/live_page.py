@@ -74,7 +74,7 @@ class LivePage:
     def _take(self, message: dict[str, Any], socket: WebSocket) -> None:
         self.received_at_s = time.monotonic()
         self.messages += 1
-        if message["type"] == "still-there":
+        if message["type"] == "keepalive":
             if self._sequence and message["sequence"] != self._sequence:
                 self._miss(message, socket)
             return
@@ -86,12 +86,12 @@ class LivePage:
         else:
             for table in TABLES:
                 self.shown[table] |= {entry["id"]: entry for entry in message[table]}
-                for gone in message["gone"][table]:
+                for gone in message["removed"][table]:
                     self.shown[table].pop(gone, None)
         self._sequence = message["sequence"]
-        socket.send(orjson.dumps({"type": "have", "sequence": self._sequence}).decode())
+        socket.send(orjson.dumps({"type": "ack", "sequence": self._sequence}).decode())
 
     def _miss(self, message: dict[str, Any], socket: WebSocket) -> None:
         self.gaps += 1
         self.book.note(kinds.GAP, by=self.by, expected=self._sequence + 1, got=message["sequence"])
-        socket.send(orjson.dumps({"type": "again"}).decode())
+        socket.send(orjson.dumps({"type": "resync"}).decode())

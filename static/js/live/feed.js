@@ -201,7 +201,7 @@ class Feed {
       }
     } finally {
       // the next but one comes after it
-      if (message.type !== "still-there") this.#send({ type: "have", sequence: message.sequence });
+      if (message.type !== "keepalive") this.#send({ type: "ack", sequence: message.sequence });
     }
   }
 
@@ -217,7 +217,7 @@ class Feed {
 
   /** Asks for everything once: messages between here and the answer are of no use. @param {Message} message */
   #askAgain(message) {
-    if (this.#sequence || message.type === "still-there") this.#send({ type: "again" });
+    if (this.#sequence || message.type === "keepalive") this.#send({ type: "resync" });
     this.#sequence = 0;
   }
 

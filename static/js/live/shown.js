@@ -4,7 +4,7 @@
 
 /** @typedef {{ [Kind in keyof Live]: Map<Live[Kind][number]["id"], Live[Kind][number]> }} Shown */
 /** @typedef {{ [Kind in keyof Live]?: Set<number | string> }} Touched ids that came, changed or went */
-/** @typedef {Partial<Live> & { gone?: { [Kind in keyof Live]?: (number | string)[] } }} Changes */
+/** @typedef {Partial<Live> & { removed?: { [Kind in keyof Live]?: (number | string)[] } }} Changes */
 
 /** @type {(keyof Live)[]} */
 export const KINDS = ["uavs", "missions", "alerts", "commands", "offers"];
@@ -26,10 +26,10 @@ export function applyChanges(shown, changes) {
   const touched = {};
   for (const kind of KINDS) {
     const came = changes[kind] ?? [];
-    const gone = changes.gone?.[kind] ?? [];
+    const removed = changes.removed?.[kind] ?? [];
     for (const entry of came) all[kind].set(entry.id, entry);
-    for (const id of gone) all[kind].delete(id);
-    touched[kind] = new Set([...came.map(({ id }) => id), ...gone]);
+    for (const id of removed) all[kind].delete(id);
+    touched[kind] = new Set([...came.map(({ id }) => id), ...removed]);
   }
   return touched;
 }

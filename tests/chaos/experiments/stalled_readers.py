@@ -64,9 +64,9 @@ class Reader:
             self.snapshots += 1
         elif message["type"] == "changes":
             self.gaps += message["sequence"] != self._sequence + 1
-        if message["type"] != "still-there":
+        if message["type"] != "keepalive":
             self._sequence = message["sequence"]
-            socket.report({"type": "have", "sequence": self._sequence})
+            socket.report({"type": "ack", "sequence": self._sequence})
 
 
 async def _open(port: int, trust: ssl.SSLContext, token: str) -> Socket:

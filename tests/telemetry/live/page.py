@@ -32,8 +32,8 @@ class Page:
 
     def take(self) -> dict[str, Any]:
         message = self.receive()
-        if message["type"] != "still-there":
-            self.report({"type": "have", "sequence": message["sequence"]})
+        if message["type"] != "keepalive":
+            self.report({"type": "ack", "sequence": message["sequence"]})
         return message
 
     def receive(self) -> dict[str, Any]:
@@ -50,7 +50,7 @@ class Page:
             self.sequence = message["sequence"]
             for kind in KINDS:
                 self.shows[kind] |= {entry["id"]: entry for entry in message[kind]}
-                for gone in message["gone"][kind]:
+                for gone in message["removed"][kind]:
                     self.shows[kind].pop(gone, None)
         return message
 

@@ -38,8 +38,8 @@ def follow(here: Endpoint, path: str, user: User) -> WebSocket:
 
 def receive(live: WebSocket, document: Any, name: str) -> Any:
     """Return the next message but heartbeats, which has to be the one that the document names so."""
-    while (message := json.loads(live.recv()))["type"] == "still-there" != name:
-        validate(message, document["components"]["schemas"]["still-there"], openapi_document())
+    while (message := json.loads(live.recv()))["type"] == "keepalive" != name:
+        validate(message, document["components"]["schemas"]["keepalive"], openapi_document())
     validate(message, document["components"]["schemas"][name], openapi_document())
     return message
 
@@ -72,15 +72,15 @@ def test_every_websocket_is_in_the_document(document: Any) -> None:
     assert {channel["address"] for channel in document["channels"].values()} == addresses
 
 
-def test_the_live_feed_sends_what_the_document_says_and_takes_have_and_again(here: Endpoint, document: Any) -> None:
+def test_the_live_feed_sends_what_the_document_says_and_takes_ack_and_resync(here: Endpoint, document: Any) -> None:
     uav, live = a_flying_uav(), follow(here, "/ws/live", a_user())
     assert receive(live, document, "snapshot")["live"]["uavs"]
-    live.send('{"type": "have", "sequence": 1}')
+    live.send('{"type": "ack", "sequence": 1}')
     store_records([record(uav, 2, longitude_deg=10.5)])
     changed = receive(live, document, "changes")
     assert [reported["id"] for reported in changed["uavs"]] == [uav.pk]
-    live.send(json.dumps({"type": "have", "sequence": changed["sequence"]}))
-    live.send('{"type": "again"}')
+    live.send(json.dumps({"type": "ack", "sequence": changed["sequence"]}))
+    live.send('{"type": "resync"}')
     assert receive(live, document, "snapshot")["sequence"] > changed["sequence"]
 
 
@@ -105,10 +105,10 @@ def test_a_job_is_told_as_the_document_says(here: Endpoint, document: Any) -> No
 def test_a_follower_by_the_document_stays_and_one_that_confirms_nothing_is_hung_up_on(here: Endpoint, document: Any) -> None:
     uav, user = a_flying_uav(), a_user()
     live, mute = follow(here, "/ws/live", user), follow(here, "/ws/live", user)
-    live.send(json.dumps({"type": "have", "sequence": receive(live, document, "snapshot")["sequence"]}))
+    live.send(json.dumps({"type": "ack", "sequence": receive(live, document, "snapshot")["sequence"]}))
     store_records([record(uav, 2, longitude_deg=10.5)])
-    live.send(json.dumps({"type": "have", "sequence": receive(live, document, "changes")["sequence"]}))
+    live.send(json.dumps({"type": "ack", "sequence": receive(live, document, "changes")["sequence"]}))
     began_s = time.monotonic()
     while time.monotonic() - began_s < 75:
-        receive(live, document, "still-there")
+        receive(live, document, "keepalive")
     assert close_code(mute) == 1013

@@ -151,14 +151,14 @@ def test_a_page_of_a_mission_that_is_deleted_is_told_that_it_is_gone(here: Endpo
     "message",
     [
         pytest.param("x" * 1_000_000, id="a megabyte"),
-        pytest.param(b'{"type":"again"}', id="bytes"),
-        pytest.param('{"type":"again"' + " " * 5_000 + "}", id="more than 4 kB"),
+        pytest.param(b'{"type": "resync"}', id="bytes"),
+        pytest.param('{"type": "resync"' + " " * 5_000 + "}", id="more than 4 kB"),
         pytest.param("{", id="no JSON"),
         pytest.param("[1]", id="no object"),
         pytest.param('{"type":"drop"}', id="an unknown word"),
-        pytest.param('{"type":"have","sequence":7}', id="has what it was never told"),
-        pytest.param('{"type":"have","sequence":"1"}', id="no number"),
-        pytest.param('{"type":"again","and":1}', id="more than it may say"),
+        pytest.param('{"type": "ack","sequence":7}', id="has what it was never told"),
+        pytest.param('{"type": "ack","sequence":"1"}', id="no number"),
+        pytest.param('{"type": "resync","and":1}', id="more than it may say"),
     ],
 )
 def test_whoever_says_what_no_page_says_is_hung_up_on(here: Endpoint, message: str | bytes) -> None:

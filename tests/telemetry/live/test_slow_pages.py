@@ -65,11 +65,11 @@ def test_a_page_that_confirms_nothing_is_told_twice_and_in_the_end_the_latest_al
     slow.receive()
     assert slow.sequence == 2
     assert slow.shows["uavs"][uavs[0].pk]["measured"]["position"][0] < 10.0 + LAST / 100
-    slow.report({"type": "have", "sequence": 1})
+    slow.report({"type": "ack", "sequence": 1})
     slow.receive()
     assert slow.sequence == 3
     assert slow.shows == quick.shows
-    slow.report({"type": "have", "sequence": 3})
+    slow.report({"type": "ack", "sequence": 3})
     slow.socket.settimeout(1.5)
     with pytest.raises(Exception, match="timed out"):
         slow.receive()
@@ -84,7 +84,7 @@ def test_a_page_that_asks_again_is_whole_again(here: Endpoint) -> None:
     store_records([record(uav, 2, longitude_deg=10.5)])
     lost = json.loads(page.socket.recv())  # between here and there
     assert lost["type"] == "changes"
-    page.report({"type": "again"})
+    page.report({"type": "resync"})
     answer = page.take()
     assert (answer["type"], answer["sequence"]) == ("snapshot", 3)
     assert page.shows["uavs"][uav.pk]["measured"]["position"] == [10.5, 55.0]
