@@ -107,8 +107,9 @@ def watched_flights() -> list[WatchedFlight]:
 
 def _flight(row: Sequence[Any]) -> WatchedFlight:
     """A row of _FLYING: the fields of WatchedFlight in their order, home as longitude and latitude."""
-    *flown, lon, lat = row[:8]
-    return WatchedFlight(*flown, None if lon is None or lat is None else LonLat(lon, lat), *row[8:])
+    lon, lat = row[6:8]
+    home = None if lon is None or lat is None else LonLat(lon, lat)
+    return WatchedFlight(*(*row[:6], home, *row[8:]))
 
 
 def last_record_id() -> int:
