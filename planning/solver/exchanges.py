@@ -10,7 +10,8 @@ from numba import njit
 
 from planning.problem import IntArray
 from planning.solver.cost_matrices import NO_PATH_M
-from planning.solver.plan_state import NO, YES, Ground, Plan, RandomState, draw, draw_below
+from planning.solver.plan_state import NO, YES, Plan, RandomState, draw, draw_below
+from planning.solver.problem_arrays import ProblemArrays
 
 NEIGHBOURS = 12
 MAX_SEGMENT_LENGTH = 40
@@ -52,13 +53,13 @@ class Measured(NamedTuple):
 
 
 @njit(cache=True, nogil=True)
-def draw_move(ground: Ground, plan: Plan, random: RandomState, longest: int) -> Move:
+def draw_move(problem: ProblemArrays, plan: Plan, random: RandomState, longest: int) -> Move:
     """A move that joins two neighbouring targets. The first is of the route named, unless that is -1."""
     nothing = Move(NONE, 0, 0, 0, 0, 0, False)
     target = draw_below(random, len(plan.uav_of))
     if longest >= 0:
-        target = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
-    near = ground.near if draw(random) < NEAREST_SHARE else ground.joined
+        target = problem.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
+    near = problem.near if draw(random) < NEAREST_SHARE else problem.joined
     other_target = near[target, draw_below(random, min(near.shape[1], NEIGHBOURS + 1))]
     uav, other_uav = plan.uav_of[target], plan.uav_of[other_target]
     if uav < 0 or other_uav < 0 or target == other_target:
@@ -97,64 +98,64 @@ def _segment(random: RandomState, size: int, place: int) -> tuple[int, int]:
 
 
 @njit(cache=True, nogil=True)
-def added_m(ground: Ground, plan: Plan, move: Move) -> float:
+def added_m(problem: ProblemArrays, plan: Plan, move: Move) -> float:
     """Metres by which a move lengthens both routes together, whether or not it may be made."""
     uav, other_uav, first, end = move.uav, move.other_uav, move.first, move.end
     if move.kind == TAILS:
         size, other_size = plan.size[uav], plan.size[other_uav]
         before, behind = _around(plan, uav, move.slot, move.slot)
         other_before, other_behind = _around(plan, other_uav, first, first)
-        longer_m = _joined_m(ground, uav, before, other_behind) + _joined_m(ground, other_uav, other_before, behind)
+        longer_m = _joined_m(problem, uav, before, other_behind) + _joined_m(problem, other_uav, other_before, behind)
         longer_m -= plan.gap_m[uav, move.slot] + plan.gap_m[other_uav, first] * (other_size > 0)
-        if ground.class_of[uav] != ground.class_of[other_uav]:
-            tail_m, own_tail_m, _, _, _ = _carried(ground, plan, other_uav, uav, move.slot, size, NO)
-            other_tail_m, own_other_tail_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, other_size, NO)
+        if problem.class_of[uav] != problem.class_of[other_uav]:
+            tail_m, own_tail_m, _, _, _ = _carried(problem, plan, other_uav, uav, move.slot, size, NO)
+            other_tail_m, own_other_tail_m, _, _, _ = _carried(problem, plan, uav, other_uav, first, other_size, NO)
             longer_m += own_tail_m - tail_m + own_other_tail_m - other_tail_m
         if behind >= 0:
             last = plan.visit[uav, size - 1]
-            longer_m += ground.end_m[other_uav, last] - ground.end_m[uav, last]
+            longer_m += problem.end_m[other_uav, last] - problem.end_m[uav, last]
         if other_behind >= 0:
             last = plan.visit[other_uav, other_size - 1]
-            longer_m += ground.end_m[uav, last] - ground.end_m[other_uav, last]
+            longer_m += problem.end_m[uav, last] - problem.end_m[other_uav, last]
         return float(longer_m)
     begin, last = plan.visit[other_uav, first], plan.visit[other_uav, end - 1]
     longer_m = 0.0
     if move.is_turned:
-        begin, last = ground.reversed_visit[last], ground.reversed_visit[begin]
-    if (move.is_turned and not ground.is_alike) or ground.class_of[uav] != ground.class_of[other_uav]:
-        old_m, new_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, end, move.is_turned)
+        begin, last = problem.reversed_visit[last], problem.reversed_visit[begin]
+    if (move.is_turned and not problem.is_alike) or problem.class_of[uav] != problem.class_of[other_uav]:
+        old_m, new_m, _, _, _ = _carried(problem, plan, uav, other_uav, first, end, move.is_turned)
         longer_m = new_m - old_m
     before, behind = _around(plan, other_uav, first, end)
     longer_m -= plan.gap_m[other_uav, first] + plan.gap_m[other_uav, end]
     if move.kind == TURN:
-        return float(longer_m + _joined_m(ground, uav, before, begin) + _joined_m(ground, uav, last, behind))
+        return float(longer_m + _joined_m(problem, uav, before, begin) + _joined_m(problem, uav, last, behind))
     left, right = _around(plan, uav, move.slot, move.slot)
-    longer_m += _joined_m(ground, other_uav, before, behind) - plan.gap_m[uav, move.slot]
-    return float(longer_m + _joined_m(ground, uav, left, begin) + _joined_m(ground, uav, last, right))
+    longer_m += _joined_m(problem, other_uav, before, behind) - plan.gap_m[uav, move.slot]
+    return float(longer_m + _joined_m(problem, uav, left, begin) + _joined_m(problem, uav, last, right))
 
 
 @njit(cache=True, nogil=True)
-def measured(ground: Ground, plan: Plan, move: Move) -> Measured:
+def measured(problem: ProblemArrays, plan: Plan, move: Move) -> Measured:
     uav, other_uav = move.uav, move.other_uav
     length_m, service_s, done = plan.length_m[uav], plan.service_s[uav], plan.done[uav]
     if move.kind == TAILS:
-        return _with_other_tails(ground, plan, move)
-    old_m, new_m, moved_s, moved, may = _carried(ground, plan, uav, other_uav, move.first, move.end, move.is_turned)
+        return _with_other_tails(problem, plan, move)
+    old_m, new_m, moved_s, moved, may = _carried(problem, plan, uav, other_uav, move.first, move.end, move.is_turned)
     if not may:
         return Measured(NO_PATH_M, service_s, done, NO_PATH_M, service_s, done)
     before, behind = _around(plan, other_uav, move.first, move.end)
     begin, last = plan.visit[other_uav, move.first], plan.visit[other_uav, move.end - 1]
     if move.is_turned:
-        begin, last = ground.reversed_visit[last], ground.reversed_visit[begin]
+        begin, last = problem.reversed_visit[last], problem.reversed_visit[begin]
     if move.kind == TURN:
-        length_m += _joined_m(ground, uav, before, begin) + new_m + _joined_m(ground, uav, last, behind)
+        length_m += _joined_m(problem, uav, before, begin) + new_m + _joined_m(problem, uav, last, behind)
         length_m -= plan.gap_m[uav, move.first] + old_m + plan.gap_m[uav, move.end]
         return Measured(length_m, service_s, done, length_m, service_s, done)
     left, right = _around(plan, uav, move.slot, move.slot)
-    added_m = _joined_m(ground, uav, left, begin) + new_m + _joined_m(ground, uav, last, right)
+    added_m = _joined_m(problem, uav, left, begin) + new_m + _joined_m(problem, uav, last, right)
     if plan.size[uav]:
         added_m -= plan.gap_m[uav, move.slot]
-    removed_m = plan.gap_m[other_uav, move.first] + old_m + plan.gap_m[other_uav, move.end] - _joined_m(ground, other_uav, before, behind)
+    removed_m = plan.gap_m[other_uav, move.first] + old_m + plan.gap_m[other_uav, move.end] - _joined_m(problem, other_uav, before, behind)
     if move.kind == WITHIN:
         length_m += added_m - removed_m
         return Measured(length_m, service_s, done, length_m, service_s, done)
@@ -169,25 +170,25 @@ def measured(ground: Ground, plan: Plan, move: Move) -> Measured:
 
 
 @njit(cache=True, nogil=True)
-def _with_other_tails(ground: Ground, plan: Plan, move: Move) -> Measured:
+def _with_other_tails(problem: ProblemArrays, plan: Plan, move: Move) -> Measured:
     uav, other_uav, cut, other_cut = move.uav, move.other_uav, move.slot, move.first
     size, other_size = plan.size[uav], plan.size[other_uav]
-    _, tail_m, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, NO)
-    _, other_tail_m, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, NO)
+    _, tail_m, tail_s, tail, may = _carried(problem, plan, other_uav, uav, cut, size, NO)
+    _, other_tail_m, other_tail_s, other_tail, other_may = _carried(problem, plan, uav, other_uav, other_cut, other_size, NO)
     if not (may and other_may):
         return Measured(NO_PATH_M, 0.0, 0, NO_PATH_M, 0.0, 0)
     before, behind = _around(plan, uav, cut, cut)
     other_before, other_behind = _around(plan, other_uav, other_cut, other_cut)
-    length_m = _joined_m(ground, uav, before, other_behind) + other_tail_m
-    other_length_m = _joined_m(ground, other_uav, other_before, behind) + tail_m
+    length_m = _joined_m(problem, uav, before, other_behind) + other_tail_m
+    other_length_m = _joined_m(problem, other_uav, other_before, behind) + tail_m
     for place in range(cut):
         length_m += plan.gap_m[uav, place]
     for place in range(other_cut):
         other_length_m += plan.gap_m[other_uav, place]
     if other_cut < other_size:
-        length_m += ground.end_m[uav, plan.visit[other_uav, other_size - 1]]
+        length_m += problem.end_m[uav, plan.visit[other_uav, other_size - 1]]
     if cut < size:
-        other_length_m += ground.end_m[other_uav, plan.visit[uav, size - 1]]
+        other_length_m += problem.end_m[other_uav, plan.visit[uav, size - 1]]
     return Measured(
         length_m,
         plan.service_s[uav] - tail_s + other_tail_s,
@@ -200,23 +201,23 @@ def _with_other_tails(ground: Ground, plan: Plan, move: Move) -> Measured:
 
 @njit(cache=True, nogil=True)
 def _carried(
-    ground: Ground, plan: Plan, to_uav: int, uav: int, first: int, end: int, is_turned: bool
+    problem: ProblemArrays, plan: Plan, to_uav: int, uav: int, first: int, end: int, is_turned: bool
 ) -> tuple[float, float, float, int, bool]:
     """Metres inside a segment as it is and as the UAV that gets it would fly it, its service and targets, and whether that one may."""
-    visit, gap_m, usable = plan.visit[uav], plan.gap_m[uav], ground.usable[to_uav]
+    visit, gap_m, usable = plan.visit[uav], plan.gap_m[uav], problem.usable[to_uav]
     old_m, new_m, service_s, done = 0.0, 0.0, 0.0, 0
-    number, is_same = ground.class_of[to_uav], ground.class_of[to_uav] == ground.class_of[uav]
-    is_new = not is_same or (is_turned and not ground.is_alike)
+    number, is_same = problem.class_of[to_uav], problem.class_of[to_uav] == problem.class_of[uav]
+    is_new = not is_same or (is_turned and not problem.is_alike)
     for place in range(first, end):
         here = visit[place]
-        service_s += ground.service_s[here]
-        done += ground.done[here]
+        service_s += problem.service_s[here]
+        done += problem.done[here]
         if is_turned:
-            here = ground.reversed_visit[here]
+            here = problem.reversed_visit[here]
             if place > first and is_new:
-                new_m += ground.onward_m[number, here, ground.reversed_visit[visit[place - 1]]]
+                new_m += problem.onward_m[number, here, problem.reversed_visit[visit[place - 1]]]
         elif place > first and is_new:
-            new_m += ground.onward_m[number, visit[place - 1], here]
+            new_m += problem.onward_m[number, visit[place - 1], here]
         if place > first:
             old_m += gap_m[place]
         if not usable[here]:
@@ -224,7 +225,7 @@ def _carried(
     return old_m, new_m if is_new else old_m, service_s, done, True
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, inline="always")
 def _around(plan: Plan, uav: int, first: int, end: int) -> tuple[int, int]:
     """The visits before and behind a segment; -1 for the start and the end of the route."""
     before = plan.visit[uav, first - 1] if first > 0 else -1
@@ -232,15 +233,15 @@ def _around(plan: Plan, uav: int, first: int, end: int) -> tuple[int, int]:
     return before, behind
 
 
-@njit(cache=True, nogil=True)
-def _joined_m(ground: Ground, uav: int, left: int, right: int) -> float:
+@njit(cache=True, nogil=True, inline="always")
+def _joined_m(problem: ProblemArrays, uav: int, left: int, right: int) -> float:
     if left < 0:
-        return float(ground.first_m[uav, right]) if right >= 0 else 0.0
-    return float(ground.onward_m[ground.class_of[uav], left, right]) if right >= 0 else float(ground.end_m[uav, left])
+        return float(problem.first_m[uav, right]) if right >= 0 else 0.0
+    return float(problem.onward_m[problem.class_of[uav], left, right]) if right >= 0 else float(problem.end_m[uav, left])
 
 
 @njit(cache=True, nogil=True)
-def make(ground: Ground, plan: Plan, old: Plan, move: Move) -> None:
+def make(problem: ProblemArrays, plan: Plan, old: Plan, move: Move) -> None:
     """Change the routes of the two UAVs, of which `old` has copies. What follows from the visits is left to `settle`."""
     uav, other_uav, first, end = move.uav, move.other_uav, move.first, move.end
     if move.kind == TAILS:
@@ -248,13 +249,13 @@ def make(ground: Ground, plan: Plan, old: Plan, move: Move) -> None:
     elif move.kind == SEGMENT:
         size, other_size, slot, length = old.size[uav], old.size[other_uav], move.slot, end - first
         plan.visit[uav, slot + length : size + length] = old.visit[uav, slot:size]
-        _lay(ground, plan.visit[uav], slot, old.visit[other_uav], first, end, move.is_turned)
+        _lay(problem, plan.visit[uav], slot, old.visit[other_uav], first, end, move.is_turned)
         plan.visit[other_uav, first : other_size - length] = old.visit[other_uav, end:other_size]
         plan.size[uav], plan.size[other_uav] = size + length, other_size - length
     elif move.kind == TURN:
-        _lay(ground, plan.visit[uav], first, old.visit[uav], first, end, YES)
+        _lay(problem, plan.visit[uav], first, old.visit[uav], first, end, YES)
     elif move.kind == WITHIN:
-        _move_within(ground, plan.visit[uav], old.visit[uav], move)
+        _move_within(problem, plan.visit[uav], old.visit[uav], move)
 
 
 @njit(cache=True, nogil=True)
@@ -267,18 +268,18 @@ def _exchange_tails(plan: Plan, old: Plan, uav: int, other_uav: int, cut: int, o
 
 
 @njit(cache=True, nogil=True)
-def _move_within(ground: Ground, visit: IntArray, old: IntArray, move: Move) -> None:
+def _move_within(problem: ProblemArrays, visit: IntArray, old: IntArray, move: Move) -> None:
     slot, first, end = move.slot, move.first, move.end
     length = end - first
     if slot <= first:
         visit[slot + length : end] = old[slot:first]
-        _lay(ground, visit, slot, old, first, end, move.is_turned)
+        _lay(problem, visit, slot, old, first, end, move.is_turned)
     else:
         visit[first : slot - length] = old[end:slot]
-        _lay(ground, visit, slot - length, old, first, end, move.is_turned)
+        _lay(problem, visit, slot - length, old, first, end, move.is_turned)
 
 
 @njit(cache=True, nogil=True)
-def _lay(ground: Ground, visit: IntArray, at: int, old: IntArray, first: int, end: int, is_turned: bool) -> None:
+def _lay(problem: ProblemArrays, visit: IntArray, at: int, old: IntArray, first: int, end: int, is_turned: bool) -> None:
     for number in range(end - first):
-        visit[at + number] = ground.reversed_visit[old[end - 1 - number]] if is_turned else old[first + number]
+        visit[at + number] = problem.reversed_visit[old[end - 1 - number]] if is_turned else old[first + number]

@@ -2,11 +2,19 @@
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
+from cffi import FFI
+from numba import carray, njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, InvalidProblem, Objective, Problem
 from planning.solver.cost_matrices import NO_LIMIT, NO_PATH_M, Kind, Quantities, classes_of, quantities_of
+
+MAX_NEIGHBOURS = 60
+MAX_JOINED = 12
+ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding
+_ffi = FFI()
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +117,201 @@ class Arcs:
         """The visits of each target one after another, and where each target's begin: (v,) and (t + 1,)."""
         order = np.argsort(self.target, kind="stable")
         return order, np.searchsorted(self.target[order], np.arange(len(self.weight) + 1))
+
+
+class ProblemArrays(NamedTuple):
+    """A problem as the search reads it; it does not change. The first arrays are those of Arcs.
+
+    back_m   (c, v, v) the arcs that lead to a visit in one row
+    reversed_visit (v,) the same target the other way round; a visit that has none is its own
+    is_alike whether an arc is as long as its reverse, and no visit has a reversed one
+    class_of (u,) the class of each UAV, of which the arcs are its own
+    more_*   what else is limited, as in Burden
+    first_of, end_of  (u,) the first of the sorties of the same UAV, and one past its last: a row of the plan is one sortie
+    option   (v,) the visits of each target one after another, option_from (t + 1,) where each target's begin
+    usable   (u, v) whether the UAV can and may fly the visit at all
+    near     (t, k) the nearest targets of each, itself first
+    joined   (t, k) those that a tree of the least metres joins it to, or would at the least detour, itself first
+    far_m    (t,) from the nearest start
+    """
+
+    first_m: FloatArray
+    onward_m: FloatArray
+    end_m: FloatArray
+    target: IntArray
+    service_s: FloatArray
+    done: IntArray
+    limit_m: FloatArray
+    speed_mps: FloatArray
+    ready_s: FloatArray
+    most: IntArray
+    weight: FloatArray
+    is_makespan: bool
+    back_m: FloatArray
+    reversed_visit: IntArray
+    is_alike: bool
+    option: IntArray
+    option_from: IntArray
+    usable: BoolArray
+    near: IntArray
+    joined: IntArray
+    far_m: FloatArray
+    class_of: IntArray
+    is_limited: bool
+    more_first: FloatArray
+    more_onward: FloatArray
+    more_end: FloatArray
+    more_limit: FloatArray
+    has_sorties: bool
+    first_of: IntArray
+    end_of: IntArray
+
+
+@njit(cache=True, nogil=True)
+def raw_view(array: Any) -> Any:
+    """Return the same elements as memory that the caller owns: no references are counted for it.
+
+    numba counts them atomically for each array of a tuple, in each call that is handed the tuple, which takes 1.6 times as long as the
+    search itself. The view is valid as long as the caller keeps the array.
+    """
+    return carray(_ffi.from_buffer(array), array.shape)
+
+
+@njit(cache=True, nogil=True)
+def raw_problem(problem: ProblemArrays) -> ProblemArrays:
+    """Return raw views of all arrays."""
+    return ProblemArrays(
+        raw_view(problem.first_m),
+        raw_view(problem.onward_m),
+        raw_view(problem.end_m),
+        raw_view(problem.target),
+        raw_view(problem.service_s),
+        raw_view(problem.done),
+        raw_view(problem.limit_m),
+        raw_view(problem.speed_mps),
+        raw_view(problem.ready_s),
+        raw_view(problem.most),
+        raw_view(problem.weight),
+        problem.is_makespan,
+        raw_view(problem.back_m),
+        raw_view(problem.reversed_visit),
+        problem.is_alike,
+        raw_view(problem.option),
+        raw_view(problem.option_from),
+        raw_view(problem.usable),
+        raw_view(problem.near),
+        raw_view(problem.joined),
+        raw_view(problem.far_m),
+        raw_view(problem.class_of),
+        problem.is_limited,
+        raw_view(problem.more_first),
+        raw_view(problem.more_onward),
+        raw_view(problem.more_end),
+        raw_view(problem.more_limit),
+        problem.has_sorties,
+        raw_view(problem.first_of),
+        raw_view(problem.end_of),
+    )
+
+
+def problem_arrays_of(problem: Problem, arcs: Arcs, usable: BoolArray) -> ProblemArrays:
+    option, option_from = arcs.visits_of_target
+    apart_m = _apart_m(arcs)
+    near = np.argsort(apart_m, axis=1, kind="stable")[:, : MAX_NEIGHBOURS + 1]
+    far_m = np.full(len(arcs.weight), NO_PATH_M)
+    reversed_visit = _reversed_visits(problem)
+    turned_m = arcs.onward_m.transpose(0, 2, 1)
+    is_alike = np.allclose(arcs.onward_m, turned_m, rtol=0.0, atol=ALIKE_M)
+    first_of, end_of = np.searchsorted(arcs.owner, arcs.owner), np.searchsorted(arcs.owner, arcs.owner, side="right")
+    is_later = first_of < np.arange(len(first_of))
+    if len(arcs.first_m):
+        np.minimum.at(far_m, arcs.target, arcs.first_m.min(axis=0))
+    return ProblemArrays(
+        arcs.first_m,
+        arcs.onward_m,
+        arcs.end_m,
+        arcs.target,
+        arcs.service_s,
+        arcs.done,
+        arcs.limit_m,
+        arcs.speed_mps,
+        arcs.ready_s + np.where(is_later, arcs.turnaround_s, 0.0),
+        arcs.most,
+        arcs.weight,
+        arcs.is_makespan,
+        arcs.onward_m if is_alike else np.ascontiguousarray(turned_m),
+        reversed_visit,
+        is_alike and bool((reversed_visit == np.arange(len(reversed_visit))).all()),
+        option,
+        option_from,
+        np.ascontiguousarray(usable),
+        np.ascontiguousarray(near),
+        _joined(apart_m),
+        far_m,
+        arcs.class_of,
+        bool(len(arcs.burden)),
+        np.ascontiguousarray(arcs.burden.first),
+        np.ascontiguousarray(arcs.burden.onward),
+        np.ascontiguousarray(arcs.burden.end),
+        np.ascontiguousarray(arcs.burden.limit),
+        arcs.has_sorties,
+        first_of,
+        end_of,
+    )
+
+
+def _reversed_visits(problem: Problem) -> IntArray:
+    reversed_visit = np.arange(len(problem.visits))
+    for visits in problem.visits_of_target():
+        if len(visits) == 2 and problem.visits[visits[0]].is_reversed != problem.visits[visits[1]].is_reversed:
+            reversed_visit[visits] = visits[::-1]
+    return reversed_visit
+
+
+def _apart_m(arcs: Arcs) -> FloatArray:
+    """Metres between targets, over their nearest visits and the better direction, (t, t); below 0 from each to itself."""
+    targets = len(arcs.weight)
+    apart_m = np.full((targets, targets), NO_PATH_M)
+    np.minimum.at(apart_m, (arcs.target[:, None], arcs.target[None, :]), arcs.onward_m.min(axis=0))
+    apart_m = np.asarray(np.minimum(apart_m, apart_m.T), dtype=np.float64)
+    np.fill_diagonal(apart_m, -1.0)
+    return apart_m
+
+
+def _joined(apart_m: FloatArray) -> IntArray:
+    """The targets that cost the least to join to each, if the least spanning tree loses its longest arc between them for it.
+
+    Alpha-nearness: K. Helsgaun, European Journal of Operational Research 126 (2000). Unlike the nearest, they lead out of every cluster.
+    """
+    detour_m = apart_m - _longest_between(apart_m)
+    np.fill_diagonal(detour_m, -1.0)
+    order = np.lexsort((apart_m, np.round(detour_m, 3)), axis=1)
+    return np.ascontiguousarray(order[:, : MAX_JOINED + 1])
+
+
+@njit(cache=True, nogil=True)
+def _longest_between(apart_m: FloatArray) -> FloatArray:
+    """The longest arc between any two targets in the least spanning tree (Prim 1957), (t, t)."""
+    targets = len(apart_m)
+    longest_m = np.zeros((targets, targets))
+    key_m = np.full(targets, np.inf)
+    parent = np.full(targets, -1, dtype=np.int64)
+    is_in = np.zeros(targets, dtype=np.bool_)
+    order = np.empty(targets, dtype=np.int64)
+    for count in range(targets):
+        next_one = -1
+        for target in range(targets):
+            if not is_in[target] and (next_one < 0 or key_m[target] < key_m[next_one]):
+                next_one = target
+        for at in range(count):
+            other = order[at]
+            reach_m = max(longest_m[parent[next_one], other], key_m[next_one])
+            longest_m[next_one, other] = longest_m[other, next_one] = reach_m
+        order[count], is_in[next_one] = next_one, True
+        for target in range(targets):
+            if not is_in[target] and apart_m[next_one, target] < key_m[target]:
+                key_m[target], parent[target] = apart_m[next_one, target], next_one
+    return longest_m
 
 
 def _kinds(problem: Problem) -> list[Kind]:

@@ -5,12 +5,9 @@ from one route, which helps where few UAVs fly many targets, and for the longest
 """
 
 import math
-from typing import Any
 
 import numpy as np
-from llvmlite import ir
-from numba import njit, types
-from numba.extending import intrinsic
+from numba import njit
 
 from planning.solver.exchanges import NONE, draw_move, make
 from planning.solver.insertion import recreate
@@ -18,17 +15,18 @@ from planning.solver.objective import cost_of, cost_of_routes, is_better, is_wan
 from planning.solver.plan_state import (
     NO,
     NO_LIMIT_M,
-    Ground,
     Workspace,
     copy_plan,
     copy_route,
     draw,
     draw_below,
     keeps_further_limits,
+    raw_workspace,
     save,
     settle,
     values,
 )
+from planning.solver.problem_arrays import ProblemArrays, raw_problem
 
 MEAN_REMOVED = 10.0
 MAX_STRING_LENGTH = 10.0
@@ -39,92 +37,74 @@ MOVES_FOR_TOTAL, MOVES_FOR_LONGEST = 20, 4  # in each round; for the longest rou
 NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
 
 
-def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    if isinstance(kind, types.Array):
-        array = context.make_array(kind)(context, builder, value)
-        array.meminfo = ir.Constant(array.meminfo.type, None)
-        return array._getvalue()
-    if isinstance(kind, types.BaseTuple):
-        members: Any = kind
-        parts = [_without_owner(context, builder, member, builder.extract_value(value, at)) for at, member in enumerate(members)]
-        return context.make_tuple(builder, kind, parts)
-    return value
-
-
-@intrinsic
-def unowned(typing_context: Any, arrays: Any) -> Any:
-    """The same array, or tuple of arrays and tuples, for use while the caller keeps it alive."""
-
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _without_owner(context, builder, arrays, arguments[0])
-
-    return arrays(arrays), code
-
-
 @njit(cache=True, nogil=True)
-def construct(ground: Ground, work: Workspace, power: int, tries: int) -> None:
+def construct(problem: ProblemArrays, work: Workspace, power: int, tries: int) -> None:
     """Fill the empty plan from several orders of insertion; the best stays, as the current and the best plan."""
     scale = 1e-9
-    for visit in range(len(ground.target)):
-        for uav in range(len(ground.usable)):
-            if ground.usable[uav, visit]:
-                scale = max(scale, min(ground.far_m[ground.target[visit]], NO_LIMIT_M) / ground.speed_mps[uav])
+    for visit in range(len(problem.target)):
+        for uav in range(len(problem.usable)):
+            if problem.usable[uav, visit]:
+                scale = max(scale, min(problem.far_m[problem.target[visit]], NO_LIMIT_M) / problem.speed_mps[uav])
     plan = work.plan
     for number in range(tries):
         for uav in range(len(plan.size)):
             plan.size[uav] = 0
-            settle(ground, plan, uav)
+            settle(problem, plan, uav)
         plan.uav_of[:] = -1
         for target in range(len(plan.uav_of)):
             work.waiting[target] = target
         work.is_saved[:] = True
-        recreate(ground, work, len(plan.uav_of), number % 3, power, scale, NO)
+        recreate(problem, work, len(plan.uav_of), number % 3, power, scale, NO)
         for uav in range(len(plan.size)):
-            settle(ground, plan, uav)
-        if number == 0 or is_better(ground, plan, work.best):
+            settle(problem, plan, uav)
+        if number == 0 or is_better(problem, plan, work.best):
             copy_plan(plan, work.best)
     copy_plan(work.best, work.plan)
 
 
 @njit(cache=True, nogil=True)
-def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: float, power: int) -> None:
+def anneal(problem: ProblemArrays, work: Workspace, rounds: int, warm: float, cold: float, power: int) -> None:
     """So many rounds of moves, taking out and putting back, the temperature falling from warm to cold, in units of the cost."""
-    ground, work = unowned(ground), unowned(work)  # type: ignore[call-arg]
+    _anneal(raw_problem(problem), raw_workspace(work), rounds, warm, cold, power)
+
+
+@njit(cache=True, nogil=True)
+def _anneal(problem: ProblemArrays, work: Workspace, rounds: int, warm: float, cold: float, power: int) -> None:
     plan = work.plan
-    scale = max(1e-9, values(ground, work.best)[2])
-    missed, cost = cost_of(ground, plan, power, scale)
-    best_missed, best_total_m, _ = values(ground, work.best)
+    scale = max(1e-9, values(problem, work.best)[2])
+    missed, cost = cost_of(problem, plan, power, scale)
+    best_missed, best_total_m, _ = values(problem, work.best)
     cooling = math.exp(math.log(cold / warm) / rounds) if rounds else 1.0
-    moves = MOVES_FOR_LONGEST if ground.is_makespan else MOVES_FOR_TOTAL
+    moves = MOVES_FOR_LONGEST if problem.is_makespan else MOVES_FOR_TOTAL
     temperature = warm
     for _ in range(rounds):
         temperature *= cooling
         for _ in range(moves):
             longest = -1
-            if ground.is_makespan and draw(work.random) < AROUND_MAX_SHARE:
-                longest = longest_of(ground, plan)
+            if problem.is_makespan and draw(work.random) < AROUND_MAX_SHARE:
+                longest = longest_of(problem, plan)
             if longest >= 0 and plan.size[longest] == 0:
                 break
-            move = draw_move(ground, plan, work.random, longest)
-            if move.kind == NONE or not is_wanted(ground, plan, move, cost, temperature, power, scale, work.random):
+            move = draw_move(problem, plan, work.random, longest)
+            if move.kind == NONE or not is_wanted(problem, plan, move, cost, temperature, power, scale, work.random):
                 continue
             copy_route(plan, work.saved, move.uav)
             copy_route(plan, work.saved, move.other_uav)
-            make(ground, plan, work.saved, move)
-            settle(ground, plan, move.uav)
-            settle(ground, plan, move.other_uav)
-            if ground.is_limited and not (
-                keeps_further_limits(ground, plan, move.uav) and keeps_further_limits(ground, plan, move.other_uav)
+            make(problem, plan, work.saved, move)
+            settle(problem, plan, move.uav)
+            settle(problem, plan, move.other_uav)
+            if problem.is_limited and not (
+                keeps_further_limits(problem, plan, move.uav) and keeps_further_limits(problem, plan, move.other_uav)
             ):
-                _take_back(ground, work, move.uav)
-                _take_back(ground, work, move.other_uav)
+                _take_back(problem, work, move.uav)
+                _take_back(problem, work, move.other_uav)
                 continue
-            cost = cost_of_routes(ground, plan, power, scale)
-            if (ground.is_makespan or missed < best_missed or cost < best_total_m) and is_better(ground, plan, work.best):
+            cost = cost_of_routes(problem, plan, power, scale)
+            if (problem.is_makespan or missed < best_missed or cost < best_total_m) and is_better(problem, plan, work.best):
                 copy_plan(plan, work.best)
-                best_missed, best_total_m, _ = values(ground, plan)
+                best_missed, best_total_m, _ = values(problem, plan)
         work.is_saved[:] = False
-        count = _ruin(ground, work)
+        count = _ruin(problem, work)
         left_out = count
         for target in range(len(plan.uav_of)):
             if plan.uav_of[target] < 0 and not work.is_removed[target]:
@@ -133,51 +113,51 @@ def anneal(ground: Ground, work: Workspace, rounds: int, warm: float, cold: floa
         for place in range(left_out):
             work.is_removed[work.waiting[place]] = False
         dice = draw(work.random)
-        recreate(ground, work, count, 0 if dice < 0.6 else (1 if dice < 0.85 else 2), power, scale, draw(work.random) < NEAR_SHARE)
+        recreate(problem, work, count, 0 if dice < 0.6 else (1 if dice < 0.85 else 2), power, scale, draw(work.random) < NEAR_SHARE)
         now_missed, now_cost = np.inf, np.inf
-        if _is_whole(ground, work):
-            now_missed, now_cost = cost_of(ground, plan, power, scale)
+        if _is_whole(problem, work):
+            now_missed, now_cost = cost_of(problem, plan, power, scale)
         if now_missed < missed or (now_missed == missed and now_cost < cost - temperature * math.log(1.0 - draw(work.random))):
             missed, cost = now_missed, now_cost
-            if (ground.is_makespan or missed < best_missed or cost < best_total_m) and is_better(ground, plan, work.best):
+            if (problem.is_makespan or missed < best_missed or cost < best_total_m) and is_better(problem, plan, work.best):
                 copy_plan(plan, work.best)
-                best_missed, best_total_m, _ = values(ground, plan)
+                best_missed, best_total_m, _ = values(problem, plan)
         else:
             for place in range(count):
                 plan.uav_of[work.waiting[place]] = -1
             for uav in range(len(plan.size)):
                 if work.is_saved[uav]:
-                    _take_back(ground, work, uav)
+                    _take_back(problem, work, uav)
 
 
 @njit(cache=True, nogil=True)
-def _take_back(ground: Ground, work: Workspace, uav: int) -> None:
+def _take_back(problem: ProblemArrays, work: Workspace, uav: int) -> None:
     """The route as it was saved."""
     plan = work.plan
     copy_route(work.saved, plan, uav)
     for place in range(plan.size[uav]):
-        target = ground.target[plan.visit[uav, place]]
+        target = problem.target[plan.visit[uav, place]]
         plan.uav_of[target], plan.place[target] = uav, place
 
 
 @njit(cache=True, nogil=True)
-def _is_whole(ground: Ground, work: Workspace) -> bool:
+def _is_whole(problem: ProblemArrays, work: Workspace) -> bool:
     """Whether the changed routes, measured anew, keep their limits."""
     for uav in range(len(work.is_saved)):
         if work.is_saved[uav]:
-            settle(ground, work.plan, uav)
-            if work.plan.length_m[uav] > ground.limit_m[uav] or work.plan.done[uav] > ground.most[uav]:
+            settle(problem, work.plan, uav)
+            if work.plan.length_m[uav] > problem.limit_m[uav] or work.plan.done[uav] > problem.most[uav]:
                 return False
-            if ground.is_limited and not keeps_further_limits(ground, work.plan, uav):
+            if problem.is_limited and not keeps_further_limits(problem, work.plan, uav):
                 return False
             for place in range(work.plan.size[uav]):
-                if not ground.usable[uav, work.plan.visit[uav, place]]:
+                if not problem.usable[uav, work.plan.visit[uav, place]]:
                     return False
     return True
 
 
 @njit(cache=True, nogil=True)
-def _ruin(ground: Ground, work: Workspace) -> int:
+def _ruin(problem: ProblemArrays, work: Workspace) -> int:
     """Take strings out around one target; returns how many targets wait now."""
     plan, random = work.plan, work.random
     targets, uavs = len(plan.uav_of), len(plan.size)
@@ -191,14 +171,14 @@ def _ruin(ground: Ground, work: Workspace) -> int:
     most_strings = 4.0 * MEAN_REMOVED / (1.0 + longest_string) - 1.0
     strings = int(draw(random) * most_strings + 1.0)
     seed = draw_below(random, targets)
-    if ground.is_makespan and draw(random) < AROUND_MAX_SHARE:
-        longest = longest_of(ground, plan)
-        seed = ground.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
+    if problem.is_makespan and draw(random) < AROUND_MAX_SHARE:
+        longest = longest_of(problem, plan)
+        seed = problem.target[plan.visit[longest, draw_below(random, plan.size[longest])]]
     waiting = 0
-    for number in range(ground.near.shape[1]):
+    for number in range(problem.near.shape[1]):
         if strings == 0:
             break
-        target = ground.near[seed, number]
+        target = problem.near[seed, number]
         uav = plan.uav_of[target]
         if uav < 0 or work.is_removed[target]:
             continue
@@ -218,7 +198,7 @@ def _ruin(ground: Ground, work: Workspace) -> int:
         for at in range(begin, begin + whole):
             if kept and kept_from <= at < kept_from + kept:
                 continue
-            out = ground.target[plan.visit[uav, at]]
+            out = problem.target[plan.visit[uav, at]]
             if not work.is_removed[out]:
                 work.is_removed[out] = True
                 work.waiting[waiting] = out
@@ -230,11 +210,11 @@ def _ruin(ground: Ground, work: Workspace) -> int:
             stay = 0
             for at in range(plan.size[uav]):
                 visit = plan.visit[uav, at]
-                if not work.is_removed[ground.target[visit]]:
+                if not work.is_removed[problem.target[visit]]:
                     plan.visit[uav, stay] = visit
                     stay += 1
             plan.size[uav] = stay
-            settle(ground, plan, uav)
+            settle(problem, plan, uav)
     for number in range(waiting):
         plan.uav_of[work.waiting[number]] = -1
     return waiting

@@ -9,8 +9,8 @@ import numpy as np
 
 from planning.problem import BoolArray, FloatArray, Problem, Routes, merit
 from planning.solver.lower_bounds import lower_bound
-from planning.solver.plan_state import Ground, Workspace, ground_of, routes_of, values, workspace
-from planning.solver.problem_arrays import Arcs
+from planning.solver.plan_state import Workspace, routes_of, values, workspace
+from planning.solver.problem_arrays import Arcs, ProblemArrays, problem_arrays_of
 from planning.solver.ruin_and_recreate import anneal, construct
 
 Stop = Callable[[], bool]
@@ -43,28 +43,28 @@ OnProgress = Callable[[Progress], None]
 class Chain:
     """One annealing and where it stands."""
 
-    ground: Ground
+    arrays: ProblemArrays
     work: Workspace
     warm: float
     cold: float
     routes: Routes  # the best so far; replaced as a whole, so that other threads may read it
 
     @classmethod
-    def begin(cls, ground: Ground, seed: int, number: int) -> "Chain":
-        work = workspace(len(ground.first_m), len(ground.weight), seed + number, len(ground.more_limit))
-        construct(ground, work, POWERS[0], CONSTRUCTIONS)
-        _, total_m, longest_s = values(ground, work.best)
+    def begin(cls, arrays: ProblemArrays, seed: int, number: int) -> "Chain":
+        work = workspace(len(arrays.first_m), len(arrays.weight), seed + number, len(arrays.more_limit))
+        construct(arrays, work, POWERS[0], CONSTRUCTIONS)
+        _, total_m, longest_s = values(arrays, work.best)
         flown = max(1, int(work.best.size.sum()))
-        unit = longest_s * np.count_nonzero(work.best.size) / flown if ground.is_makespan else total_m / flown
-        temperatures = MAKESPAN_TEMPERATURES if ground.is_makespan else TOTAL_TEMPERATURES
+        unit = longest_s * np.count_nonzero(work.best.size) / flown if arrays.is_makespan else total_m / flown
+        temperatures = MAKESPAN_TEMPERATURES if arrays.is_makespan else TOTAL_TEMPERATURES
         warm, cold = temperatures[number % len(temperatures)]
-        return cls(ground, work, max(1e-6, float(unit) * warm), max(1e-8, float(unit) * cold), routes_of(work.best))
+        return cls(arrays, work, max(1e-6, float(unit) * warm), max(1e-8, float(unit) * cold), routes_of(work.best))
 
     def step(self, share: float, step: float, rounds: int) -> None:
         """So many rounds, while the search goes from a share of its time to share + step."""
         power = POWERS[min(len(POWERS) - 1, int(share * len(POWERS)))]
         now, later = (self.warm * (self.cold / self.warm) ** min(1.0, at) for at in (share, share + step))
-        anneal(self.ground, self.work, rounds, now, later, power)
+        anneal(self.arrays, self.work, rounds, now, later, power)
         self.routes = routes_of(self.work.best)
 
 
@@ -91,7 +91,7 @@ def best_found(
     Without a time to search each chain makes a fixed number of rounds, and the answer depends on the problem and the seed alone; with
     one they go on until it is over. `stop` is asked and `on_look` told the share of the search ten times a second.
     """
-    ground = ground_of(problem, Arcs.of(problem), usable)
+    arrays = problem_arrays_of(problem, Arcs.of(problem), usable)
     rounds = max(1, min(MAX_ROUNDS_PER_STEP, TARGET_ROUNDS_PER_STEP // problem.target_count))
     share, is_over = _Share(), Event()
 
@@ -111,7 +111,7 @@ def best_found(
     if search_s:
         timer.start()
     with ThreadPoolExecutor(CHAINS + 1, "search") as pool:
-        chains = list(pool.map(lambda number: Chain.begin(ground, seed, number), range(CHAINS)))
+        chains = list(pool.map(lambda number: Chain.begin(arrays, seed, number), range(CHAINS)))
         first = _best(problem, chains)
         bounding = pool.submit(lower_bound, problem, usable, needed_m, first, seed=seed)
         flights = [pool.submit(fly, chain) for chain in chains]
