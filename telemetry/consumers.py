@@ -25,8 +25,8 @@ class LiveConsumer(SignedInSocket):
     """`/ws/live` and `/ws/missions/{id}/live`: everything that such a page shows, then what changes.
 
     `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […],
-    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "removed": {"uavs": [… ids …], …}}`, numbered one
-    by one, and `{"type": "keepalive"}` after two seconds of silence. The page says `{"type": "ack", "sequence": n}` of each that has a
+    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "removed": {"uavs": [… ids …], …}}`, numbered
+    one by one, and `{"type": "keepalive"}` after two seconds of silence. The page says `{"type": "ack", "sequence": n}` of each that has a
     number of its own, and is told the latest of each object once it has the one before the last; or `{"type": "resync"}` where it has lost
     count. Closed with 4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is
     deleted, and at once with 4429 where the user or the network has as many websockets open as are allowed.

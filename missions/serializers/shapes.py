@@ -208,7 +208,7 @@ class FailedReturnSerializer(serializers.Serializer):
 
     route = serializers.IntegerField(help_text="index of the UAV")
     waypoint = serializers.IntegerField(help_text="its place in the route")
-    haven = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
+    return_point = serializers.IntegerField(help_text="where it would return to: 0 its start, n the n-th rally point")
     trouble = serializers.ChoiceField(choices=[(one.value, one.value) for one in Trouble])
     missing_wh = serializers.FloatField(allow_null=True)
     zone = serializers.CharField(allow_null=True, help_text="name of the zone in the way")

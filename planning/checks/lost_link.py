@@ -70,7 +70,7 @@ def _checked(request: PlanRequest, number: int, route: PlannedRoute, context: Pl
         {
             "route": number,
             "waypoint": one.waypoint,
-            "haven": one.haven,
+            "return_point": one.return_point,
             "trouble": one.trouble.value,
             "missing_wh": None if one.missing_wh is None else round(one.missing_wh, 2),
             "zone": None if one.zone is None else near.names[one.zone],

@@ -57,12 +57,12 @@ class LostLinkPlan:
 class FailedReturn:
     """A waypoint from which the return is no way home.
 
-    haven: 0 for the start, n for the n-th rally point; missing_wh with BATTERY, zone (a row of the zones) with ZONE, over_m, by how much it
-    is too high, with TOO_HIGH and OBSTACLE.
+    return_point: 0 for the start, n for the n-th rally point; missing_wh with BATTERY, zone (a row of the zones) with ZONE, over_m, by how
+    much it is too high, with TOO_HIGH and OBSTACLE.
     """
 
     waypoint: int
-    haven: int
+    return_point: int
     trouble: Trouble
     missing_wh: float | None = None
     zone: int | None = None
@@ -82,13 +82,13 @@ class Returns:
 
 @dataclass(frozen=True, eq=False)
 class _Return:
-    """One straight way: samples of the ground under it (m,), from the waypoint to the haven, 0 where flat ground is assumed.
+    """One straight way: samples of the ground under it (m,), from the waypoint to the return point, 0 where flat ground is assumed.
 
     is_known: whether these count from the sea.
     """
 
     waypoint: int
-    haven: int
+    return_point: int
     length_m: float
     east: float
     north: float
@@ -138,27 +138,27 @@ def checked_returns(
         if waypoints.points.kind[one.waypoint] == BASE:  # it stands there, with a new battery
             continue
         if np.isnan(one.ground_m).any() or top_m == math.inf:
-            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.UNKNOWN_GROUND))
+            failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.UNKNOWN_GROUND))
             continue
         over_ground_m = max(_amsl_m(one, waypoints), float(one.ground_m.max()) + rules.transit_agl_m)
         level_m = max(over_ground_m, top_m + rules.clearance_m)
         most_m = float(one.ground_m.min()) + rules.max_agl_m + HEIGHT_ROUNDING_M
         if level_m > most_m:
             trouble = Trouble.TOO_HIGH if over_ground_m > most_m else Trouble.OBSTACLE
-            failed.append(FailedReturn(one.waypoint, one.haven, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
+            failed.append(FailedReturn(one.waypoint, one.return_point, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
         else:
             levels_m.append(level_m)
         taken = air.taken(one, waypoints, level_m, hold_s)
         if math.isinf(taken[-1][0]):
-            failed.append(FailedReturn(one.waypoint, one.haven, Trouble.WIND))
+            failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.WIND))
         elif performance.usable_wh is not None and taken_wh is not None:
             missing_wh = float(taken_wh[one.waypoint]) + taken[-1][1] / J_PER_WH - performance.usable_wh
             if missing_wh > 0.0:
-                failed.append(FailedReturn(one.waypoint, one.haven, Trouble.BATTERY, missing_wh=missing_wh))
+                failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.BATTERY, missing_wh=missing_wh))
         start_s = None if departs_s is None else departs_s + float(clock.arrival_s[one.waypoint])
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
         met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
-        failed += [FailedReturn(one.waypoint, one.haven, Trouble.ZONE, zone=zone) for zone in met]
+        failed += [FailedReturn(one.waypoint, one.return_point, Trouble.ZONE, zone=zone) for zone in met]
     # The first waypoint stands over the start; from home the ground is told by what is above sea level less what is above home.
     stands_m = float(returns[0].ground_m[0]) if home is None else _home_m(waypoints)
     highest_m = max(levels_m, default=math.nan) - stands_m
@@ -179,15 +179,15 @@ def _taken_wh(clock: Timing, performance: Performance) -> FloatArray | None:
 
 
 def _returns(waypoints: Waypoints, home: LonLat, rally_points: Sequence[LonLat], ground_heights_m: GroundHeights | None) -> list[_Return]:
-    """From each waypoint the way to the nearest haven; of two that are as near, to the first."""
+    """From each waypoint the way to the nearest return point; of two that are as near, to the first."""
     position = waypoints.points.position
-    havens = np.array([home, *rally_points], dtype=np.float64).reshape(-1, 2)
-    metres = np.stack([distance_m(position, np.broadcast_to(haven, position.shape)) for haven in havens])
+    return_points = np.array([home, *rally_points], dtype=np.float64).reshape(-1, 2)
+    metres = np.stack([distance_m(position, np.broadcast_to(return_point, position.shape)) for return_point in return_points])
     nearest = metres.argmin(axis=0)
     lines = []
-    for place, haven in zip(position, havens[nearest], strict=True):
-        count = max(1, math.ceil(float(distance_m(place, haven)[0]) / SAMPLE_SPACING_M))
-        lines.append(place + np.linspace(0.0, 1.0, count + 1)[:, None] * (haven - place))
+    for place, return_point in zip(position, return_points[nearest], strict=True):
+        count = max(1, math.ceil(float(distance_m(place, return_point)[0]) / SAMPLE_SPACING_M))
+        lines.append(place + np.linspace(0.0, 1.0, count + 1)[:, None] * (return_point - place))
     # Where the route knows no height above the sea, its heights above ground are all there is.
     known = None if waypoints.amsl_m is None else ground_heights_m
     samples = np.concatenate(lines)
@@ -195,12 +195,12 @@ def _returns(waypoints: Waypoints, home: LonLat, rally_points: Sequence[LonLat],
     ends = np.cumsum([len(line) for line in lines])
     found = []
     for waypoint, (line, under_m) in enumerate(zip(lines, np.split(ground_m, ends[:-1]), strict=True)):
-        haven = int(nearest[waypoint])
+        return_point = int(nearest[waypoint])
         frame = LocalFrame.around(*line[0].tolist())
         east, north = frame.to_metres(line[-1:])[0].tolist()
         straight_m = math.hypot(east, north) or 1.0
-        length_m = float(metres[haven, waypoint])
-        found.append(_Return(waypoint, haven, length_m, east / straight_m, north / straight_m, line, under_m, known is not None))
+        length_m = float(metres[return_point, waypoint])
+        found.append(_Return(waypoint, return_point, length_m, east / straight_m, north / straight_m, line, under_m, known is not None))
     return found
 
 
@@ -218,7 +218,7 @@ class _Air:
         self.table = table_of(performance, self.own.climb_mps)
 
     def taken(self, one: _Return, waypoints: Waypoints, level_m: float, hold_s: float) -> list[tuple[float, float]]:
-        """Seconds and joules until it has stayed and climbed, until it is over the haven, and until it has landed."""
+        """Seconds and joules until it has stayed and climbed, until it is over the return point, and until it has landed."""
         task = waypoints.points.task.get(one.waypoint)
         stays_s = hold_s + (0.0 if task is None else task.hold_s)
         here_m, agl_m = _amsl_m(one, waypoints), float(waypoints.points.agl_m[one.waypoint])
@@ -244,7 +244,7 @@ class _Air:
 
 
 def _flown(one: _Return, waypoints: Waypoints, level_m: float, start_s: float | None, seconds: Sequence[float]) -> FlownRoute:
-    """The waypoint, the place above it, and the haven; it is at the waypoint from start_s on.
+    """The waypoint, the place above it, and the return point; it is at the waypoint from start_s on.
 
     On the way it is between its least and its greatest height above ground, wherever that is.
     """

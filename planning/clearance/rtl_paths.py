@@ -19,7 +19,7 @@ from planning.trajectory.waypoints import FloatArray, IntArray
 
 LOOKED_AT_EVERY_M = 50.0  # along the flight
 ROUNDING_M = 0.5  # heights are stored in tenths, and kept in centimetres
-Level = Callable[[float, float, float], float]  # of the height at a place, the way's length, the haven's height
+Level = Callable[[float, float, float], float]  # of the height at a place, the way's length, the return point's height
 
 
 class InTheWay(StrEnum):
@@ -54,15 +54,15 @@ class Places:
     def only(self, rows: BoolArray) -> "Places":
         return Places(self.position[rows], self.height_m[rows], self.waypoint[rows])
 
-    def nearest_of(self, havens: Sequence[LonLat]) -> IntArray:
-        """The number of the haven that each place is nearest to, (n,); of two as near the first."""
-        metres = [distance_m(self.position, np.broadcast_to(np.array(haven), self.position.shape)) for haven in havens]
+    def nearest_of(self, return_points: Sequence[LonLat]) -> IntArray:
+        """The number of the return point that each place is nearest to, (n,); of two as near the first."""
+        metres = [distance_m(self.position, np.broadcast_to(np.array(return_point), self.position.shape)) for return_point in return_points]
         nearest: IntArray = np.stack(metres).argmin(axis=0)
         return nearest
 
 
 @dataclass(frozen=True)
-class Haven:
+class ReturnPoint:
     """Where it flies to: where it took off, or a rally point and its height above the take-off."""
 
     position: LonLat
@@ -87,7 +87,7 @@ class Trouble:
 
 
 class RtlPaths:
-    """From places to one haven. What the ground and obstacles ask for is looked up once, for any level.
+    """From places to one return point. What the ground and obstacles ask for is looked up once, for any level.
 
     `home_amsl_m` and ground_heights_m are None where flat ground is assumed; heights are then above it.
     """
@@ -95,7 +95,7 @@ class RtlPaths:
     def __init__(
         self,
         places: Places,
-        haven: Haven,
+        return_point: ReturnPoint,
         *,
         home_amsl_m: float | None,
         ground_heights_m: GroundHeights | None,
@@ -104,11 +104,11 @@ class RtlPaths:
         margins: Margins,
         clearance_m: float,
     ) -> None:
-        self.places, self.haven, self.zones, self.margins = places, haven, zones, margins
+        self.places, self.return_point, self.zones, self.margins = places, return_point, zones, margins
         self._base_m = 0.0 if home_amsl_m is None else home_amsl_m
         self._knows_sea = home_amsl_m is not None and ground_heights_m is not None
         known = ground_heights_m if self._knows_sea else None
-        goal = np.broadcast_to(np.array(haven.position, dtype=np.float64), places.position.shape)
+        goal = np.broadcast_to(np.array(return_point.position, dtype=np.float64), places.position.shape)
         self.away_m = distance_m(places.position, goal)
         self._grounds(known)
         tops_m = tops_below(places.position, goal, spans, known, 0.0) - self._base_m
@@ -119,9 +119,9 @@ class RtlPaths:
         self._beside_zones = [row for row in range(len(places)) if len(zones) and self._zones_of(row, math.nan)]
 
     def _grounds(self, known: GroundHeights | None) -> None:
-        """Under each place, under the haven, and the highest and lowest under the way, above the take-off."""
+        """Under each place, under the return point, and the highest and lowest under the way, above the take-off."""
         counts = [max(1, math.ceil(length_m / SAMPLE_SPACING_M)) + 1 for length_m in self.away_m.tolist()]
-        goal = np.array(self.haven.position, dtype=np.float64)
+        goal = np.array(self.return_point.position, dtype=np.float64)
         samples = np.concatenate([
             place + np.linspace(0.0, 1.0, count)[:, None] * (goal - place)
             for place, count in zip(self.places.position, counts, strict=True)
@@ -129,7 +129,7 @@ class RtlPaths:
         ground_m = np.zeros(len(samples)) if known is None else known(samples) - self._base_m
         starts = np.cumsum([0, *counts[:-1]])
         self._highest_m, self._lowest_m = np.maximum.reduceat(ground_m, starts), np.minimum.reduceat(ground_m, starts)
-        self._under_m, self._under_haven_m = ground_m[starts], float(ground_m[-1])
+        self._under_m, self._under_return_point_m = ground_m[starts], float(ground_m[-1])
 
     def lowest_safe_m(self) -> float:
         """That clears the ground and obstacles from every place; -inf where nothing asks for any height."""
@@ -137,7 +137,7 @@ class RtlPaths:
 
     def levels_m(self, level: Level) -> FloatArray:
         rows = zip(self.places.height_m.tolist(), self.away_m.tolist(), strict=True)
-        return np.array([level(height_m, away_m, self.haven.height_m) for height_m, away_m in rows])
+        return np.array([level(height_m, away_m, self.return_point.height_m) for height_m, away_m in rows])
 
     def most_agl_m(self, levels_m: FloatArray) -> float:
         """How high above the ground it would come anywhere."""
@@ -157,7 +157,7 @@ class RtlPaths:
         rows = np.flatnonzero(meets)
         first, last = int(self.places.waypoint[rows[0]]), int(self.places.waypoint[rows[-1]])
         to_end = bool(rows[-1] == len(levels_m) - 1)
-        return Trouble(kind, first, last, to_end, float(levels_m[rows].min()), self.haven.is_rally, zone)
+        return Trouble(kind, first, last, to_end, float(levels_m[rows].min()), self.return_point.is_rally, zone)
 
     def _zones_met(self, levels_m: FloatArray) -> dict[int, BoolArray]:
         """By zone: from which places."""
@@ -169,10 +169,10 @@ class RtlPaths:
 
     def _zones_of(self, row: int, level_m: float) -> set[int]:
         """NaN for a level that may be any."""
-        position = np.stack([self.places.position[row]] * 3 + [np.array(self.haven.position, dtype=np.float64)] * 2)
+        position = np.stack([self.places.position[row]] * 3 + [np.array(self.return_point.position, dtype=np.float64)] * 2)
         own_m = float(self.places.height_m[row])
         # On the way it is between its least and its greatest height above ground, wherever that is.
-        grounds_m = [self._under_m[row], self._under_m[row], self._highest_m[row], self._lowest_m[row], self._under_haven_m]
+        grounds_m = [self._under_m[row], self._under_m[row], self._highest_m[row], self._lowest_m[row], self._under_return_point_m]
         relative_m = np.array([own_m, level_m, level_m, level_m, level_m])
         flown = FlownRoute(position, relative_m - grounds_m, relative_m + self._base_m if self._knows_sea else None, lands=True)
         return {breach.zone for breach in breaches(flown, self.zones, self.margins) if breach.leg != TAKE_OFF}

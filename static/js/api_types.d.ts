@@ -1383,7 +1383,7 @@ export interface components {
             /** @description its place in the route */
             waypoint: number;
             /** @description where it would return to: 0 its start, n the n-th rally point */
-            haven: number;
+            return_point: number;
             trouble: components["schemas"]["TroubleEnum"];
             /** Format: double */
             missing_wh: number | null;

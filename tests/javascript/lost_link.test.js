@@ -19,7 +19,7 @@ const waypoints = [
 const failed = (waypoint, trouble, more = {}) => ({
   route: 0,
   waypoint,
-  haven: 0,
+  return_point: 0,
   trouble,
   missing_wh: null,
   zone: null,
@@ -110,7 +110,7 @@ test("waypoints with one trouble are told together, with the worst figure and th
 test("the map shows each way back to where it would have led", () => {
   const rally = link.withRallyPoint(back, YARD);
   const lines = link.returnLinesOf(
-    planWith({ ...rally, failed: [failed(1, "wind"), failed(3, "wind", { haven: 1 })] }),
+    planWith({ ...rally, failed: [failed(1, "wind"), failed(3, "wind", { return_point: 1 })] }),
   );
   assert.deepEqual(
     lines.map(({ from, to }) => [from, to]),

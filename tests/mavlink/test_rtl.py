@@ -8,10 +8,10 @@ FENCE = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 7.0, "FENCE_ALT_MAX": 25.0, "FENCE_M
 COPTER = {"RTL_ALT": 3_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_CONE_SLOPE": 3.0, "RTL_ALT_TYPE": 0.0}
 
 
-def level_m(autopilot: str, parameters: dict[str, float], current_m: float, away_m: float, **haven) -> float:
+def level_m(autopilot: str, parameters: dict[str, float], current_m: float, away_m: float, **return_point) -> float:
     own = rtl_behaviour(autopilot, parameters)
     assert own is not None
-    return own.level_m(current_m, away_m, haven.get("goal_m", 0.0))
+    return own.level_m(current_m, away_m, return_point.get("goal_m", 0.0))
 
 
 @pytest.mark.parametrize(

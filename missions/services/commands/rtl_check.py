@@ -25,7 +25,7 @@ from missions.selectors.zones import departure_s, zone_margins
 from missions.services.approval.document import frozen_route
 from missions.services.approval.fence import rally_points, zones_beside
 from planning.clearance.nearby_zones import zones_near
-from planning.clearance.rtl_paths import Haven, InTheWay, Places, RtlPaths, Trouble
+from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths, Trouble
 from planning.clearance.zone_clearance import ZoneFacts
 
 STEP_M = 5.0  # by which a height is looked for that is clear
@@ -187,13 +187,13 @@ def ways_now(
     home_amsl_m = float(ground_heights_m(np.array([home]))[0])
     positions = np.concatenate([places.position, np.array([home, *(place for place, _height_m in rally)])])
     near, facts = zones_applying(ground.table, positions, window)
-    havens = [Haven(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
+    return_points = [ReturnPoint(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
     ways = [
         RtlPaths(
-            own_places, haven, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
+            own_places, return_point, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
             spans=spans_of(ground.network()), zones=facts, margins=zone_margins(), clearance_m=settings.FLIGHT_RULES.clearance_m,
         )
-        for haven, own_places in _places_by_haven(places, Haven(home), havens, shuns_home=own.shuns_home)
+        for return_point, own_places in _places_by_return_point(places, ReturnPoint(home), return_points, shuns_home=own.shuns_home)
     ]  # fmt: skip
     return WaysNow(tuple(ways), near)
 
@@ -241,34 +241,38 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
     spans = spans_of(ground.network())
     ways = []
     for flight in flights:
-        havens = [Haven(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
+        return_points = [ReturnPoint(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
         along = Places.along(
             np.array([waypoint.position for waypoint in flight.waypoints], dtype=np.float64),
             np.array([waypoint.altitude_relative_m for waypoint in flight.waypoints], dtype=np.float64),
             [waypoint.sequence for waypoint in flight.waypoints],
         )
-        for haven, places in _places_by_haven(along, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
+        for return_point, places in _places_by_return_point(
+            along, ReturnPoint(flight.take_off.position), return_points, shuns_home=shuns_home
+        ):
             ways.append(
                 RtlPaths(
-                    places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
+                    places, return_point, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
                     zones=facts, margins=margins, clearance_m=settings.FLIGHT_RULES.clearance_m,
                 )
             )  # fmt: skip
     return near, ways
 
 
-def _places_by_haven(places: Places, home: Haven, rally: Sequence[Haven], *, shuns_home: bool) -> Iterable[tuple[Haven, Places]]:
+def _places_by_return_point(
+    places: Places, home: ReturnPoint, rally: Sequence[ReturnPoint], *, shuns_home: bool
+) -> Iterable[tuple[ReturnPoint, Places]]:
     yield home, places
     if not rally:
         return
     goals = rally if shuns_home else [home, *rally]
-    nearest = places.nearest_of([haven.position for haven in goals])
-    for number, haven in enumerate(goals):
-        if haven is home:
+    nearest = places.nearest_of([return_point.position for return_point in goals])
+    for number, return_point in enumerate(goals):
+        if return_point is home:
             continue
         own = places.only(nearest == number)
         if len(own):
-            yield haven, own
+            yield return_point, own
 
 
 def _levels(way: RtlPaths, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:

@@ -21,7 +21,7 @@ import { durationText, exactHeightText, numberText } from "../units.js";
  * @property {number} sequence of the route
  * @property {string} letter
  * @property {string} name
- * @property {FailedReturn["haven"]} haven
+ * @property {FailedReturn["return_point"]} return_point
  * @property {FailedReturn["trouble"]} trouble
  * @property {string | null} zone
  * @property {number | null} zone_id
@@ -155,14 +155,15 @@ const checkOf = (plan) => plan.result.lost_link ?? NO_CHECK;
 export function failuresOf(plan) {
   /** @type {Map<string, FailureGroup>} */
   const groups = new Map();
-  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of checkOf(plan).failed) {
-    const key = [route, haven, trouble, zone_id ?? zone].join("|");
+  for (const { route, waypoint, return_point, trouble, missing_wh, zone, zone_id = null, over_m } of checkOf(plan)
+    .failed) {
+    const key = [route, return_point, trouble, zone_id ?? zone].join("|");
     const group = groups.get(key) ?? {
       key,
       sequence: route,
       letter: routeLetter(route),
       name: plan.result.routes[route]?.uav ?? "",
-      haven,
+      return_point,
       trouble,
       zone,
       zone_id,
@@ -190,8 +191,8 @@ export function placesText(waypoints) {
   return runs.map(({ from, to }) => (from === to ? `${from + 1}` : `${from + 1}–${to + 1}`)).join(", ");
 }
 
-/** @param {number} haven */
-export const returnPointText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
+/** @param {number} return_point */
+export const returnPointText = (return_point) => (return_point === 0 ? t("its start") : rallyName(return_point - 1));
 
 /** Wh to a tenth: what is missing may be little. @param {number} missing_wh */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
@@ -200,14 +201,14 @@ const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_w
  * What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve
  * kept" }.
  *
- * @param {Pick<FailureGroup, "waypoints" | "haven" | "trouble" | "zone" | "missing_wh" | "over_m">} group
+ * @param {Pick<FailureGroup, "waypoints" | "return_point" | "trouble" | "zone" | "missing_wh" | "over_m">} group
  */
-export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
-  const values = { places: placesText(waypoints), haven: returnPointText(haven) };
+export function failureText({ waypoints, return_point, trouble, zone, missing_wh, over_m }) {
+  const values = { places: placesText(waypoints), returnPoint: returnPointText(return_point) };
   const where =
     waypoints.length === 1
-      ? t("waypoint {places}, back to {haven}", values)
-      : t("waypoints {places}, back to {haven}", values);
+      ? t("waypoint {places}, back to {returnPoint}", values)
+      : t("waypoints {places}, back to {returnPoint}", values);
   const isOne = waypoints.length === 1;
   const lack = lackText(missing_wh);
   const why = {
@@ -305,10 +306,12 @@ export function quietReturnsOf(plan) {
   const fails = new Set(failed.map(({ route, waypoint }) => `${route} ${waypoint}`));
   return plan.result.routes.flatMap(({ waypoints, geometry }, route) => {
     if (!geometry) return [];
-    const havens = [waypoints[0].position, ...rally_points];
+    const returnPoints = [waypoints[0].position, ...rally_points];
     /** @param {number[]} from */
     const nearest = (from) =>
-      havens.reduce((best, haven) => (distance_m(from, haven) < distance_m(from, best) ? haven : best));
+      returnPoints.reduce((best, return_point) =>
+        distance_m(from, return_point) < distance_m(from, best) ? return_point : best,
+      );
     return waypoints
       .filter(({ kind }, index) => !STAYS_DOWN.includes(kind) && !fails.has(`${route} ${index}`))
       .map(({ position }) => ({ from: position, to: nearest(position) }))
@@ -323,9 +326,9 @@ export function quietReturnsOf(plan) {
  */
 export function returnLinesOf(plan) {
   const { rally_points } = checkOf(plan);
-  return failuresOf(plan).flatMap(({ key, sequence, haven, waypoints }) => {
+  return failuresOf(plan).flatMap(({ key, sequence, return_point, waypoints }) => {
     const places = plan.result.routes[sequence]?.waypoints ?? [];
-    const to = haven === 0 ? places[0]?.position : rally_points[haven - 1];
+    const to = return_point === 0 ? places[0]?.position : rally_points[return_point - 1];
     if (!to) return [];
     return waypoints
       .filter((waypoint) => places[waypoint])

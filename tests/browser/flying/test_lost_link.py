@@ -42,7 +42,7 @@ def says_what_is_stored(page: Page) -> set[tuple[int, str | None]]:
     count, total = len({(one["route"], one["waypoint"]) for one in failed}), sum(len(route["waypoints"]) for route in plan["routes"])
     lost = f"From {count} of {total} waypoints a UAV would not get home."
     expect(panel(page).locator(".link-said")).to_have_text(lost if failed else "From every waypoint the way back meets no zone.")
-    return {(one["haven"], one["zone"]) for one in failed}
+    return {(one["return_point"], one["zone"]) for one in failed}
 
 
 def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_the_check_tells_the_zone(
@@ -55,7 +55,7 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     panel(page).get_by_role("radio", name="Return", exact=True).check()
     expect(panel(page)).to_contain_text("None yet: each UAV returns to its own start.")
     expect(panel(page)).to_contain_text(UNCOUNTED)
-    assert {haven for haven, _ in says_what_is_stored(page)} <= {0}
+    assert {return_point for return_point, _ in says_what_is_stored(page)} <= {0}
 
     panel(page).get_by_role("button", name="Add on the map").click()
     place = look_at(page, region.clear, 13)
@@ -98,11 +98,11 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     page.keyboard.press("Control+z")
     expect(rally_points(page)).to_have_count(2)
     page.keyboard.press("Control+Shift+z")
-    assert {haven for haven, _ in says_what_is_stored(page)} <= {0, 1}
+    assert {return_point for return_point, _ in says_what_is_stored(page)} <= {0, 1}
     panel(page).get_by_role("radio", name="Hold, then return").check()
     panel(page).get_by_label("Holds for").fill("90")
     panel(page).get_by_label("Holds for").press("Tab")
-    assert {haven for haven, _ in says_what_is_stored(page)} <= {0, 1}
+    assert {return_point for return_point, _ in says_what_is_stored(page)} <= {0, 1}
     page.reload()
     wait_for_map(page)
     expect(panel(page).get_by_label("Holds for")).to_have_value("90")

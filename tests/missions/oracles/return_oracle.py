@@ -1,4 +1,4 @@
-"""Judges what a plan says of UAVs that lose their link: from which waypoints the straight way to a haven would not go well.
+"""Judges what a plan says of UAVs that lose their link: from which waypoints the straight way to a return point would not go well.
 
 What lies within the tolerances of two ways to count it is not judged; what does not has to be told, and nothing else may be.
 """
@@ -55,42 +55,46 @@ class ReturnJudge:
                 yield f"it stands on the ground, and is said to fail: {reported}"
             return
         here = point["position"]
-        havens = [route["waypoints"][0]["position"], *request.lost_link.rally_points]
-        metres = [apart_m(here, haven) for haven in havens]
-        haven = int(np.argmin(metres))
-        if sorted(metres)[:2][-1] < 1.01 * metres[haven] + 1.0 and len(metres) > 1:
+        return_points = [route["waypoints"][0]["position"], *request.lost_link.rally_points]
+        metres = [apart_m(here, return_point) for return_point in return_points]
+        return_point = int(np.argmin(metres))
+        if sorted(metres)[:2][-1] < 1.01 * metres[return_point] + 1.0 and len(metres) > 1:
             return  # either may be the nearest
-        if any(item["haven"] != haven for item in reported):
-            yield f"the nearest haven is {haven}, not {reported}"
+        if any(item["return_point"] != return_point for item in reported):
+            yield f"the nearest return point is {return_point}, not {reported}"
             return
-        under, _shares = along(here, havens[haven])
+        under, _shares = along(here, return_points[return_point])
         is_known = point["altitude_amsl_m"] is not None and self.hills is not None
         ground_m = self.hills.metres(under) if is_known and self.hills is not None else np.zeros(len(under))
-        least_m, most_m = self._levels_m(here, havens[haven], ground_m, point["altitude_agl_m"])
+        least_m, most_m = self._levels_m(here, return_points[return_point], ground_m, point["altitude_agl_m"])
         troubles = {item["trouble"] for item in reported}
         is_too_high = bool(troubles & {"too_high", "obstacle"})
         if least_m - ground_m.min() > MAX_HEIGHT_M + CLEARLY_M and not is_too_high:
             yield f"it would fly {least_m - ground_m.min():.0f} m above ground"
         if most_m - ground_m.min() < MAX_HEIGHT_M - CLEARLY_M and is_too_high:
             yield f"it would fly no more than {most_m - ground_m.min():.0f} m above ground"
-        taken = [self._taken(request, uav, point, havens[haven], ground_m, level_m, is_known) for level_m in (least_m, most_m)]
+        taken = [
+            self._taken(request, uav, point, return_points[return_point], ground_m, level_m, is_known) for level_m in (least_m, most_m)
+        ]
         if None in taken or "wind" in troubles:
             if all(one is None for one in taken) != ("wind" in troubles):
                 yield f"the wind is judged otherwise: {taken}"
             return
         yield from self._wrong_battery(uav, route, place, reported, taken)
-        yield from self._wrong_zones(request, route, place, havens[haven], reported, (ground_m, least_m, most_m, is_known), taken)
+        yield from self._wrong_zones(
+            request, route, place, return_points[return_point], reported, (ground_m, least_m, most_m, is_known), taken
+        )
 
-    def _levels_m(self, here: Any, haven: Any, ground_m: Any, agl_m: float) -> tuple[float, float]:
+    def _levels_m(self, here: Any, return_point: Any, ground_m: Any, agl_m: float) -> tuple[float, float]:
         """The height above the sea of the way, at least and at most: nobody knows to the metre what stands beside it."""
         least_m = max(float(ground_m[0]) + agl_m, float(ground_m.max()) + TRANSIT_M)
-        near_m, far_m = (self.wires.highest_m(here, haven, beside_m, least_m - CLEARANCE_M) for beside_m in (20.0, 100.0))
+        near_m, far_m = (self.wires.highest_m(here, return_point, beside_m, least_m - CLEARANCE_M) for beside_m in (20.0, 100.0))
         return max(least_m, near_m + CLEARANCE_M), max(least_m, far_m + CLEARANCE_M)
 
     def _taken(
-        self, request: PlanRequest, uav: Any, point: dict[str, Any], haven: Any, ground_m: Any, level_m: float, is_known: bool
+        self, request: PlanRequest, uav: Any, point: dict[str, Any], return_point: Any, ground_m: Any, level_m: float, is_known: bool
     ) -> tuple[list[float], float] | None:
-        """Seconds until it has stayed and climbed, is over the haven, has landed; and Wh. None where the wind is too strong."""
+        """Seconds until it has stayed and climbed, is over the return point, has landed; and Wh. None where the wind is too strong."""
         stays_s = (request.lost_link.hold_s if request.lost_link.behaviour == "hold" else 0.0) + (point["task"] or {}).get("hold_s", 0.0)
         stays_s += 2.0 * brakes_s(uav.cruise_speed_mps) + SETTLES_S
         agl_m, here_m = point["altitude_agl_m"], float(ground_m[0]) + point["altitude_agl_m"]
@@ -103,7 +107,7 @@ class ReturnJudge:
         up_s, down_s = (level_m - here_m) / CLIMB_MPS, down_m / CLIMB_MPS + brakes_s(uav.cruise_speed_mps) + SETTLES_S + TOUCHES_S
         joules = stays_s * power(agl_m, 0.0, air_here) + up_s * power((agl_m + up_agl_m) / 2, CLIMB_MPS, air_here)
         joules += down_s * power(down_m / 2, 0.0, air)
-        length_m = apart_m(point["position"], haven)
+        length_m = apart_m(point["position"], return_point)
         across = [(0.0, 0.0)]
         limit_mps = uav.performance.max_airspeed_mps or uav.cruise_speed_mps
         heights = [agl_m, up_agl_m, level_m - float(ground_m.min()), level_m - float(ground_m.max()), down_m, *np.linspace(0.0, down_m, 7)]
@@ -112,7 +116,7 @@ class ReturnJudge:
         if length_m > 0.01:
             across = []
             for height_m in (level_m - float(ground_m.min()), level_m - float(ground_m.max())):
-                flown = speeds_mps(uav, east_north(point["position"], haven), wind_mps(request, height_m))
+                flown = speeds_mps(uav, east_north(point["position"], return_point), wind_mps(request, height_m))
                 if flown is None:
                     return None
                 across.append((length_m / flown[0], length_m / flown[0] * watts(uav.performance, flown[1], 0.0, air)))
@@ -145,7 +149,7 @@ class ReturnJudge:
         request: PlanRequest,
         route: dict[str, Any],
         place: int,
-        haven: Any,
+        return_point: Any,
         reported: list[dict[str, Any]],
         over: Any,
         taken: list[Any],
@@ -153,7 +157,7 @@ class ReturnJudge:
         ground_m, least_m, most_m, is_known = over
         stated = {item["zone"] for item in reported if item["trouble"] == "zone"}
         legs = [
-            self._legs(request, route, place, haven, ground_m, level_m, is_known, seconds)
+            self._legs(request, route, place, return_point, ground_m, level_m, is_known, seconds)
             for level_m, (seconds, _wh) in zip((least_m, most_m), taken, strict=True)
         ]
         met = [{zone.name for _, zone in self.zones.met(of_level, LESS)} for of_level in legs]
@@ -173,7 +177,7 @@ class ReturnJudge:
         request: PlanRequest,
         route: dict[str, Any],
         place: int,
-        haven: Any,
+        return_point: Any,
         ground_m: Any,
         level_m: float,
         is_known: bool,
@@ -193,7 +197,7 @@ class ReturnJudge:
         if request.departs_at is not None:
             moments = [request.departs_at + timedelta(seconds=route["arrival_s"][place] + after_s) for after_s in (0.0, *seconds)]
             times = [tuple(moments[leg : leg + 2]) for leg in range(3)]
-        ends = [(here, here), (here, tuple(haven)), (tuple(haven), tuple(haven))]
+        ends = [(here, here), (here, tuple(return_point)), (tuple(return_point), tuple(return_point))]
         return [Leg(*end, agl, amsl, when) for end, agl, amsl, when in zip(ends, heights, above_sea, times, strict=True)]
 
 

@@ -47,7 +47,7 @@ def test_a_zone_between_the_route_and_its_start_bars_the_return_and_a_rally_poin
     failed = checked(client, here, behaviour="return")["failed"]
     assert {one["trouble"] for one in failed} == {"zone"}
     assert {one["zone"] for one in failed} == {"Fire brigade"}
-    assert {one["haven"] for one in failed} == {0}
+    assert {one["return_point"] for one in failed} == {0}
     repaired = checked(client, here, behaviour="return", rally_points=[[10.021, 56.0005]])["failed"]
     assert len(repaired) < len(failed)
 
@@ -68,6 +68,18 @@ def test_the_wish_is_stored_with_the_mission_and_checked_with_its_plan(here: Wor
     assert mission["plan"]["lost_link"] == wish | {"failed": [], "highest_m": [60.0], "rally_points_in_zones": []}
     again = post(client, f"missions/{mission['id']}/plan").json()
     assert again["plan"]["lost_link"] == mission["plan"]["lost_link"]
+
+
+def test_a_stored_check_of_the_version_before_is_read(here: World, client: Client) -> None:
+    """It calls the return point `haven`, and an approval may freeze it as it is."""
+    zone_around((10.010, 55.9998), 0.0012)
+    mission = planned(client, here, lost_link={"behaviour": "return"})
+    stored = Mission.objects.get(pk=mission["id"])
+    for one in stored.lost_link_check["failed"]:
+        one["haven"] = one.pop("return_point")
+    stored.save(update_fields=["lost_link_check"])
+    shown = client.get(f"/api/v1/missions/{mission['id']}").json()["plan"]["lost_link"]
+    assert shown["failed"] == mission["plan"]["lost_link"]["failed"] != []
 
 
 def planned(client: Client, here: World, **extra: Any) -> dict[str, Any]:

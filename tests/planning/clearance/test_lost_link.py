@@ -96,7 +96,7 @@ def test_the_battery_has_to_do_for_the_straight_way_back_and_the_landing():
     assert failed(route(0, 1, 2), performance=enough) == []
     less = Performance(battery_wh=needed_wh / 0.8 * 0.99)
     [found] = failed(route(0, 1, 2), performance=less)
-    assert (found.waypoint, found.haven, found.trouble) == (2, 0, Trouble.BATTERY)
+    assert (found.waypoint, found.return_point, found.trouble) == (2, 0, Trouble.BATTERY)
     assert found.missing_wh == pytest.approx(0.01 * needed_wh, rel=0.05)
 
 

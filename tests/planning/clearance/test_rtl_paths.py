@@ -14,7 +14,7 @@ from shapely.geometry import box
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import spans_between
-from planning.clearance.rtl_paths import Haven, InTheWay, Places, RtlPaths
+from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 
 HOME = LonLat(10.0, 56.0)
@@ -39,11 +39,11 @@ def wire(start, end, height_m):
 NOTHING = spans_between(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
 
 
-def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, haven=None, height_m=50.0) -> RtlPaths:
+def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, return_point=None, height_m=50.0) -> RtlPaths:
     places = Places.along(lonlat(CORNERS), np.full(4, height_m), [0, 1, 2, 3])
     return RtlPaths(
         places,
-        haven or Haven(HOME),
+        return_point or ReturnPoint(HOME),
         home_amsl_m=None if ground is None else float(ground(np.array([HOME]))[0]),
         ground_heights_m=ground,
         spans=spans,
@@ -118,8 +118,8 @@ def test_what_lasts_to_the_end_is_told_so():
 
 
 def test_a_rally_point_has_ways_of_its_own():
-    haven = Haven(LonLat(*lonlat([[1_000.0, 500.0]])[0]), 40.0, is_rally=True)
-    home = ways(zones=zone(400.0, -50.0, 500.0, 600.0), haven=haven)
+    return_point = ReturnPoint(LonLat(*lonlat([[1_000.0, 500.0]])[0]), 40.0, is_rally=True)
+    home = ways(zones=zone(400.0, -50.0, 500.0, 600.0), return_point=return_point)
     assert [(found.is_rally, found.first) for found in troubles(home, 50.0)] == [(True, 0)]
     reported = set()
     home.levels_m(lambda current_m, away_m, goal_m: reported.add(goal_m) or 50.0)

@@ -175,8 +175,8 @@ export default {
   "This plan was made before this was checked. Plan again to check it.":
     "Dieser Plan entstand, bevor dies geprüft wurde. Zum Prüfen neu planen.",
   "up to {energy} are missing with the reserve kept": "es fehlen bis zu {energy}, wenn die Reserve bleibt",
-  "waypoint {places}, back to {haven}": "Wegpunkt {places}, zurück zu {haven}",
-  "waypoints {places}, back to {haven}": "Wegpunkte {places}, zurück zu {haven}",
+  "waypoint {places}, back to {returnPoint}": "Wegpunkt {places}, zurück zu {returnPoint}",
+  "waypoints {places}, back to {returnPoint}": "Wegpunkte {places}, zurück zu {returnPoint}",
   "without a link each UAV {does}": "ohne Verbindung: jedes UAV {does}",
   "{name} is removed.": "{name} ist entfernt.",
   "For the routes as planned, by the clock of {zone}.": "Für die Routen wie geplant, nach der Uhr von {zone}.",
