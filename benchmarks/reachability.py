@@ -74,7 +74,7 @@ def zones_of(graph: dict[str, np.ndarray]) -> ZoneIndex:
 def answer(found: Reach) -> bytes:
     columns = {
         "ids": found.asset,
-        "code": found.reachability,
+        "code": found.state,
         "flight": found.flight,
         "missing_m": np.ceil(found.missing_m).astype(np.int64),
     }
@@ -126,8 +126,7 @@ def main() -> int:
         options.nodes, options.zones, options.uavs, options.count, *((CALM_TYPES, CALM) if options.calm else (TYPES, WIND))
     )
     reachabilities = ", ".join(
-        f"{int((found.reachability == reachability).sum()):,} {reachability.name.lower().replace('_', ' ')}"
-        for reachability in Reachability
+        f"{int((found.state == reachability).sum()):,} {reachability.name.lower().replace('_', ' ')}" for reachability in Reachability
     )
     head = [f"{options.nodes:,} nodes, {options.zones} zones, {options.uavs} UAVs", "median", "longest", "assets", "answer"]
     row = [

@@ -29,7 +29,7 @@ def openapi_settings() -> dict[str, Any]:
         "ENUM_NAME_OVERRIDES": {
             "AssetKind": "inspection.models.AssetKind",
             "ImportKind": "inspection.models.ImportKind",
-            "GapKind": "inspection.models.GapKind",
+            "DataIssueKind": "inspection.models.DataIssueKind",
             "WaypointKind": "missions.models.WaypointKind",
             "TaskKind": ["look", "photo", "hold"],
             "DaylightEvent": "inspection.zones.schedule.EVENTS",
@@ -42,7 +42,7 @@ def openapi_settings() -> dict[str, Any]:
             "SignInOutcome": "workspace.models.SignInOutcome",
             "InvitationState": "accounts.serializers.InvitationState",
             "ProposalState": "inspection.models.ProposalState",
-            "GapState": "inspection.models.GapState",
+            "DataIssueState": "inspection.models.DataIssueState",
             "MissionState": "missions.models.MissionState",
             "OfferState": "missions.models.OfferState",
             "ReturnState": ["clear", "in_the_way", "unknown", "not_checked"],

@@ -2,11 +2,11 @@
 
 from django.urls import path
 
-from inspection.pages import AssetsPage, GapsPage, ImportsPage, TerrainPage, ZonesPage
+from inspection.pages import AssetsPage, DataIssuesPage, ImportsPage, TerrainPage, ZonesPage
 
 urlpatterns = [
     path("assets", AssetsPage.as_view(), name="assets"),
-    path("assets/gaps", GapsPage.as_view(), name="gaps"),
+    path("assets/data-issues", DataIssuesPage.as_view(), name="data-issues"),
     path("imports", ImportsPage.as_view(), name="imports"),
     path("imports/<uuid:proposal_id>", ImportsPage.as_view(), name="import"),
     path("terrain", TerrainPage.as_view(), name="terrain"),

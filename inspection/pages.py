@@ -26,9 +26,9 @@ class AssetsPage(GroundPage):
     tab = "assets"
 
 
-class GapsPage(GroundPage):
-    template_name = "gaps.html"
-    tab = "gaps"
+class DataIssuesPage(GroundPage):
+    template_name = "data_issues.html"
+    tab = "data-issues"
 
 
 class ImportsPage(GroundPage):

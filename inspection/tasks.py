@@ -30,9 +30,9 @@ def refresh_graph() -> None:
 
 
 @shared_task(time_limit=900, soft_time_limit=870)
-def find_gaps() -> None:
-    """Look for gaps if the ground has changed since the last search; several changes make one search, and one runs at a time."""
-    services.find_gaps()
+def find_issues() -> None:
+    """Look for issues if the ground has changed since the last search; several changes make one search, and one runs at a time."""
+    services.find_issues()
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)

@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import assets, gaps, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
+from inspection.views import assets, data_issues, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -38,13 +38,13 @@ urlpatterns = [
     path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
     path("regions/delete", regions.RegionDelete.as_view(), name="api-region-delete"),
     path("geometry-checks", ground.GeometryCheck.as_view(), name="api-geometry-checks"),
-    path("gaps", gaps.GapList.as_view(), name="api-gaps"),
-    path("gaps/summary", gaps.GapCounts.as_view(), name="api-gap-summary"),
-    path("gaps/<int:gap_id>", gaps.GapDetail.as_view(), name="api-gap"),
-    path("gaps/<int:gap_id>/repair", gaps.GapRepair.as_view(), name="api-gap-repair"),
-    path("gaps/<int:gap_id>/undo", gaps.GapUndo.as_view(), name="api-gap-undo"),
-    path("gaps/<int:gap_id>/dismiss", gaps.GapDismiss.as_view(), name="api-gap-dismiss"),
-    path("gaps/<int:gap_id>/reopen", gaps.GapReopen.as_view(), name="api-gap-reopen"),
+    path("data-issues", data_issues.DataIssueList.as_view(), name="api-data-issues"),
+    path("data-issues/summary", data_issues.DataIssueCounts.as_view(), name="api-data-issue-summary"),
+    path("data-issues/<int:issue_id>", data_issues.DataIssueDetail.as_view(), name="api-data-issue"),
+    path("data-issues/<int:issue_id>/repair", data_issues.DataIssueRepair.as_view(), name="api-data-issue-repair"),
+    path("data-issues/<int:issue_id>/undo", data_issues.DataIssueUndo.as_view(), name="api-data-issue-undo"),
+    path("data-issues/<int:issue_id>/dismiss", data_issues.DataIssueDismiss.as_view(), name="api-data-issue-dismiss"),
+    path("data-issues/<int:issue_id>/reopen", data_issues.DataIssueReopen.as_view(), name="api-data-issue-reopen"),
     path("terrain", terrain.TerrainList.as_view(), name="api-terrain"),
     path("terrain/<int:import_id>", terrain.TerrainDetail.as_view(), name="api-terrain-model"),
     path("terrain/height", terrain.GroundHeight.as_view(), name="api-ground-height"),

@@ -1,4 +1,4 @@
-"""The admin's pages for what came in and what it became: uploads, proposals, imports, sets of assets, terrain, graphs, gaps."""
+"""The admin's pages for what came in and what it became: uploads, proposals, imports, sets of assets, terrain, graphs, issues."""
 
 from typing import Any
 
@@ -12,16 +12,16 @@ from django.utils.safestring import SafeString
 from inspection.admin.curated import CommonGroundAdmin
 from inspection.models import (
     AssetSet,
-    DataGap,
     DataImport,
-    GapState,
+    DataIssue,
+    DataIssueState,
     GraphSnapshot,
     Ground,
     ImportProposal,
     TerrainTile,
     Upload,
 )
-from inspection.services.gaps import dismiss_gap, reopen_gap
+from inspection.services.data_issues import dismiss_issue, reopen_issue
 from workspace.api.signed_in import user_of
 
 
@@ -88,9 +88,9 @@ class AssetSetAdmin(CommonGroundAdmin):
         return int(asset_set.number_of_assets)
 
 
-@admin.register(DataGap)
-class DataGapAdmin(CommonGroundAdmin):
-    """Mended on the page of the gaps; here several are left as they are, or opened again, at once."""
+@admin.register(DataIssue)
+class DataIssueAdmin(CommonGroundAdmin):
+    """Mended on the page of the issues; here several are left as they are, or opened again, at once."""
 
     list_display = ["kind", "asset", "cut_off_m", "state", "note", "decided_by", "decided_at", "found_at"]
     list_filter = ["state", "kind"]
@@ -112,17 +112,17 @@ class DataGapAdmin(CommonGroundAdmin):
     ]
 
     @admin.action(description="Leave the chosen as they are", permissions=["view"])
-    def dismiss(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
-        chosen = list(queryset.filter(state=GapState.OPEN))
-        for gap in chosen:
-            dismiss_gap(gap=gap, note="", actor=user_of(request))
+    def dismiss(self, request: HttpRequest, queryset: QuerySet[DataIssue]) -> None:
+        chosen = list(queryset.filter(state=DataIssueState.OPEN))
+        for issue in chosen:
+            dismiss_issue(issue=issue, note="", actor=user_of(request))
         self.message_user(request, f"{len(chosen)} left as they are.")
 
     @admin.action(description="Open the chosen again", permissions=["view"])
-    def reopen(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
-        chosen = list(queryset.exclude(state=GapState.OPEN))
-        for gap in chosen:
-            reopen_gap(gap=gap, actor=user_of(request))
+    def reopen(self, request: HttpRequest, queryset: QuerySet[DataIssue]) -> None:
+        chosen = list(queryset.exclude(state=DataIssueState.OPEN))
+        for issue in chosen:
+            reopen_issue(issue=issue, actor=user_of(request))
         self.message_user(request, f"{len(chosen)} opened again.")
 
 

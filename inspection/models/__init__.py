@@ -1,7 +1,7 @@
 """What exists on the ground, where it comes from, and the graph that connects it."""
 
 from inspection.models.assets import Asset, AssetKind, AssetReference, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
-from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
+from inspection.models.data_issues import DataIssue, DataIssueKind, DataIssueSearch, DataIssueState
 from inspection.models.graph import GraphSnapshot, Ground, TerrainTile
 from inspection.models.imports import (
     MAX_REMOVED_PERCENT,
@@ -27,11 +27,11 @@ __all__ = [
     "AssetSet",
     "Bridge",
     "ChangeAction",
-    "DataGap",
     "DataImport",
-    "GapKind",
-    "GapSearch",
-    "GapState",
+    "DataIssue",
+    "DataIssueKind",
+    "DataIssueSearch",
+    "DataIssueState",
     "GraphSnapshot",
     "Ground",
     "HeightReference",

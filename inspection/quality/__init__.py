@@ -1,1 +1,1 @@
-"""Finds where the data of the ground looks wrong: one small detector per kind of gap, and what each gap cuts off."""
+"""Finds where the data of the ground looks wrong: one small detector per kind of issue, and what each issue cuts off."""

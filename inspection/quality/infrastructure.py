@@ -11,11 +11,11 @@ from inspection.network.infrastructure import InfrastructurePlaces, Infrastructu
 
 
 @dataclass(frozen=True)
-class Gap:
-    """kind is a value of models.GapKind. cut_off_m is explained in quality/repair.py."""
+class FoundIssue:
+    """kind is a value of models.DataIssueKind. cut_off_m is explained in quality/repair.py."""
 
     kind: str
-    key: str  # the same on every run, for as long as the gap is there
+    key: str  # the same on every run, for as long as the issue is there
     asset: int
     position: tuple[float, float]  # lon, lat [deg]
     geometry: BaseGeometry
@@ -56,8 +56,8 @@ class PlainBridge:
 
 
 @dataclass(frozen=True)
-class GapGround:
-    """Everything that gaps are looked for in, as of one revision of the ground."""
+class IssueSearchData:
+    """Everything that issues are looked for in, as of one revision of the ground."""
 
     revision: int
     lines: InfrastructureWays

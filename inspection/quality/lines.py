@@ -8,7 +8,7 @@ from shapely import LineString, Point
 
 from inspection.network.infrastructure import InfrastructureWays
 from inspection.network.nearness import nearest_within
-from inspection.quality.infrastructure import Gap, GapGround, WayFacts, asset_key, place_key
+from inspection.quality.infrastructure import FoundIssue, IssueSearchData, WayFacts, asset_key, place_key
 from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, SupportNetwork
 
 MAX_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
@@ -35,24 +35,24 @@ STANDARD_V = frozenset(
 )  # fmt: skip
 
 
-def impossible_voltages(ground: GapGround) -> list[Gap]:
-    """One gap for each line or railway whose voltage is too low for it, too high for any, no nominal one, or one of too many."""
+def impossible_voltages(ground: IssueSearchData) -> list[FoundIssue]:
+    """One issue for each line or railway whose voltage is too low for it, too high for any, no nominal one, or one of too many."""
     return [
         *_of_ways(ground.lines, ground.line_facts, is_railway=False),
         *_of_ways(ground.railways, ground.railway_facts, is_railway=True),
     ]
 
 
-def _of_ways(ways: InfrastructureWays, facts: WayFacts, *, is_railway: bool) -> list[Gap]:
-    gaps = []
+def _of_ways(ways: InfrastructureWays, facts: WayFacts, *, is_railway: bool) -> list[FoundIssue]:
+    issues = []
     for way, (volts, text) in enumerate(zip(facts.voltages_v, facts.voltage_text, strict=True)):
         fault = voltage_fault(volts, text, subtype=facts.subtype[way], is_railway=is_railway)
         if fault is None:
             continue
         asset, first, last = int(ways.asset[way]), int(ways.first[way]), int(ways.first[way + 1])
         middle = ways.position[(first + last) // 2]
-        gaps.append(
-            Gap(
+        issues.append(
+            FoundIssue(
                 kind="impossible_voltage",
                 key=f"impossible_voltage {asset_key('w', int(facts.osm_id[way]), asset)}",
                 asset=asset,
@@ -61,7 +61,7 @@ def _of_ways(ways: InfrastructureWays, facts: WayFacts, *, is_railway: bool) -> 
                 details=fault | {"voltages_v": list(volts), "tagged": text[:200]},
             )
         )
-    return gaps
+    return issues
 
 
 def voltage_fault(volts: Sequence[int], text: str, *, subtype: str, is_railway: bool) -> dict[str, Any] | None:
@@ -109,7 +109,7 @@ ASKED_AT_ONCE = 2_000_000  # neighbours, so that memory stays bounded
 REACH_M = 2_000.0  # how far an end may be from the network that it could belong to
 
 
-def line_ends(network: SupportNetwork) -> list[Gap]:
+def line_ends(network: SupportNetwork) -> list[FoundIssue]:
     """Ends that no other leg leaves from: apart from another line by a few metres, or with nothing around them.
 
     Spanwise keeps no substations. An end counts as meant where another line, a cable, a busbar, a portal or a tower tagged as terminal is
@@ -155,21 +155,21 @@ def _of_other_lines(network: SupportNetwork, vertex: IntArray, near: NearLegs) -
     return NearLegs(near.place[keep], near.leg[keep], near.metres[keep], near.fraction[keep], near.position[keep])
 
 
-def _ends_apart(network: SupportNetwork, vertex: IntArray, near: NearLegs, row: IntArray) -> list[Gap]:
-    """One gap for each pair of an end and the line that it should join; two ends that miss each other are one gap."""
+def _ends_apart(network: SupportNetwork, vertex: IntArray, near: NearLegs, row: IntArray) -> list[FoundIssue]:
+    """One issue for each pair of an end and the line that it should join; two ends that miss each other are one issue."""
     leg = near.leg[row]
     start, other_end = network.leg_start[leg], network.leg_start[leg] + 1
     target = np.where(near.fraction[row] <= 0.5, start, other_end)
     lines = network.ground.lines
     cut_off = network.joining_m(network.node_of_vertex[vertex], network.node_of_vertex[target])
-    gaps: dict[str, Gap] = {}
+    issues: dict[str, FoundIssue] = {}
     for index, (end, entry) in enumerate(zip(vertex.tolist(), row.tolist(), strict=True)):
         way, other = int(network.way_of_vertex[end]), int(network.leg_way[near.leg[entry]])
         place = lines.position[end]
         is_at_end = near.fraction[entry] in (0.0, 1.0) and target[index] in (lines.first[other], lines.first[other + 1] - 1)
         there = lines.position[target[index]] if near.fraction[entry] in (0.0, 1.0) else near.position[entry]
         named_after = min(place.tolist(), there.tolist()) if is_at_end else place
-        gap = Gap(
+        issue = FoundIssue(
             kind="ends_apart",
             key=f"ends_apart {' '.join(sorted([_way_key(network, way), _way_key(network, other)]))} {place_key(np.asarray(named_after))}",
             asset=int(lines.asset[way]),
@@ -184,22 +184,22 @@ def _ends_apart(network: SupportNetwork, vertex: IntArray, near: NearLegs, row: 
             },
             cut_off_m=float(cut_off[index]),
         )
-        gaps.setdefault(gap.key, gap)
-    return list(gaps.values())
+        issues.setdefault(issue.key, issue)
+    return list(issues.values())
 
 
-def _dead_ends(network: SupportNetwork, vertex: IntArray) -> list[Gap]:
+def _dead_ends(network: SupportNetwork, vertex: IntArray) -> list[FoundIssue]:
     node = network.node_of_vertex[vertex]
     position = network.node_position[node]
     lines = network.ground.lines
     partner, metres = _nearest_other_component(network, node)
     cut_off = np.where(partner >= 0, network.joining_m(node, np.maximum(partner, 0)), 0.0)
-    gaps = []
+    issues = []
     for index, end in enumerate(vertex.tolist()):
         way = int(network.way_of_vertex[end])
         place = position[index]
-        gaps.append(
-            Gap(
+        issues.append(
+            FoundIssue(
                 kind="dead_end",
                 key=f"dead_end {_way_key(network, way)} {place_key(place)}",
                 asset=int(lines.asset[way]),
@@ -215,7 +215,7 @@ def _dead_ends(network: SupportNetwork, vertex: IntArray) -> list[Gap]:
                 cut_off_m=float(cut_off[index]),
             )
         )
-    return gaps
+    return issues
 
 
 def _nearest_other_component(network: SupportNetwork, node: IntArray) -> tuple[IntArray, FloatArray]:

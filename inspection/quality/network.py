@@ -14,7 +14,7 @@ from inspection.geodesy import distance_m
 from inspection.network.build.edges import component_labels
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.nearness import EARTH_RADIUS_M
-from inspection.quality.infrastructure import GapGround
+from inspection.quality.infrastructure import IssueSearchData
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]
@@ -43,7 +43,7 @@ def metres_by(owner: IntArray, metres: FloatArray, count: int) -> FloatArray:
 class SupportNetwork:
     """Nodes are the graph's own (join_vertices): supports first, then vertices without one. A leg joins two vertices of one line."""
 
-    def __init__(self, ground: GapGround) -> None:
+    def __init__(self, ground: IssueSearchData) -> None:
         self.ground = ground
         lines = ground.lines
         joined: JoinedVertices = join_vertices(ground.supports, lines)

@@ -7,7 +7,7 @@ from shapely import Point
 
 from inspection.geodesy import distance_m
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.quality.infrastructure import Gap, GapGround
+from inspection.quality.infrastructure import FoundIssue, IssueSearchData
 from inspection.quality.lines import impossible_voltages, line_ends
 from inspection.quality.network import SupportNetwork
 from inspection.quality.supports import lone_towers, long_spans, missing_supports
@@ -102,9 +102,9 @@ def _position(point: FloatArray) -> Position:
 RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
 
 
-def bridges_without_way(ground: GapGround) -> list[Gap]:
+def bridges_without_way(ground: IssueSearchData) -> list[FoundIssue]:
     return [
-        Gap(
+        FoundIssue(
             kind="bridge_without_way",
             key=f"bridge_without_way {bridge.key}",
             asset=bridge.asset,
@@ -115,12 +115,12 @@ def bridges_without_way(ground: GapGround) -> list[Gap]:
     ]
 
 
-def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> list[Gap]:
-    """Every gap of the ground, the one that cuts off most first; equal grounds give equal lists, each key once."""
+def search(ground: IssueSearchData, progress: Callable[[str], None] | None = None) -> list[FoundIssue]:
+    """Every issue of the ground, the one that cuts off most first; equal grounds give equal lists, each key once."""
     notify = progress or (lambda message: None)
     notify("joining lines")
     network = SupportNetwork(ground)
-    found: list[Gap] = []
+    found: list[FoundIssue] = []
     for words, detector in (
         ("long spans", long_spans), ("vertices without a tower", missing_supports), ("towers on no line", lone_towers),
         ("ends of lines", line_ends),
@@ -129,5 +129,5 @@ def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> 
         found += detector(network)
     notify("bridges and voltages")
     found += bridges_without_way(ground) + impossible_voltages(ground)
-    by_key = {gap.key: gap for gap in reversed(found)}
-    return sorted(by_key.values(), key=lambda gap: (-gap.cut_off_m, -gap.details.get("missing_towers", 0), gap.key))
+    by_key = {issue.key: issue for issue in reversed(found)}
+    return sorted(by_key.values(), key=lambda issue: (-issue.cut_off_m, -issue.details.get("missing_towers", 0), issue.key))

@@ -9,15 +9,15 @@ from shapely import LineString, MultiPoint, Point
 from inspection.geodesy import distance_m
 from inspection.network.build.edges import component_labels
 from inspection.network.nearness import nearest_within, pairs_within
-from inspection.quality.infrastructure import Gap, asset_key, place_key
+from inspection.quality.infrastructure import FoundIssue, asset_key, place_key
 from inspection.quality.lines import is_at_terminal
 from inspection.quality.network import BoolArray, FloatArray, IntArray, SupportNetwork, metres_by
 
 MIN_LINE_M = 150.0  # what is shorter may hang between two portals
 
 
-def missing_supports(network: SupportNetwork) -> list[Gap]:
-    """One gap per line that has vertices without a support.
+def missing_supports(network: SupportNetwork) -> list[FoundIssue]:
+    """One issue per line that has vertices without a support.
 
     First and last vertices count only where nothing says that the line ends in a substation there: those hang on portals, which are
     seldom mapped. A line without any support is "without towers" if it is longer than what may hang between two portals.
@@ -32,19 +32,19 @@ def missing_supports(network: SupportNetwork) -> list[Gap]:
     chosen = np.flatnonzero(bare)
     first = np.searchsorted(way[chosen], np.arange(len(ground.lines) + 1))
     return [
-        _gap_of_line(network, line, chosen[first[line] : first[line + 1]], bool(supports[line]), float(without_m[line]))
+        _issue_of_line(network, line, chosen[first[line] : first[line + 1]], bool(supports[line]), float(without_m[line]))
         for line in np.flatnonzero(count).tolist()
         if supports[line] or network.way_m[line] >= MIN_LINE_M
     ]
 
 
-def _gap_of_line(network: SupportNetwork, line: int, vertices: IntArray, has_supports: bool, without_m: float) -> Gap:
+def _issue_of_line(network: SupportNetwork, line: int, vertices: IntArray, has_supports: bool, without_m: float) -> FoundIssue:
     ground = network.ground
     kind = "missing_support" if has_supports else "line_without_towers"
     positions = ground.lines.position[vertices]
     middle = positions[len(positions) // 2]
     total = int(ground.lines.first[line + 1] - ground.lines.first[line])
-    return Gap(
+    return FoundIssue(
         kind=kind,
         key=f"{kind} {asset_key('w', int(ground.line_facts.osm_id[line]), int(ground.lines.asset[line]))}",
         asset=int(ground.lines.asset[line]),
@@ -84,8 +84,8 @@ LINE_REACH_M = 500.0  # how far the nearest line is looked for
 NAMED = 200  # towers of one row whose keys are kept in the details
 
 
-def lone_towers(network: SupportNetwork) -> list[Gap]:
-    """One gap for each tower, or for each row of towers, that no line passes."""
+def lone_towers(network: SupportNetwork) -> list[FoundIssue]:
+    """One issue for each tower, or for each row of towers, that no line passes."""
     supports = network.ground.supports
     lone = np.flatnonzero(~network.is_carried)
     if not len(lone):
@@ -159,7 +159,7 @@ def _sorting_key(network: SupportNetwork, lone: IntArray) -> IntArray:
 
 def _gap_of_row(
     network: SupportNetwork, lone: IntArray, members: IntArray, leg: IntArray, metres: FloatArray, length_m: float, is_path: bool
-) -> Gap:
+) -> FoundIssue:
     ground = network.ground
     towers = lone[members]
     positions = ground.supports.position[towers]
@@ -168,7 +168,7 @@ def _gap_of_row(
     alone = len(members) == 1
     nearest = int(members[np.nanargmin(metres[members])]) if (leg[members] >= 0).any() else -1
     line = int(ground.lines.asset[network.leg_way[leg[nearest]]]) if nearest >= 0 else None
-    return Gap(
+    return FoundIssue(
         kind="tower_on_no_line",
         key=f"tower_on_no_line {asset_key('n', int(ground.support_facts.osm_id[towers[0]]), leader)}",
         asset=leader,
@@ -186,7 +186,7 @@ def _gap_of_row(
     )
 
 
-# Volts from which a class begins, the usual span where the data has none to learn from, and the bound: what is shorter is no gap,
+# Volts from which a class begins, the usual span where the data has none to learn from, and the bound: what is shorter is no issue,
 # whatever the line's other spans are. Usual: wooden and concrete poles stand about 80 m apart, towers 300 to 550 m (Darley Power Fight,
 # "dimensions of the towers", 450 to 550 m at 220 and 500 kV; in the OSM data of Nepal at 132 kV the median is 0.32 km and 95 % are below
 # 0.64 km). The bound is about twice the longest usual span: valleys and rivers are crossed in one leap.
@@ -226,14 +226,14 @@ def usual_span_m(network: SupportNetwork) -> FloatArray:
     return usual
 
 
-def long_spans(network: SupportNetwork) -> list[Gap]:
+def long_spans(network: SupportNetwork) -> list[FoundIssue]:
     """Legs longer than three times the usual span of their line and than the bound of its voltage."""
     lines, facts = network.ground.lines, network.ground.line_facts
     usual = usual_span_m(network)[network.leg_way]
     bound = np.array([CLASSES[index][2] for index in way_classes(network)])[network.leg_way]
     found = np.flatnonzero((network.leg_m > LONGER_THAN_OTHERS * usual) & (network.leg_m > bound))
     pair_of_leg = network.pairs[2]
-    gaps = []
+    issues = []
     for leg in found.tolist():
         way, vertex = int(network.leg_way[leg]), int(network.leg_start[leg])
         ends = lines.position[vertex : vertex + 2]
@@ -242,8 +242,8 @@ def long_spans(network: SupportNetwork) -> list[Gap]:
         span_m = float(network.leg_m[leg])
         beyond_m = float(network.smaller_side_m[pair_of_leg[leg]]) if pair_of_leg[leg] >= 0 else 0.0
         missing = max(round(span_m / float(usual[leg])) - 1, 1)
-        gaps.append(
-            Gap(
+        issues.append(
+            FoundIssue(
                 kind="long_span",
                 key=f"long_span {asset_key('w', int(facts.osm_id[way]), int(lines.asset[way]))} {place_key(ends[0])} {place_key(ends[1])}",
                 asset=int(lines.asset[way]),
@@ -261,7 +261,7 @@ def long_spans(network: SupportNetwork) -> list[Gap]:
                 cut_off_m=span_m + beyond_m,
             )
         )
-    return gaps
+    return issues
 
 
 def _middle(ends: FloatArray) -> tuple[float, float]:

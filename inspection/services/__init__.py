@@ -4,7 +4,7 @@ from inspection.importers.rows import AssetFileError
 from inspection.importers.terrain.raster import TerrainFileError
 from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
-from inspection.services.gaps import find_gaps
+from inspection.services.data_issues import find_issues
 from inspection.services.graph import build_graph, refresh_graph
 from inspection.services.ground import mark_ground_changed
 from inspection.services.imports.assets import UnfinishedMapping, import_assets
@@ -22,7 +22,7 @@ __all__ = [
     "build_graph",
     "delete_asset",
     "delete_zone",
-    "find_gaps",
+    "find_issues",
     "geometry_fault",
     "import_assets",
     "import_osm",

@@ -11,7 +11,7 @@ from django.db.models import QuerySet
 from django.utils.translation import gettext as _
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.models import Asset, AssetKind, DataGap, OsmType
+from inspection.models import Asset, AssetKind, DataIssue, OsmType
 from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.quality.lines import MAX_V, MAX_VALUES
 from inspection.quality.repair import (
@@ -49,10 +49,10 @@ class RepairEdit:
     is_new: bool = False
 
 
-def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def towers_along_span(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """New vertices in the span and a tower at each: at the places given, else evenly, as many as are thought to be missing."""
-    line = _line(gap.asset_id)
-    course, details = list(line.geometry.coords), gap.details
+    line = _line(issue.asset_id)
+    course, details = list(line.geometry.coords), issue.details
     start, end = details["start"], details["end"]
     leg = _found(lambda: leg_between(course, start, end))
     if "positions" in parameters:
@@ -66,22 +66,22 @@ def towers_along_span(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEd
     return [RepairEdit(line), *(_new_tower(line, place, NO_OSM_NODE) for place in places)]
 
 
-def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def towers_at_vertices(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """A tower at each vertex of the line that has none; where OSM has a node there, the tower is known by it."""
-    line = _line(gap.asset_id)
+    line = _line(issue.asset_id)
     course = line.geometry.coords
     nodes = line.node_osm_ids if len(line.node_osm_ids) == len(course) else [NO_OSM_NODE] * len(course)
-    drawn = gap.geometry
+    drawn = issue.geometry
     wanted = drawn.coords if isinstance(drawn, MultiPoint) else [drawn.coords] if drawn is not None else []
     numbers = sorted({_found(partial(vertex_at, course, place)) for place in wanted})
     return [_new_tower(line, course[number], nodes[number]) for number in numbers]
 
 
-def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def attach_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The nearest line led through the tower; of a row of towers through the one that is nearest to it."""
-    line = _line(gap.other_asset_id)
+    line = _line(issue.other_asset_id)
     course = list(line.geometry.coords)
-    towers = list(Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER))
+    towers = list(Asset.objects.filter(pk__in=issue.details["assets"], vanished_at=None, kind=AssetKind.TOWER))
     if not towers:
         raise CannotRepair(_("The tower is gone. The ground is being searched again."))
     tower = min(towers, key=lambda row: (nearest_leg(course, row.geometry.coords)[2], row.pk))
@@ -92,14 +92,14 @@ def attach_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     return [RepairEdit(line)]
 
 
-def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def line_along_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """A new line from tower to tower of a row, of the voltage that all that state one agree on."""
     towers = list(
-        Asset.objects.filter(pk__in=gap.details["assets"], vanished_at=None, kind=AssetKind.TOWER, is_flyable=True).order_by("pk")
+        Asset.objects.filter(pk__in=issue.details["assets"], vanished_at=None, kind=AssetKind.TOWER, is_flyable=True).order_by("pk")
     )
     places = np.array([tower.geometry.coords for tower in towers], dtype=np.float64).reshape(-1, 2)
     order = course_of_row(places) if len(towers) > 1 else None
-    if order is None or len(towers) != len(gap.details["assets"]):
+    if order is None or len(towers) != len(issue.details["assets"]):
         raise CannotRepair(_("The towers stand in no row any more. The ground is being searched again."))
     stated = {tuple(tower.voltages_v) for tower in towers if tower.voltages_v}
     line = Asset(
@@ -112,9 +112,9 @@ def line_along_towers(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEd
     return [RepairEdit(line, is_new=True)]
 
 
-def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """What the gap is about, marked as no part of the inspection graph."""
-    keys = gap.details.get("assets", [gap.asset_id])
+def leave_out(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
+    """What the issue is about, marked as no part of the inspection graph."""
+    keys = issue.details.get("assets", [issue.asset_id])
     rows = list(Asset.objects.filter(pk__in=keys, vanished_at=None, is_flyable=True).order_by("pk"))
     if not rows:
         raise CannotRepair(_("It is not part of the graph any more."))
@@ -123,11 +123,11 @@ def leave_out(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     return [RepairEdit(row) for row in rows]
 
 
-def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def joined_ends(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The end moved onto the other line, which gets a vertex there if it has none; an end with a tower stays and is led on."""
-    line, other = _line(gap.asset_id), _line(gap.other_asset_id)
-    course, there = list(line.geometry.coords), tuple(gap.details["there"])
-    end = _end(course, gap.details["end"])
+    line, other = _line(issue.asset_id), _line(issue.other_asset_id)
+    course, there = list(line.geometry.coords), tuple(issue.details["there"])
+    end = _end(course, issue.details["end"])
     changes = []
     try:
         target = other.geometry.coords[vertex_at(other.geometry.coords, there)]
@@ -142,31 +142,31 @@ def joined_ends(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
     return [*changes, RepairEdit(line)]
 
 
-def join_to_network(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def join_to_network(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The dead end led on, straight, to the nearest place of the network that it does not hang together with."""
-    line = _line(gap.asset_id)
+    line = _line(issue.asset_id)
     course = list(line.geometry.coords)
-    end = _end(course, gap.details["end"])
-    line.geometry = LineString(end_moved_to(course, end, tuple(gap.details["nearest"]), keeps_end=True), srid=4326)
+    end = _end(course, issue.details["end"])
+    line.geometry = LineString(end_moved_to(course, end, tuple(issue.details["nearest"]), keeps_end=True), srid=4326)
     return [RepairEdit(line)]
 
 
-def bridge_carries(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
+def bridge_carries(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
     carried = _CARRIED.get(str(parameters.get("way", "")))
     if carried is None:
         raise CannotRepair(_("Say what it carries: %(value)s.") % {"value": ", ".join(_CARRIED)})
-    bridge = _asset(gap.asset_id)
+    bridge = _asset(issue.asset_id)
     bridge.tags = bridge.tags | carried
     return [RepairEdit(bridge)]
 
 
-def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
-    given = parameters.get("voltages_v", gap.details["offered_v"])
+def with_voltages(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
+    given = parameters.get("voltages_v", issue.details["offered_v"])
     if not isinstance(given, list) or not 1 <= len(given) <= MAX_VALUES:
         raise CannotRepair(_("Give 1 to %(most_values)s voltages in volts.") % {"most_values": MAX_VALUES})
     if any(isinstance(value, bool) or not isinstance(value, int) or not 0 < value <= MAX_V for value in given):
         raise CannotRepair(_("A voltage is a whole number of volts, at most %(highest_v)s.") % {"highest_v": f"{MAX_V:,}"})
-    asset = _asset(gap.asset_id)
+    asset = _asset(issue.asset_id)
     asset.voltages_v = sorted(set(given), reverse=True)
     return [RepairEdit(asset)]
 
@@ -174,7 +174,7 @@ def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[RepairEdit]:
 def _asset(key: int | None) -> Asset:
     asset = None if key is None else Asset.objects.filter(pk=key, vanished_at=None).first()
     if asset is None:
-        raise CannotRepair(_("What the gap is about is gone. The ground is being searched again."))
+        raise CannotRepair(_("What the issue is about is gone. The ground is being searched again."))
     return asset
 
 
@@ -189,7 +189,7 @@ def _found(search: Any) -> int:
     try:
         return int(search())
     except NoSuchVertex:
-        raise CannotRepair(_("The line has changed since the gap was found. The ground is being searched again.")) from None
+        raise CannotRepair(_("The line has changed since the issue was found. The ground is being searched again.")) from None
 
 
 def _end(course: list[tuple[float, float]], place: Any) -> int:

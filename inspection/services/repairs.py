@@ -1,4 +1,4 @@
-"""Repairs of gaps: what each one would change, and changing it through curation, so that imports keep it and the history has it."""
+"""Repairs of issues: what each one would change, and changing it through curation, so that imports keep it and the history has it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -7,10 +7,10 @@ from typing import Any
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 
-from inspection.models import AssetKind, DataGap, GapKind, GapState
+from inspection.models import AssetKind, DataIssue, DataIssueKind, DataIssueState
 from inspection.services.curation import many_edits, save_asset
+from inspection.services.data_issues import mark_repaired, reopen_issue
 from inspection.services.facts import geojson
-from inspection.services.gaps import mark_repaired, reopen_gap
 from inspection.services.history import undo
 from inspection.services.repair_edits import (
     CannotRepair,
@@ -40,26 +40,26 @@ class Offer:
 
 @dataclass(frozen=True)
 class Repaired:
-    gap: DataGap
+    issue: DataIssue
     entries: list[int] = field(default_factory=list)  # of the history, oldest first: undo them from the end
     said: str = ""
 
 
-def offers_of(gap: DataGap) -> list[Offer]:
-    """What can be done about an open gap; the best first."""
-    if gap.state != GapState.OPEN:
+def offers_of(issue: DataIssue) -> list[Offer]:
+    """What can be done about an open issue; the best first."""
+    if issue.state != DataIssueState.OPEN:
         return []
-    return _OFFERS[GapKind(gap.kind)](gap.details)
+    return _OFFERS[DataIssueKind(issue.kind)](issue.details)
 
 
-def changes_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> list[RepairEdit]:
+def changes_of(*, issue: DataIssue, action: str, parameters: dict[str, Any]) -> list[RepairEdit]:
     """The assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
-    if all(offer.action != action for offer in offers_of(gap)):
-        raise CannotRepair(_("This repair does not fit the gap as it is now."))
-    return _BUILDERS[action](gap, parameters)
+    if all(offer.action != action for offer in offers_of(issue)):
+        raise CannotRepair(_("This repair does not fit the issue as it is now."))
+    return _BUILDERS[action](issue, parameters)
 
 
-def preview_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> dict[str, Any]:
+def preview_of(*, issue: DataIssue, action: str, parameters: dict[str, Any]) -> dict[str, Any]:
     """A FeatureCollection of what the repair would draw: `role` is line, tower or asset."""
     features = [
         {
@@ -67,29 +67,29 @@ def preview_of(*, gap: DataGap, action: str, parameters: dict[str, Any]) -> dict
             "geometry": geojson(change.asset.geometry),
             "properties": {"role": change.asset.kind, "is_new": change.asset.pk is None},
         }
-        for change in changes_of(gap=gap, action=action, parameters=parameters)
+        for change in changes_of(issue=issue, action=action, parameters=parameters)
     ]
     return {"type": "FeatureCollection", "features": features}
 
 
-def repair_gap(*, gap: DataGap, action: str, parameters: dict[str, Any], actor: User) -> Repaired:
-    """Make the changes, each in the history, and count the gap as repaired until the next search says otherwise. Raises CannotRepair."""
+def repair_issue(*, issue: DataIssue, action: str, parameters: dict[str, Any], actor: User) -> Repaired:
+    """Make the changes, each in the history, and count the issue as repaired until the next search says otherwise. Raises CannotRepair."""
     with many_edits():
-        kept = DataGap.objects.select_for_update(of=["self"]).get(pk=gap.pk)
-        if kept.state != GapState.OPEN:
-            raise CannotRepair(_("Somebody has decided about this gap already."))
-        changes = changes_of(gap=kept, action=action, parameters=parameters)
+        kept = DataIssue.objects.select_for_update(of=["self"]).get(pk=issue.pk)
+        if kept.state != DataIssueState.OPEN:
+            raise CannotRepair(_("Somebody has decided about this issue already."))
+        changes = changes_of(issue=kept, action=action, parameters=parameters)
         last = AuditEntry.objects.order_by("-pk").values_list("pk", flat=True).first() or 0
         for change in changes:
             save_asset(asset=change.asset, actor=actor)
         subjects = {str(change.asset.pk) for change in changes}
         entries = AuditEntry.objects.filter(pk__gt=last, subject_type="asset", subject_id__in=subjects, actor=actor)
         numbers = list(entries.order_by("pk").values_list("pk", flat=True))
-        kept = mark_repaired(gap=kept, actor=actor)
+        kept = mark_repaired(issue=kept, actor=actor)
     return Repaired(kept, numbers, _said(changes))
 
 
-def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap:
+def undo_repair(*, issue: DataIssue, entries: Sequence[int], actor: User) -> DataIssue:
     """Take a repair back, its last change first, all of it or nothing. Raises history.CannotUndo, CannotRepair."""
     with many_edits():
         rows = AuditEntry.objects.filter(pk__in=entries, subject_type="asset", organisation=actor.organisation)
@@ -97,7 +97,7 @@ def undo_repair(*, gap: DataGap, entries: Sequence[int], actor: User) -> DataGap
             raise CannotRepair(_("These are no changes of a repair."))
         for entry in sorted(rows, key=lambda row: -row.pk):
             undo(entry=entry, actor=actor)
-        return reopen_gap(gap=gap, actor=actor)
+        return reopen_issue(issue=issue, actor=actor)
 
 
 def _said(changes: Sequence[RepairEdit]) -> str:
@@ -171,20 +171,22 @@ def _offers_of_voltage(details: dict[str, Any]) -> list[Offer]:
     return [Offer("set_voltages", words, parameter="voltages_v", choices=choices)]
 
 
-_OFFERS: dict[GapKind, Callable[[dict[str, Any]], list[Offer]]] = {
-    GapKind.LONG_SPAN: _offers_of_long_span,
-    GapKind.MISSING_SUPPORT: _offers_of_missing_supports,
-    GapKind.LINE_WITHOUT_TOWERS: lambda details: [
+_OFFERS: dict[DataIssueKind, Callable[[dict[str, Any]], list[Offer]]] = {
+    DataIssueKind.LONG_SPAN: _offers_of_long_span,
+    DataIssueKind.MISSING_SUPPORT: _offers_of_missing_supports,
+    DataIssueKind.LINE_WITHOUT_TOWERS: lambda details: [
         *_offers_of_missing_supports(details),
         Offer("leave_out", _("Leave the line out of the graph")),
     ],
-    GapKind.TOWER_ON_NO_LINE: _offers_of_lone_tower,
-    GapKind.DEAD_END: _offers_of_dead_end,
-    GapKind.ENDS_APART: lambda details: [Offer("join", _("Join the ends") if details["is_at_end"] else _("Join the end to the line"))],
-    GapKind.BRIDGE_WITHOUT_WAY: _offers_of_bridge,
-    GapKind.IMPOSSIBLE_VOLTAGE: _offers_of_voltage,
+    DataIssueKind.TOWER_ON_NO_LINE: _offers_of_lone_tower,
+    DataIssueKind.DEAD_END: _offers_of_dead_end,
+    DataIssueKind.ENDS_APART: lambda details: [
+        Offer("join", _("Join the ends") if details["is_at_end"] else _("Join the end to the line"))
+    ],
+    DataIssueKind.BRIDGE_WITHOUT_WAY: _offers_of_bridge,
+    DataIssueKind.IMPOSSIBLE_VOLTAGE: _offers_of_voltage,
 }
-_BUILDERS: dict[str, Callable[[DataGap, dict[str, Any]], list[RepairEdit]]] = {
+_BUILDERS: dict[str, Callable[[DataIssue, dict[str, Any]], list[RepairEdit]]] = {
     "place_towers": towers_along_span,
     "make_towers": towers_at_vertices,
     "attach": attach_towers,

@@ -90,14 +90,14 @@ def reach(
     """
     on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
     on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
-    reachability, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
+    state, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
     found = _reach_of_nodes(graph, leg_zones, flights, bases, rules, conditions, flight_rules, no_landing)
     is_on = on_graph >= 0
     count, at = network.node_count, on_graph[is_on]
     flight, missing_m, missing_wh = np.full(count, -1, dtype=np.int16), np.zeros(count), np.zeros(count)
-    reachability[is_on], flight[is_on] = found.reachability[at], found.flight[at]
+    state[is_on], flight[is_on] = found.state[at], found.flight[at]
     missing_m[is_on], missing_wh[is_on] = found.missing_m[at], found.missing_wh[at]
-    return of_assets(network, graph, on_graph, NodeReach(reachability, flight, missing_m, missing_wh, zone))
+    return of_assets(network, graph, on_graph, NodeReach(state, flight, missing_m, missing_wh, zone))
 
 
 @njit(cache=True, nogil=True)
@@ -127,20 +127,18 @@ def _off_the_graph(
     clearance_m: float,
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Why nodes are not on the graph, and the zones that took them; where two nodes have become one, on_graph is told the other."""
-    reachability, zone = (
-        np.full(network.node_count, Reachability.ABOVE_HEIGHT_LIMIT, dtype=np.int8),
-        np.full(network.node_count, -1, dtype=np.int32),
-    )
+    state = np.full(network.node_count, Reachability.ABOVE_HEIGHT_LIMIT, dtype=np.int8)
+    zone = np.full(network.node_count, -1, dtype=np.int32)
     gone = np.flatnonzero(on_whole < 0)
     if len(gone):
         zone[gone] = _zones_at(zones, network.position[gone], clearance_m)
-        reachability[gone[zone[gone] >= 0]] = Reachability.INSIDE_ZONE
+        state[gone[zone[gone] >= 0]] = Reachability.INSIDE_ZONE
         for node in gone[zone[gone] < 0].tolist():
             at = network.position[node]
             nearest = node_tree(graph).nearest(LonLat(*at.tolist()), 1)
             if len(nearest) and distance_m(graph.position[nearest], at[None])[0] <= SAME_PLACE_M:
                 on_graph[node] = nearest[0]
-    return reachability, zone
+    return state, zone
 
 
 def _zones_at(zones: ZoneIndex, position: FloatArray, clearance_m: float) -> NDArray[np.int32]:
@@ -203,17 +201,17 @@ def _reach_of_nodes(
             np.minimum(missing_m, np.where(against, needed_m - min(one.limit_m, MAX_DISTANCE_M), np.inf), out=missing_m)
             enough = against & (needed_m <= one.limit_m)
             np.minimum(missing_wh, np.where(enough, needed_wh - min(one.usable_wh, MAX_WH), np.inf), out=missing_wh)
-    reachability = np.full(count, Reachability.CUT_OFF, dtype=np.int8)
-    reachability[has_path] = Reachability.WIND
-    reachability[np.isfinite(missing_m)] = Reachability.BEYOND_RANGE
-    reachability[np.isfinite(missing_wh)] = Reachability.BEYOND_ENERGY
-    reachability[lands_nowhere] = Reachability.NO_LANDING
-    reachability[flight >= 0] = Reachability.REACHABLE
+    state = np.full(count, Reachability.CUT_OFF, dtype=np.int8)
+    state[has_path] = Reachability.WIND
+    state[np.isfinite(missing_m)] = Reachability.BEYOND_RANGE
+    state[np.isfinite(missing_wh)] = Reachability.BEYOND_ENERGY
+    state[lands_nowhere] = Reachability.NO_LANDING
+    state[flight >= 0] = Reachability.REACHABLE
     return NodeReach(
-        reachability,
+        state,
         flight,
-        np.where(reachability == Reachability.BEYOND_RANGE, missing_m, 0.0),
-        np.where(reachability == Reachability.BEYOND_ENERGY, missing_wh, 0.0),
+        np.where(state == Reachability.BEYOND_RANGE, missing_m, 0.0),
+        np.where(state == Reachability.BEYOND_ENERGY, missing_wh, 0.0),
         np.full(count, -1, dtype=np.int32),
     )
 

@@ -30,19 +30,19 @@ class Reachability(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """A reachability for each of a assets, sorted by their primary keys.
+    """What is known of each of `a` assets, sorted by their primary keys.
 
     asset       int64 (a,)
-    reachability     int8 (a,)     see Reachability
+    state       int8 (a,)     see Reachability
     flight      int16 (a,)    of the flights that can do it the one that flies least; -1 for none, or for a way that takes several
-    missing_m   float64 (a,)  by how much the range is too short at best; 0 unless that is the reachability
+    missing_m   float64 (a,)  by how much the range is too short at best; 0 unless that is the state
     missing_wh  float64 (a,)  the same of the battery
     zone        int32 (a,)    the number of the zone that it is in; -1 for none
     box         float64 (a, 4)  west, south, east, north of its nodes
     """
 
     asset: IntArray
-    reachability: NDArray[np.int8]
+    state: NDArray[np.int8]
     flight: NDArray[np.int16]
     missing_m: FloatArray
     missing_wh: FloatArray
@@ -54,7 +54,7 @@ class Reach:
 class NodeReach:
     """The same of each node of a network, (n,); zone as in Reach."""
 
-    reachability: NDArray[np.int8]
+    state: NDArray[np.int8]
     flight: NDArray[np.int16]
     missing_m: FloatArray
     missing_wh: FloatArray
@@ -67,19 +67,17 @@ def of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, node
     spans = np.flatnonzero(network.edge_asset >= 0)
     way, of_span = np.unique(network.edge_asset[spans], return_inverse=True)
     ends = network.edge[spans]
-    reached = (nodes.reachability[ends] == Reachability.REACHABLE).all(axis=1) & _is_edge(graph, on_graph[ends])
+    reached = (nodes.state[ends] == Reachability.REACHABLE).all(axis=1) & _is_edge(graph, on_graph[ends])
     count, done = np.bincount(of_span, minlength=len(way)), np.bincount(of_span, weights=reached, minlength=len(way))
 
     # What keeps a span from being inspected: the worse of its ends; a zone, where both ends can be reached but it is not flown over.
-    worst = nodes.reachability[ends].argmax(axis=1)
+    worst = nodes.state[ends].argmax(axis=1)
     node = ends[np.arange(len(ends)), worst]
-    why = np.where(
-        ~reached & (nodes.reachability[node] == Reachability.REACHABLE), Reachability.INSIDE_ZONE, nodes.reachability[node]
-    ).astype(np.int8)
+    why = np.where(~reached & (nodes.state[node] == Reachability.REACHABLE), Reachability.INSIDE_ZONE, nodes.state[node]).astype(np.int8)
     # Of all spans of a way the first that can be had most easily.
     order = np.lexsort((nodes.missing_m[node] + nodes.missing_wh[node], why, of_span))
     first = order[np.searchsorted(of_span[order], np.arange(len(way)))]
-    path_reachability = np.where(done == count, Reachability.REACHABLE, np.where(done > 0, Reachability.PARTLY, why[first])).astype(np.int8)
+    path_state = np.where(done == count, Reachability.REACHABLE, np.where(done > 0, Reachability.PARTLY, why[first])).astype(np.int8)
     least, most = np.full(len(way), 32_767, dtype=np.int16), np.full(len(way), -1, dtype=np.int16)
     for end in range(2):
         np.minimum.at(least, of_span, nodes.flight[ends[:, end]])
@@ -90,8 +88,8 @@ def of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, node
             np.minimum.at(box[:, axis], of_span, network.position[ends[:, end], axis])
             np.maximum.at(box[:, 2 + axis], of_span, network.position[ends[:, end], axis])
     is_short, is_inside = (
-        np.isin(path_reachability, (Reachability.BEYOND_RANGE, Reachability.BEYOND_ENERGY)),
-        path_reachability == Reachability.INSIDE_ZONE,
+        np.isin(path_state, (Reachability.BEYOND_RANGE, Reachability.BEYOND_ENERGY)),
+        path_state == Reachability.INSIDE_ZONE,
     )
 
     asset = np.concatenate([network.node_asset[single], way])
@@ -99,7 +97,7 @@ def of_assets(network: Network, graph: InspectionGraph, on_graph: IntArray, node
     position = network.position[single]
     return Reach(
         asset=asset[order],
-        reachability=np.concatenate([nodes.reachability[single], path_reachability])[order],
+        state=np.concatenate([nodes.state[single], path_state])[order],
         flight=np.concatenate([nodes.flight[single], np.where(least == most, least, -1).astype(np.int16)])[order],
         missing_m=np.concatenate([nodes.missing_m[single], np.where(is_short, nodes.missing_m[node[first]], 0.0)])[order],
         missing_wh=np.concatenate([nodes.missing_wh[single], np.where(is_short, nodes.missing_wh[node[first]], 0.0)])[order],

@@ -1059,6 +1059,85 @@ export interface components {
             results: components["schemas"]["Credential"][];
             next: string | null;
         };
+        DataIssueAsset: {
+            id: number;
+            kind: components["schemas"]["AssetKind"];
+            label: string;
+            detail: string;
+        };
+        DataIssueCollection: {
+            type: components["schemas"]["FeatureCollectionType"];
+            features: components["schemas"]["DataIssueFeature"][];
+            /** @description address of the next page */
+            next: string | null;
+        };
+        DataIssueFeature: {
+            type: components["schemas"]["FeatureType"];
+            id: number;
+            geometry: components["schemas"]["Geometry"];
+            properties: components["schemas"]["DataIssueProperties"];
+        };
+        /**
+         * @description * `long_span` - Span far longer than the line's others
+         *     * `missing_support` - Line vertex without a tower
+         *     * `tower_on_no_line` - Tower on no line
+         *     * `line_without_towers` - Line without towers
+         *     * `dead_end` - Line that ends in nothing
+         *     * `ends_apart` - Ends that should join
+         *     * `bridge_without_way` - Bridge without a way
+         *     * `impossible_voltage` - Impossible voltage
+         * @enum {string}
+         */
+        DataIssueKind: "long_span" | "missing_support" | "tower_on_no_line" | "line_without_towers" | "dead_end" | "ends_apart" | "bridge_without_way" | "impossible_voltage";
+        DataIssueProperties: {
+            kind: components["schemas"]["DataIssueKind"];
+            state: components["schemas"]["DataIssueState"];
+            title: string;
+            sentence: string;
+            asset: components["schemas"]["DataIssueAsset"] | null;
+            other_asset: components["schemas"]["DataIssueAsset"] | null;
+            /** @description lon, lat */
+            position: number[];
+            /** @description figures with units in their names */
+            details: {
+                [key: string]: unknown;
+            };
+            /**
+             * Format: double
+             * @description length of network that depends on it
+             */
+            cut_off_m: number;
+            repairs: components["schemas"]["Offer"][];
+            note: string;
+            /** @description a name, or "another organisation" in your language */
+            decided_by: string | null;
+            /** Format: date-time */
+            decided_at: string | null;
+            /** Format: date-time */
+            found_at: string;
+        };
+        /**
+         * @description * `open` - Open
+         *     * `repaired` - Repaired
+         *     * `dismissed` - Left as it is
+         * @enum {string}
+         */
+        DataIssueState: "open" | "repaired" | "dismissed";
+        DataIssueSummary: {
+            /** @description number by kind, then state */
+            kinds: {
+                [key: string]: {
+                    [key: string]: number;
+                };
+            };
+            /** @description false while the ground has changed and is not yet searched again */
+            is_current: boolean;
+            /**
+             * Format: date-time
+             * @description null before the first search
+             */
+            searched_at: string | null;
+        };
         /**
          * @description * `MON` - MON
          *     * `TUE` - TUE
@@ -1657,91 +1736,12 @@ export interface components {
          * @enum {string}
          */
         FormEnum: "lattice" | "tubular" | "wooden" | "h-frame" | "portal" | "guyed" | "stake";
-        GapAsset: {
-            id: number;
-            kind: components["schemas"]["AssetKind"];
-            label: string;
-            detail: string;
-        };
-        GapCollection: {
-            type: components["schemas"]["FeatureCollectionType"];
-            features: components["schemas"]["GapFeature"][];
-            /** @description address of the next page */
-            next: string | null;
-        };
-        GapFeature: {
-            type: components["schemas"]["FeatureType"];
-            id: number;
-            geometry: components["schemas"]["Geometry"];
-            properties: components["schemas"]["GapProperties"];
-        };
-        /**
-         * @description * `long_span` - Span far longer than the line's others
-         *     * `missing_support` - Line vertex without a tower
-         *     * `tower_on_no_line` - Tower on no line
-         *     * `line_without_towers` - Line without towers
-         *     * `dead_end` - Line that ends in nothing
-         *     * `ends_apart` - Ends that should join
-         *     * `bridge_without_way` - Bridge without a way
-         *     * `impossible_voltage` - Impossible voltage
-         * @enum {string}
-         */
-        GapKind: "long_span" | "missing_support" | "tower_on_no_line" | "line_without_towers" | "dead_end" | "ends_apart" | "bridge_without_way" | "impossible_voltage";
         /**
          * @description * `all_plans` - all_plans
          *     * `without_timed_zones` - without_timed_zones
          * @enum {string}
          */
         GapOfEnum: "all_plans" | "without_timed_zones";
-        GapProperties: {
-            kind: components["schemas"]["GapKind"];
-            state: components["schemas"]["GapState"];
-            title: string;
-            sentence: string;
-            asset: components["schemas"]["GapAsset"] | null;
-            other_asset: components["schemas"]["GapAsset"] | null;
-            /** @description lon, lat */
-            position: number[];
-            /** @description figures with units in their names */
-            details: {
-                [key: string]: unknown;
-            };
-            /**
-             * Format: double
-             * @description length of network that depends on it
-             */
-            cut_off_m: number;
-            repairs: components["schemas"]["Offer"][];
-            note: string;
-            /** @description a name, or "another organisation" in your language */
-            decided_by: string | null;
-            /** Format: date-time */
-            decided_at: string | null;
-            /** Format: date-time */
-            found_at: string;
-        };
-        /**
-         * @description * `open` - Open
-         *     * `repaired` - Repaired
-         *     * `dismissed` - Left as it is
-         * @enum {string}
-         */
-        GapState: "open" | "repaired" | "dismissed";
-        GapSummary: {
-            /** @description number by kind, then state */
-            kinds: {
-                [key: string]: {
-                    [key: string]: number;
-                };
-            };
-            /** @description false while the ground has changed and is not yet searched again */
-            is_current: boolean;
-            /**
-             * Format: date-time
-             * @description null before the first search
-             */
-            searched_at: string | null;
-        };
         /** @description A GeoJSON geometry, WGS84, longitude first. */
         Geometry: {
             type: components["schemas"]["GeometryType"];
@@ -5107,7 +5107,7 @@ export interface components {
             voltages_v?: unknown;
         };
         Repaired: {
-            gap: components["schemas"]["GapFeature"] | null;
+            issue: components["schemas"]["DataIssueFeature"] | null;
             /** @description of the history, oldest first */
             entries: number[];
             /** @description what was done, in words */
@@ -7902,6 +7902,13 @@ export type Credential = components['schemas']['Credential'];
 export type CredentialInputRequest = components['schemas']['CredentialInputRequest'];
 export type CredentialKind = components['schemas']['CredentialKind'];
 export type CredentialPage = components['schemas']['CredentialPage'];
+export type DataIssueAsset = components['schemas']['DataIssueAsset'];
+export type DataIssueCollection = components['schemas']['DataIssueCollection'];
+export type DataIssueFeature = components['schemas']['DataIssueFeature'];
+export type DataIssueKind = components['schemas']['DataIssueKind'];
+export type DataIssueProperties = components['schemas']['DataIssueProperties'];
+export type DataIssueState = components['schemas']['DataIssueState'];
+export type DataIssueSummary = components['schemas']['DataIssueSummary'];
 export type DayEnum = components['schemas']['DayEnum'];
 export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
@@ -7951,14 +7958,7 @@ export type FlownStage = components['schemas']['FlownStage'];
 export type FlownTotals = components['schemas']['FlownTotals'];
 export type FollowUpRequest = components['schemas']['FollowUpRequest'];
 export type FormEnum = components['schemas']['FormEnum'];
-export type GapAsset = components['schemas']['GapAsset'];
-export type GapCollection = components['schemas']['GapCollection'];
-export type GapFeature = components['schemas']['GapFeature'];
-export type GapKind = components['schemas']['GapKind'];
 export type GapOfEnum = components['schemas']['GapOfEnum'];
-export type GapProperties = components['schemas']['GapProperties'];
-export type GapState = components['schemas']['GapState'];
-export type GapSummary = components['schemas']['GapSummary'];
 export type Geometry = components['schemas']['Geometry'];
 export type GeometryCheckKindEnum = components['schemas']['GeometryCheckKindEnum'];
 export type GeometryCheckRequest = components['schemas']['GeometryCheckRequest'];

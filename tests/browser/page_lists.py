@@ -7,7 +7,7 @@ FOR_OPERATORS = (
     "/uavs",
     "/live",
     "/assets",
-    "/assets/gaps",
+    "/assets/data-issues",
     "/terrain",
     "/zones",
     "/account",

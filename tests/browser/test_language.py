@@ -146,10 +146,10 @@ def test_no_english_is_left_on_the_pages_of_a_curator_and_an_administrator(visit
     page.keyboard.press("e")
     page.locator("#record-edit h2").wait_for()
     reader.reads(page, "a zone that is edited")
-    for gap in asks(page, "/gaps?limit=3")["features"]:
-        reader.opens(page, f"/assets/gaps?gap={gap['id']}")
-        page.locator("#gap-panel h2").wait_for()
-        reader.reads(page, f"a gap: {gap['properties']['kind']}")
+    for issue in asks(page, "/data-issues?limit=3")["features"]:
+        reader.opens(page, f"/assets/data-issues?issue={issue['id']}")
+        page.locator("#issue-panel h2").wait_for()
+        reader.reads(page, f"an issue: {issue['properties']['kind']}")
     reader.opens(page, "/imports")
     proposal = asks(page, "/imports?limit=1")["results"]
     if proposal:

@@ -24,7 +24,7 @@ pytestmark = pytest.mark.django_db
 
 MODELS = sorted((model._meta.app_label, model._meta.model_name) for model in admin.site._registry)
 CURATED_MODELS = {  # infrastructure, zones, terrain, and the imports and graphs made of them
-    "asset", "assetset", "bridge", "datagap", "dataimport", "graphsnapshot", "ground", "importproposal", "noflyzone", "powerline",
+    "asset", "assetset", "bridge", "dataissue", "dataimport", "graphsnapshot", "ground", "importproposal", "noflyzone", "powerline",
     "powertower", "railway", "terraintile", "upload", "zoneset", "zonesetversion", "zonesubscription",
 }  # fmt: skip
 

@@ -8,7 +8,7 @@ from django.urls import reverse
 from django.utils import timezone
 
 from inspection.admin.curated import MAX_CONCURRENT
-from inspection.models import Asset, AssetSet, DataGap, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
+from inspection.models import Asset, AssetSet, DataIssue, ImportProposal, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services import StaleRevision, save_asset, save_zone
 from tests.accounts.users import a_user, client_of
 from tests.inspection.ground import line, tower, zone
@@ -145,13 +145,13 @@ def test_deleting_several_supports_numbers_the_others_anew_once(client: Client) 
 def test_gaps_are_left_as_they_are_and_opened_again_at_once(client: Client, curator: User) -> None:
     asset = tower()
     gaps = [
-        DataGap.objects.create(kind="tower_on_no_line", key=f"x{n}", asset=asset, position=asset.centre, ground_revision=1)
+        DataIssue.objects.create(kind="tower_on_no_line", key=f"x{n}", asset=asset, position=asset.centre, ground_revision=1)
         for n in range(2)
     ]
-    assert "2 left as they are" in act(client, "datagap", "dismiss", gaps).content.decode()
-    assert set(DataGap.objects.values_list("state", "decided_by")) == {("dismissed", curator.pk)}
-    act(client, "datagap", "reopen", gaps[:1])
-    assert sorted(DataGap.objects.values_list("state", flat=True)) == ["dismissed", "open"]
+    assert "2 left as they are" in act(client, "dataissue", "dismiss", gaps).content.decode()
+    assert set(DataIssue.objects.values_list("state", "decided_by")) == {("dismissed", curator.pk)}
+    act(client, "dataissue", "reopen", gaps[:1])
+    assert sorted(DataIssue.objects.values_list("state", flat=True)) == ["dismissed", "open"]
 
 
 def test_subscriptions_are_paused_and_resumed_at_once(client: Client) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-
-from inspection.models import DataGap, DataImport, ImportProposal, NoFlyZone
-from inspection.services import find_gaps, save_zone
 from inspection.services.gaps import dismiss_gap
+
+from inspection.models import DataImport, DataIssue, ImportProposal, NoFlyZone
+from inspection.services import find_issues, save_zone
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.inspection.imports.zone_sets import SETS, stored
@@ -92,9 +92,9 @@ def at_a_gap(neighbour: User, folder: Path) -> Callable[[Client], Any]:
     ground.tower((10.0, 56.0))
     ground.tower((10.004, 56.0))
     ground.line((10.0, 56.0), (10.004, 56.0), (10.04, 56.0))
-    find_gaps()
-    dismiss_gap(gap=DataGap.objects.all()[0], note="", actor=neighbour)
-    return lambda client: client.get("/api/v1/gaps?state=dismissed").json()["features"][0]["properties"]["decided_by"]
+    find_issues()
+    dismiss_gap(gap=DataIssue.objects.all()[0], note="", actor=neighbour)
+    return lambda client: client.get("/api/v1/data-issues?state=dismissed").json()["features"][0]["properties"]["decided_by"]
 
 
 PLACES = [

@@ -73,7 +73,7 @@ def judged(ground, flights, *, zones=None, bases=(), **more):
 
 
 def reachabilities(found):
-    return dict(zip(found.asset.tolist(), [Reachability(reachability) for reachability in found.reachability.tolist()], strict=True))
+    return dict(zip(found.asset.tolist(), [Reachability(reachability) for reachability in found.state.tolist()], strict=True))
 
 
 def flight(lon, lat=0.0, end=End.OPEN, limit_m=np.inf):
@@ -179,7 +179,7 @@ def test_towers_are_judged_as_a_plan_of_one_target_would_judge_them(seed):
         ]
         able = [number for number, one in enumerate(flights) if needed_m[number] <= min(one.limit_m, 1e12)]
         place = known[int(graph.node_asset[node])]
-        reachability = Reachability(found.reachability[place])
+        reachability = Reachability(found.state[place])
         assert (reachability == Reachability.CUT_OFF) == np.isinf(needed_m).all()
         if boxes:  # beside zones the legs from a line that stands alone may be others than a plan's
             continue
@@ -230,7 +230,7 @@ def test_the_battery_is_counted_as_an_assignment_counts_it(seed):
     for place in np.flatnonzero(found.asset < LINE).tolist():
         node = int(np.flatnonzero(graph.node_asset == found.asset[place])[0])
         wanted_wh = needed_wh(graph, zones, one, node, places[1:], conditions)
-        reachability = Reachability(found.reachability[place])
+        reachability = Reachability(found.state[place])
         if wanted_wh <= one.usable_wh:
             assert reachability == Reachability.REACHABLE
         elif np.isfinite(wanted_wh):
@@ -247,7 +247,7 @@ def test_against_the_wind_the_battery_does_for_less_and_too_much_of_it_stops_all
     calm = judged(ground, [one])
     windy = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 9.0, 90.0),)))
     storm = judged(ground, [one], conditions=Conditions((WindLayer(60.0, 15.0, 90.0),)))
-    done = [int((found.reachability[:9] == Reachability.REACHABLE).sum()) for found in (calm, windy, storm)]
+    done = [int((found.state[:9] == Reachability.REACHABLE).sum()) for found in (calm, windy, storm)]
     assert 9 > done[0] > done[1] > done[2] == 0
-    assert Reachability(calm.reachability[8]) == Reachability.BEYOND_ENERGY
-    assert set(storm.reachability[:9].tolist()) == {Reachability.WIND}
+    assert Reachability(calm.state[8]) == Reachability.BEYOND_ENERGY
+    assert set(storm.state[:9].tolist()) == {Reachability.WIND}

@@ -133,7 +133,7 @@ def _reasons(
     found: Reach, chosen: np.ndarray, zone_names: Sequence[str], *, has_flights: bool, may_charge: bool
 ) -> tuple[np.ndarray, list[dict[str, Any]]]:
     """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
-    reachability, zone = found.reachability[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
+    reachability, zone = found.state[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
     missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
     kinds = len(Reachability)
     key = reachability + np.where(reachability == Reachability.INSIDE_ZONE, (zone + 1) * kinds, 0)

@@ -5,12 +5,12 @@ import admin from "./de/admin.js";
 import administration from "./de/administration.js";
 import alertLimits from "./de/alert_limits.js";
 import assets from "./de/assets.js";
+import dataIssues from "./de/data_issues.js";
 import draw from "./de/draw.js";
 import eventLog from "./de/event_log.js";
 import fleet from "./de/fleet.js";
 import flight from "./de/flight.js";
 import flying from "./de/flying.js";
-import gaps from "./de/gaps.js";
 import general from "./de/general.js";
 import ground from "./de/ground.js";
 import imports from "./de/imports.js";
@@ -40,7 +40,7 @@ export default {
   ...fleet,
   ...flight,
   ...flying,
-  ...gaps,
+  ...dataIssues,
   ...general,
   ...ground,
   ...imports,

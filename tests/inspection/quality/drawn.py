@@ -6,7 +6,7 @@ import numpy as np
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.infrastructure import NO_OSM_NODE, InfrastructurePlaces, InfrastructureWays
-from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts
+from inspection.quality.infrastructure import NO_OSM_ID, IssueSearchData, PlainBridge, SupportFacts, WayFacts
 
 FRAME = LocalFrame.around(10.0, 56.0)
 Metres = tuple[float, float]
@@ -30,10 +30,10 @@ def ground(
     off_network: Sequence[Metres] = (),
     bridges: Sequence[Metres] = (),
     railway_volts: Sequence[tuple[int, ...]] = (),
-) -> GapGround:
+) -> IssueSearchData:
     """Lines have primary keys from 1, towers from 101; nothing has an OSM id. `terminals` are numbers of towers."""
     no_text = [""] * len(lines)
-    return GapGround(
+    return IssueSearchData(
         revision=1,
         lines=_ways(lines),
         line_facts=_facts(len(lines), voltages_v or [()] * len(lines), voltage_text or no_text, subtypes or ["line"] * len(lines)),

@@ -4,21 +4,21 @@ import numpy as np
 import pytest
 
 from inspection.network.build.edges import component_labels
-from inspection.quality.infrastructure import Gap, GapGround
+from inspection.quality.infrastructure import FoundIssue, IssueSearchData
 from inspection.quality.network import SupportNetwork
 from inspection.quality.repair import search
 from inspection.quality.supports import course_of_row
-from inspection.serializers.gaps import sentence, title
+from inspection.serializers.data_issues import sentence, title
 from tests.inspection.quality.drawn import at, ground, row
 
 
-def found(kind: str, drawn: GapGround) -> list[Gap]:
-    gaps = search(drawn)
-    assert len({gap.key for gap in gaps}) == len(gaps)
-    for gap in gaps:
-        assert title(gap.kind, gap.details)
-        assert sentence(gap.kind, gap.details).endswith(".")
-    return [gap for gap in gaps if gap.kind == kind]
+def found(kind: str, drawn: IssueSearchData) -> list[FoundIssue]:
+    issues = search(drawn)
+    assert len({issue.key for issue in issues}) == len(issues)
+    for issue in issues:
+        assert title(issue.kind, issue.details)
+        assert sentence(issue.kind, issue.details).endswith(".")
+    return [issue for issue in issues if issue.kind == kind]
 
 
 HIGH = (110_000,)
@@ -27,20 +27,20 @@ HIGH = (110_000,)
 def test_a_span_three_times_the_usual_one_and_over_the_bound_is_long() -> None:
     """o-300-o-300-o ... o----2,400----o-300-o"""
     path = [*row(0, 3_000, 300), *row(5_400, 6_000, 300)]
-    (gap,) = found("long_span", ground(path, towers=path, voltages_v=[HIGH]))
-    assert gap.details["span_m"] == pytest.approx(2_400, rel=1e-3)
-    assert gap.details["usual_span_m"] == pytest.approx(300, rel=1e-3)
-    assert gap.details["missing_towers"] == 7
-    assert gap.cut_off_m == pytest.approx(2_400 + 600, rel=1e-3)  # the span, and the two legs on its smaller side
-    assert not gap.details["is_impossible"]
+    (issue,) = found("long_span", ground(path, towers=path, voltages_v=[HIGH]))
+    assert issue.details["span_m"] == pytest.approx(2_400, rel=1e-3)
+    assert issue.details["usual_span_m"] == pytest.approx(300, rel=1e-3)
+    assert issue.details["missing_towers"] == 7
+    assert issue.cut_off_m == pytest.approx(2_400 + 600, rel=1e-3)  # the span, and the two legs on its smaller side
+    assert not issue.details["is_impossible"]
 
 
-def test_a_river_crossing_below_the_bound_is_no_gap() -> None:
+def test_a_river_crossing_below_the_bound_is_no_issue() -> None:
     path = [*row(0, 3_000, 300), (3_950.0, 0.0)]
     assert found("long_span", ground(path, towers=path, voltages_v=[HIGH])) == []
 
 
-def test_a_line_of_long_spans_throughout_is_no_gap() -> None:
+def test_a_line_of_long_spans_throughout_is_no_issue() -> None:
     path = row(0, 12_000, 1_100)
     assert found("long_span", ground(path, towers=path, voltages_v=[HIGH])) == []
 
@@ -48,56 +48,56 @@ def test_a_line_of_long_spans_throughout_is_no_gap() -> None:
 def test_a_line_with_few_spans_is_judged_by_those_of_its_voltage() -> None:
     other = row(0, 6_000, 300, north_m=20_000)
     lone = [(0.0, 0.0), (3_000.0, 0.0)]
-    (gap,) = found("long_span", ground(other, lone, towers=[*other, *lone], voltages_v=[HIGH, HIGH]))
-    assert (gap.asset, gap.details["missing_towers"]) == (2, 9)
+    (issue,) = found("long_span", ground(other, lone, towers=[*other, *lone], voltages_v=[HIGH, HIGH]))
+    assert (issue.asset, issue.details["missing_towers"]) == (2, 9)
 
 
 def test_a_pole_line_has_a_lower_bound() -> None:
     path = [*row(0, 1_000, 50), (1_500.0, 0.0)]
-    (gap,) = found("long_span", ground(path, towers=path, voltages_v=[(10_000,)], subtypes=["minor_line"]))
-    assert gap.details["span_m"] == pytest.approx(500, rel=1e-3)
+    (issue,) = found("long_span", ground(path, towers=path, voltages_v=[(10_000,)], subtypes=["minor_line"]))
+    assert issue.details["span_m"] == pytest.approx(500, rel=1e-3)
 
 
 def test_beyond_a_span_that_a_loop_goes_round_nothing_is_cut_off() -> None:
     """A ring: the long span is one side of it, another line leads round."""
     side = [*row(0, 3_000, 300), (6_000.0, 0.0)]
     round_it = [(6_000.0, 0.0), (6_000.0, 400.0), *reversed(row(0, 6_000, 300, north_m=500)), (0.0, 0.0)]
-    (gap,) = found("long_span", ground(side, round_it, towers=[*side, *round_it], voltages_v=[HIGH, HIGH]))
-    assert gap.details["beyond_m"] == 0.0
-    assert gap.cut_off_m == pytest.approx(3_000, rel=1e-3)
+    (issue,) = found("long_span", ground(side, round_it, towers=[*side, *round_it], voltages_v=[HIGH, HIGH]))
+    assert issue.details["beyond_m"] == 0.0
+    assert issue.cut_off_m == pytest.approx(3_000, rel=1e-3)
 
 
 def test_no_span_in_the_world_is_so_long() -> None:
     path = [*row(0, 3_000, 300), (14_400.0, 0.0)]
-    (gap,) = found("long_span", ground(path, towers=path, voltages_v=[HIGH]))
-    assert gap.details["is_impossible"]
-    assert sentence(gap.kind, gap.details) == (
+    (issue,) = found("long_span", ground(path, towers=path, voltages_v=[HIGH]))
+    assert issue.details["is_impossible"]
+    assert sentence(issue.kind, issue.details) == (
         "Span of 11.4\N{NO-BREAK SPACE}km; the usual one here is 0.30\N{NO-BREAK SPACE}km. About 37 towers are missing. "
         "No span in the world is so long."
     )
 
 
-def test_vertices_without_a_tower_are_one_gap_for_their_line() -> None:
+def test_vertices_without_a_tower_are_one_issue_for_their_line() -> None:
     path = row(0, 2_000, 200)
     towers = [place for place in path if place[0] not in (400.0, 1_000.0, 1_200.0)]
-    (gap,) = found("missing_support", ground(path, towers=towers))
-    assert (gap.details["missing_towers"], gap.details["vertices"]) == (3, 11)
-    assert gap.details["without_tower_m"] == pytest.approx(1_000, rel=1e-3)
-    assert len(gap.geometry.geoms) == 3
-    assert gap.cut_off_m == 0.0
+    (issue,) = found("missing_support", ground(path, towers=towers))
+    assert (issue.details["missing_towers"], issue.details["vertices"]) == (3, 11)
+    assert issue.details["without_tower_m"] == pytest.approx(1_000, rel=1e-3)
+    assert len(issue.geometry.geoms) == 3
+    assert issue.cut_off_m == 0.0
 
 
 def test_a_bare_end_beside_a_cable_is_excused_and_one_beside_nothing_is_not() -> None:
     path = row(0, 2_000, 200)
     inner = path[1:-1]
-    (gap,) = found("missing_support", ground(path, towers=inner, off_network=[(2_040.0, 0.0)]))
-    assert gap.details["missing_towers"] == 1
-    assert gap.position[0] == pytest.approx(10.0, abs=1e-9)
+    (issue,) = found("missing_support", ground(path, towers=inner, off_network=[(2_040.0, 0.0)]))
+    assert issue.details["missing_towers"] == 1
+    assert issue.position[0] == pytest.approx(10.0, abs=1e-9)
 
 
 def test_a_line_without_any_tower_counts_whole() -> None:
-    (gap,) = found("line_without_towers", ground(row(0, 2_000, 200)))
-    assert gap.cut_off_m == pytest.approx(2_000, rel=1e-3)
+    (issue,) = found("line_without_towers", ground(row(0, 2_000, 200)))
+    assert issue.cut_off_m == pytest.approx(2_000, rel=1e-3)
     assert found("missing_support", ground(row(0, 2_000, 200))) == []
 
 
@@ -105,11 +105,11 @@ def test_a_short_line_between_portals_needs_no_tower() -> None:
     assert found("line_without_towers", ground([(0.0, 0.0), (60.0, 0.0)])) == []
 
 
-def test_lone_towers_in_a_row_are_one_gap_and_a_single_one_cuts_off_nothing() -> None:
-    gaps = found("tower_on_no_line", ground(towers=[*row(0, 1_200, 300), (9_000.0, 9_000.0)]))
-    assert [gap.details["towers"] for gap in gaps] == [5, 1]
-    assert [gap.cut_off_m for gap in gaps] == [pytest.approx(1_200, rel=1e-3), 0.0]
-    assert gaps[0].details["assets"] == [101, 102, 103, 104, 105]
+def test_lone_towers_in_a_row_are_one_issue_and_a_single_one_cuts_off_nothing() -> None:
+    issues = found("tower_on_no_line", ground(towers=[*row(0, 1_200, 300), (9_000.0, 9_000.0)]))
+    assert [issue.details["towers"] for issue in issues] == [5, 1]
+    assert [issue.cut_off_m for issue in issues] == [pytest.approx(1_200, rel=1e-3), 0.0]
+    assert issues[0].details["assets"] == [101, 102, 103, 104, 105]
 
 
 def test_towers_that_branch_are_no_path() -> None:
@@ -128,28 +128,28 @@ def test_a_row_is_put_in_order_wherever_its_towers_come_in_the_list() -> None:
 
 def test_a_lone_tower_knows_the_line_beside_it() -> None:
     path = row(0, 2_000, 200)
-    (gap,) = found("tower_on_no_line", ground(path, towers=[*path, (500.0, 35.0)]))
-    assert gap.other_asset == 1
-    assert gap.details["nearest_line_m"] == pytest.approx(35, rel=0.01)
+    (issue,) = found("tower_on_no_line", ground(path, towers=[*path, (500.0, 35.0)]))
+    assert issue.other_asset == 1
+    assert issue.details["nearest_line_m"] == pytest.approx(35, rel=0.01)
 
 
 def test_ends_a_few_metres_apart_should_join_and_cut_off_the_smaller_part() -> None:
     """o----2,000----o 3 m o--600--o"""
     long, short = row(0, 2_000, 200), row(2_003, 2_603, 200)
-    (gap,) = found("ends_apart", ground(long, short, towers=[*long, *short]))
-    assert gap.details["apart_m"] == pytest.approx(3, rel=0.01)
-    assert gap.details["is_at_end"]
-    assert gap.cut_off_m == pytest.approx(600, rel=1e-3)
-    assert {gap.asset, gap.other_asset} == {1, 2}
+    (issue,) = found("ends_apart", ground(long, short, towers=[*long, *short]))
+    assert issue.details["apart_m"] == pytest.approx(3, rel=0.01)
+    assert issue.details["is_at_end"]
+    assert issue.cut_off_m == pytest.approx(600, rel=1e-3)
+    assert {issue.asset, issue.other_asset} == {1, 2}
 
 
 def test_an_end_beside_the_middle_of_a_span_should_join() -> None:
     through, branch = row(0, 2_000, 200), [(1_100.0, 4.0), (1_100.0, 300.0)]
-    (gap,) = found("ends_apart", ground(through, branch, towers=[*through, *branch]))
-    assert (gap.asset, gap.other_asset, gap.details["is_at_end"]) == (2, 1, False)
+    (issue,) = found("ends_apart", ground(through, branch, towers=[*through, *branch]))
+    assert (issue.asset, issue.other_asset, issue.details["is_at_end"]) == (2, 1, False)
 
 
-def test_joined_lines_have_no_gap_between_them() -> None:
+def test_joined_lines_have_no_issue_between_them() -> None:
     one, two = row(0, 2_000, 200), [(2_000.0, 0.0), (2_000.0, 300.0)]
     assert found("ends_apart", ground(one, two, towers=[*one, *two])) == []
 
@@ -167,36 +167,36 @@ def test_an_end_that_is_meant_is_no_dead_end(meant: str) -> None:
     others = [[(2_100.0, -50.0), (2_100.0, 50.0)]] if meant == "other line" else []
     off = [(2_080.0, 20.0)] if meant == "cable" else []
     drawn = ground(path, *others, towers=path, terminals=[10] if meant == "terminal" else [], off_network=off)
-    ends = [gap.position for gap in found("dead_end", drawn) if gap.asset == 1]
+    ends = [issue.position for issue in found("dead_end", drawn) if issue.asset == 1]
     assert ends == [(pytest.approx(10.0), pytest.approx(56.0))]
 
 
 def test_a_dead_end_cuts_off_the_smaller_part_within_reach() -> None:
     """o----2,000----o   800   o--600--o: the ends that face each other could join, the outer ones reach nothing else."""
     one, two = row(0, 2_000, 200), row(2_800, 3_400, 200)
-    gaps = found("dead_end", ground(one, two, towers=[*one, *two]))
-    facing = [gap for gap in gaps if gap.details["nearest_m"] == pytest.approx(800, rel=1e-3)]
+    issues = found("dead_end", ground(one, two, towers=[*one, *two]))
+    facing = [issue for issue in issues if issue.details["nearest_m"] == pytest.approx(800, rel=1e-3)]
     assert len(facing) == 2
-    assert all(gap.cut_off_m == pytest.approx(600, rel=1e-3) for gap in facing)
+    assert all(issue.cut_off_m == pytest.approx(600, rel=1e-3) for issue in facing)
 
 
 def test_a_dead_end_does_not_lead_on_to_a_line_of_another_voltage() -> None:
     one, two = row(0, 2_000, 200), row(2_800, 3_400, 200)
-    gaps = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), (132_000,)]))
-    assert [gap.details["nearest_m"] for gap in gaps] == [None] * 4
-    gaps = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), ()]))
-    assert sum(gap.details["nearest_m"] is not None for gap in gaps) == 3  # all but the one that is 2,800 m away
+    issues = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), (132_000,)]))
+    assert [issue.details["nearest_m"] for issue in issues] == [None] * 4
+    issues = found("dead_end", ground(one, two, towers=[*one, *two], voltages_v=[(400_000,), ()]))
+    assert sum(issue.details["nearest_m"] is not None for issue in issues) == 3  # all but the one that is 2,800 m away
 
 
 def test_an_end_in_reach_of_its_own_network_alone_cuts_off_nothing() -> None:
     path = row(0, 2_000, 200)
-    gaps = found("dead_end", ground(path, towers=path))
-    assert [(gap.cut_off_m, gap.details["nearest_m"]) for gap in gaps] == [(0.0, None), (0.0, None)]
+    issues = found("dead_end", ground(path, towers=path))
+    assert [(issue.cut_off_m, issue.details["nearest_m"]) for issue in issues] == [(0.0, None), (0.0, None)]
 
 
-def test_a_bridge_that_carries_nothing_is_a_gap() -> None:
-    (gap,) = found("bridge_without_way", ground(bridges=[(0.0, 0.0)]))
-    assert (gap.asset, gap.key) == (201, "bridge_without_way a201")
+def test_a_bridge_that_carries_nothing_is_an_issue() -> None:
+    (issue,) = found("bridge_without_way", ground(bridges=[(0.0, 0.0)]))
+    assert (issue.asset, issue.key) == (201, "bridge_without_way a201")
 
 
 @pytest.mark.parametrize(
@@ -211,38 +211,38 @@ def test_a_bridge_that_carries_nothing_is_a_gap() -> None:
     ],
 )
 def test_a_voltage_that_cannot_be(volts: tuple[int, ...], subtype: str, fault: str, offered: list[int]) -> None:
-    (gap,) = found("impossible_voltage", ground(row(0, 600, 200), towers=row(0, 600, 200), voltages_v=[volts], subtypes=[subtype]))
-    assert (gap.details["fault"], gap.details["offered_v"], gap.details["is_advisory"]) == (fault, offered, fault == "unusual")
+    (issue,) = found("impossible_voltage", ground(row(0, 600, 200), towers=row(0, 600, 200), voltages_v=[volts], subtypes=[subtype]))
+    assert (issue.details["fault"], issue.details["offered_v"], issue.details["is_advisory"]) == (fault, offered, fault == "unusual")
 
 
 @pytest.mark.parametrize(("volts", "subtype"), [((400,), "minor_line"), ((110_000, 20_000), "line"), ((1_150_000,), "line"), ((), "line")])
-def test_a_voltage_in_use_is_no_gap(volts: tuple[int, ...], subtype: str) -> None:
+def test_a_voltage_in_use_is_no_issue(volts: tuple[int, ...], subtype: str) -> None:
     assert found("impossible_voltage", ground(row(0, 600, 200), voltages_v=[volts], subtypes=[subtype])) == []
 
 
-def test_a_voltage_that_cannot_be_read_is_a_gap_and_an_unknown_one_is_not() -> None:
+def test_a_voltage_that_cannot_be_read_is_an_issue_and_an_unknown_one_is_not() -> None:
     lines = [row(0, 600, 200), row(0, 600, 200, north_m=5_000)]
-    (gap,) = found("impossible_voltage", ground(*lines, voltage_text=["high", "unknown"]))
-    assert (gap.asset, gap.details["fault"]) == (1, "unread")
+    (issue,) = found("impossible_voltage", ground(*lines, voltage_text=["high", "unknown"]))
+    assert (issue.asset, issue.details["fault"]) == (1, "unread")
 
 
 def test_a_railway_may_have_few_volts() -> None:
     assert found("impossible_voltage", ground(railway_volts=[(750,), (15_000,)])) == []
 
 
-def test_an_empty_ground_has_no_gaps() -> None:
+def test_an_empty_ground_has_no_issues() -> None:
     assert search(ground()) == []
 
 
-def test_the_list_is_sorted_by_what_each_gap_cuts_off() -> None:
+def test_the_list_is_sorted_by_what_each_issue_cuts_off() -> None:
     path = [*row(0, 3_000, 300), *row(5_400, 6_000, 300)]
     drawn = ground(path, row(0, 2_000, 200, north_m=4_000), towers=path, voltages_v=[HIGH, HIGH], bridges=[(0.0, 0.0)])
-    cut_off = [gap.cut_off_m for gap in search(drawn)]
+    cut_off = [issue.cut_off_m for issue in search(drawn)]
     assert cut_off == sorted(cut_off, reverse=True)
     assert cut_off[0] > 0
 
 
-def test_equal_grounds_have_equal_gaps() -> None:
+def test_equal_grounds_have_equal_issues() -> None:
     path = [*row(0, 3_000, 300), *row(5_400, 6_000, 300)]
     assert search(ground(path, towers=path[:-1])) == search(ground(path, towers=path[:-1]))
 

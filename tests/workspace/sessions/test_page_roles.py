@@ -40,7 +40,7 @@ def status(client: Client, page: str) -> int:
 
 
 def test_every_kind_of_page_is_among_them() -> None:
-    known = {"", "missions/new", "uavs", "assets", "assets/gaps", "imports", "terrain", "zones", "account", "administration"}
+    known = {"", "missions/new", "uavs", "assets", "assets/data-issues", "imports", "terrain", "zones", "account", "administration"}
     assert known | OPEN_TO_ALL - {"invitation/x"} <= set(PAGES)
 
 

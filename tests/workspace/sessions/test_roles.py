@@ -16,7 +16,7 @@ pytestmark = pytest.mark.django_db
 SAFE = {"get", "head", "options"}
 ALSO_CURATORS = {"cancel_job"}
 CURATED = re.compile(
-    r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|gaps|geometry-checks|uploads|imports|terrain|regions)(/|$)"
+    r"/api/v1/(assets|zones|zone-sets|zone-subscriptions|history|data-issues|geometry-checks|uploads|imports|terrain|regions)(/|$)"
 )
 # a POST because the question is long; nothing is stored
 ASKED_BY_ALL = {

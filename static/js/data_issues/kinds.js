@@ -1,14 +1,14 @@
-/** What the kinds of gaps are called, and what their figure means. */
+/** What the kinds of issues are called, and what their figure means. */
 
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 
-/** @import { GapKind } from "../api_types.d.ts" */
-/** @import { Gap } from "./types.d.ts" */
+/** @import { DataIssueKind } from "../api_types.d.ts" */
+/** @import { DataIssue } from "./types.d.ts" */
 
-/** @typedef {Gap["properties"]} Properties */
+/** @typedef {DataIssue["properties"]} Properties */
 
-/** @type {Record<GapKind, { name: string, icon: string }>} */
+/** @type {Record<DataIssueKind, { name: string, icon: string }>} */
 export const KINDS = {
   ends_apart: { name: t("Should join"), icon: "line" },
   dead_end: { name: t("Dead ends"), icon: "line" },
@@ -28,9 +28,9 @@ export const STATES = [
 ];
 
 /**
- * "cuts off 34.2 km", or nothing where the gap cuts off nothing.
+ * "cuts off 34.2 km", or nothing where the issue cuts off nothing.
  *
- * @param {Pick<Properties, "kind" | "cut_off_m">} gap
+ * @param {Pick<Properties, "kind" | "cut_off_m">} issue
  */
 export function cutOffText({ kind, cut_off_m: cutOff_m }) {
   if (!cutOff_m) return "";
@@ -39,13 +39,13 @@ export function cutOffText({ kind, cut_off_m: cutOff_m }) {
     : t("cuts off {length} of network", { length: lengthText(cutOff_m) });
 }
 
-/** @param {GapKind} kind */
+/** @param {DataIssueKind} kind */
 const onlyConcerns = (kind) => kind === "line_without_towers" || kind === "tower_on_no_line";
 
 /**
  * Facts for the panel, beside what the sentence says: [term, value].
  *
- * @param {Pick<Properties, "kind" | "details" | "cut_off_m">} gap
+ * @param {Pick<Properties, "kind" | "details" | "cut_off_m">} issue
  * @returns {[string, string][]}
  */
 export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
@@ -71,7 +71,7 @@ export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
   }
 }
 
-/** What Spanwise cannot know, where that matters. @param {Pick<Properties, "kind" | "details">} gap */
+/** What Spanwise cannot know, where that matters. @param {Pick<Properties, "kind" | "details">} issue */
 export function cautionOf({ kind, details }) {
   if (kind === "dead_end") return t("Spanwise keeps no substations: if one stands here, leave the end as it is.");
   if (kind === "missing_support") return t("Vertices inside a substation may hang on its portals.");
@@ -79,7 +79,7 @@ export function cautionOf({ kind, details }) {
   return "";
 }
 
-/** @param {GapKind} kind */
+/** @param {DataIssueKind} kind */
 export function dismissWords(kind) {
   return kind === "dead_end" ? t("It is meant to end here") : t("Leave it as it is");
 }

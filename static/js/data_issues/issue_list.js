@@ -1,38 +1,38 @@
-/** The side of the page: which gaps, and the list of them. */
+/** The side of the page: which issues, and the list of them. */
 
 import { byId, h, icon, keyedList, refill, setChildren } from "../dom.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
-/** @import { Gap, GapFilter } from "./types.d.ts" */
+/** @import { DataIssue, DataIssueFilter } from "./types.d.ts" */
 
 const TYPED_MS = 250;
 
 /**
  * @typedef {object} ListHandlers
- * @property {(filter: GapFilter) => void} narrow
+ * @property {(filter: DataIssueFilter) => void} narrow
  * @property {(id: number) => void} choose
- * @property {(gap: Gap | null) => void} point
+ * @property {(issue: DataIssue | null) => void} point
  * @property {() => void} more
  */
 
 /** @param {ListHandlers} on */
-export const mountGapList = (on) => new GapList(on);
+export const mountIssueList = (on) => new DataIssueList(on);
 
-class GapList {
+class DataIssueList {
   #on;
-  #list = byId("gap-list");
-  #end = byId("gap-list-end");
-  #text = byId("gap-text", HTMLInputElement);
-  #inView = byId("gap-in-view", HTMLInputElement);
+  #list = byId("issue-list");
+  #end = byId("issue-list-end");
+  #text = byId("issue-text", HTMLInputElement);
+  #inView = byId("issue-in-view", HTMLInputElement);
   #states;
   #chips;
   #draw;
   /** @type {number | null} */
   #chosenId = null;
   #chosenIndex = 0; // of the row that is or was chosen: what follows takes its place
-  /** @type {GapFilter} */
+  /** @type {DataIssueFilter} */
   filter = { state: "open", kinds: new Set(), text: "", inView: false };
 
   /** @param {ListHandlers} on */
@@ -42,9 +42,9 @@ class GapList {
     this.#chips = Object.entries(KINDS).map(([kind, { name }]) => this.#kindChip(kind, name));
     this.#draw = keyedList(
       this.#list,
-      (/** @type {Gap} */ gap) => gap.id,
+      (/** @type {DataIssue} */ issue) => issue.id,
       () => this.#makeRow(),
-      (item, gap) => this.#refreshRow(item, gap),
+      (item, issue) => this.#refreshRow(item, issue),
     );
     this.#watchText();
     this.#inView.addEventListener("change", () => {
@@ -60,13 +60,13 @@ class GapList {
     this.#list.setAttribute("aria-busy", String(isBusy));
   }
 
-  /** The loaded gaps, and whether there are more. @param {Gap[]} gaps @param {{ hasMore: boolean, hasSearched: boolean }} how */
-  show(gaps, { hasMore, hasSearched }) {
-    this.#draw(gaps);
+  /** The loaded issues, and whether there are more. @param {DataIssue[]} issues @param {{ hasMore: boolean, hasSearched: boolean }} how */
+  show(issues, { hasMore, hasSearched }) {
+    this.#draw(issues);
     const more = { class: "button quiet more", type: "button", onclick: this.#on.more };
     setChildren(
       this.#end,
-      gaps.length === 0 && h("div", { class: "empty" }, this.#empty(hasSearched)),
+      issues.length === 0 && h("div", { class: "empty" }, this.#empty(hasSearched)),
       hasMore && h("button", more, t("Show more")),
     );
   }
@@ -103,7 +103,7 @@ class GapList {
     rows[Math.max(0, Math.min(rows.length - 1, from + by))]?.focus();
   }
 
-  /** Opens the gap that has taken the place of the chosen one, which is off the list. */
+  /** Opens the issue that has taken the place of the chosen one, which is off the list. */
   openNext() {
     const rows = this.#rows();
     rows[Math.min(this.#chosenIndex, rows.length - 1)]?.click();
@@ -115,19 +115,19 @@ class GapList {
 
   /** @returns {HTMLElement[]} */
   #rows() {
-    return [.../** @type {NodeListOf<HTMLElement>} */ (this.#list.querySelectorAll(".gap-row"))];
+    return [.../** @type {NodeListOf<HTMLElement>} */ (this.#list.querySelectorAll(".issue-row"))];
   }
 
-  /** @param {GapFilter["state"]} state @param {string} name */
+  /** @param {DataIssueFilter["state"]} state @param {string} name */
   #stateRadio(state, name) {
     const checked = state === this.filter.state;
-    const input = h("input", { type: "radio", name: "gap-state", value: state, checked });
+    const input = h("input", { type: "radio", name: "issue-state", value: state, checked });
     const count = h("span", { class: "count" });
     input.addEventListener("change", () => {
       this.filter.state = state;
       this.#narrow();
     });
-    byId("gap-states").append(h("label", {}, input, h("span", { class: "segment" }, h("span", {}, name), count)));
+    byId("issue-states").append(h("label", {}, input, h("span", { class: "segment" }, h("span", {}, name), count)));
     return { state, count };
   }
 
@@ -141,7 +141,7 @@ class GapList {
       chip.setAttribute("aria-pressed", String(kinds.has(kind)));
       this.#narrow();
     });
-    byId("gap-kinds").append(chip);
+    byId("issue-kinds").append(chip);
     return { kind, count, chip };
   }
 
@@ -158,17 +158,17 @@ class GapList {
   }
 
   #makeRow() {
-    const row = h("button", { class: "gap-row", type: "button" });
+    const row = h("button", { class: "issue-row", type: "button" });
     const item = h("li", {}, row);
     row.addEventListener("click", () => this.#on.choose(Number(item.dataset.id)));
     return item;
   }
 
-  /** @param {HTMLElement} item @param {Gap} gap */
-  #refreshRow(item, gap) {
-    const { kind, title, asset, cut_off_m, details } = gap.properties;
+  /** @param {HTMLElement} item @param {DataIssue} issue */
+  #refreshRow(item, issue) {
+    const { kind, title, asset, cut_off_m, details } = issue.properties;
     const row = /** @type {HTMLElement} */ (item.firstElementChild);
-    item.dataset.id = String(gap.id);
+    item.dataset.id = String(issue.id);
     const figure = cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "");
     const words = [title, asset ? [asset.label, asset.detail].filter(Boolean).join(", ") : "", figure];
     refill(row, [kind, ...words].join("\n"), () => [
@@ -176,10 +176,10 @@ class GapList {
       h("span", { class: "what" }, h("strong", {}, words[0]), h("small", {}, words[1])),
       h("span", { class: "figure" }, words[2]),
     ]);
-    const come = () => this.#on.point(gap);
+    const come = () => this.#on.point(issue);
     const leave = () => this.#on.point(null);
     Object.assign(row, { onpointerenter: come, onfocus: come, onpointerleave: leave, onblur: leave });
-    row.setAttribute("aria-current", String(gap.id === this.#chosenId));
+    row.setAttribute("aria-current", String(issue.id === this.#chosenId));
   }
 
   #clearFilters() {
@@ -197,13 +197,13 @@ class GapList {
     if (!hasSearched)
       return [
         h("strong", {}, t("The ground is being searched.")),
-        h("p", {}, t("Gaps come up here when that is done.")),
+        h("p", {}, t("Data issues come up here when that is done.")),
         h("div", { class: "skeleton" }),
         h("div", { class: "skeleton" }),
       ];
     const { kinds, text, inView, state } = this.filter;
     if (kinds.size || text || inView) {
-      const what = text ? t("No gap matches “{text}”.", { text }) : t("No gap like that here.");
+      const what = text ? t("No issue matches “{text}”.", { text }) : t("No issue like that here.");
       const clear = { class: "button", type: "button", onclick: () => this.#clearFilters() };
       return [h("strong", {}, what), h("button", clear, t("Clear the filter"))];
     }
@@ -221,5 +221,5 @@ class GapList {
 /** @param {number[]} numbers */
 const sum = (numbers) => numbers.reduce((total, number) => total + number, 0);
 
-/** The gap of a row. @param {HTMLElement | undefined} row */
+/** The issue of a row. @param {HTMLElement | undefined} row */
 const idOf = (row) => Number(row?.parentElement?.dataset.id);

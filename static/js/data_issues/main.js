@@ -1,4 +1,4 @@
-/** The page "Gaps in the data": composes list, map and panel, and keeps them at what the ground is now. */
+/** The page "Data quality": composes list, map and panel, and keeps them at what the ground is now. */
 
 import { get, post } from "../api.js";
 import { byId } from "../dom.js";
@@ -8,33 +8,33 @@ import { boxAround } from "../map/map_view.js";
 import { announce, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
-import * as layer from "./gap_layer.js";
-import { mountGapList } from "./gap_list.js";
-import { mountGapPanel } from "./gap_panel.js";
+import * as layer from "./issue_layer.js";
+import { mountIssueList } from "./issue_list.js";
+import { mountIssuePanel } from "./issue_panel.js";
 
 /** @import { Answer, ApiError } from "../api.js" */
-/** @import { GapSummary, Repaired } from "../api_types.d.ts" */
+/** @import { DataIssueSummary, Repaired } from "../api_types.d.ts" */
 /** @import { Box } from "../map/types.d.ts" */
-/** @import { Gap } from "./types.d.ts" */
+/** @import { DataIssue } from "./types.d.ts" */
 
 const PAGE = "100";
 const SEARCHING_MS = 2_000; // between looks while the ground is searched
 const RESTING_MS = 15_000;
-const ROUND_DEG = 0.0015; // what is shown around a gap at least, some 150 m
+const ROUND_DEG = 0.0015; // what is shown around an issue at least, some 150 m
 
-/** @type {Gap[]} */
-let gaps = [];
+/** @type {DataIssue[]} */
+let issues = [];
 /** Address of the next page. @type {string | null} */
 let next = null;
-/** @type {Gap | null} */
+/** @type {DataIssue | null} */
 let chosen = null;
-/** @type {GapSummary | null} */
+/** @type {DataIssueSummary | null} */
 let summary = null;
 /** Positions that are being clicked, with what to tell of them. @type {{ positions: number[][], notify: (count: number) => void } | null} */
 let placed = null;
 let asked = 0; // for the list
 let choices = 0;
-let refreshes = 0; // of the chosen gap
+let refreshes = 0; // of the chosen issue
 let looks = 0;
 let lastLook = 0; // of those that were answered
 
@@ -42,20 +42,20 @@ const { page, map, layout, open } = mountGroundPage({
   ringsItself: true,
   isBusy: () => placed !== null,
   click: (_thing, _position, point) => {
-    const id = layer.gapAt(map.map, point);
+    const id = layer.issueAt(map.map, point);
     if (id) choose(id, { stay: true });
   },
 });
-const list = mountGapList({
+const list = mountIssueList({
   narrow: () => load(),
   choose: (id) => choose(id),
-  point: (gap) =>
-    map.ring(gap && gap.id !== chosen?.id ? [{ type: "Point", coordinates: gap.properties.position }] : []),
+  point: (issue) =>
+    map.ring(issue && issue.id !== chosen?.id ? [{ type: "Point", coordinates: issue.properties.position }] : []),
   more: () => load({ more: true }),
 });
-const panel = mountGapPanel(page.canCurate, {
+const panel = mountIssuePanel(page.canCurate, {
   repair,
-  dismiss: (note) => act((id) => post(`/gaps/${id}/dismiss`, { note }), t("Ignored."), reopen),
+  dismiss: (note) => act((id) => post(`/data-issues/${id}/dismiss`, { note }), t("Ignored."), reopen),
   reopen: () => act(reopen, t("On the open list again.")),
   preview: (collection) => layer.showRepair(map.map, collection),
   place: startPlacing,
@@ -75,14 +75,14 @@ function query() {
   if (kinds.size) parts.set("kind", [...kinds].join(","));
   if (text) parts.set("text", text);
   if (inView) parts.set("bbox", coordinatesOf(map.box()));
-  return `/gaps?${parts}`;
+  return `/data-issues?${parts}`;
 }
 
 /** @param {unknown} error */
 const messageOf = (error) => /** @type {Error} */ (error).message;
 
 /** @param {number} id */
-const reopen = (id) => post(`/gaps/${id}/reopen`);
+const reopen = (id) => post(`/data-issues/${id}/reopen`);
 
 /** @param {{ more?: boolean }} [how] whether the next page is added */
 async function load({ more = false } = {}) {
@@ -91,9 +91,9 @@ async function load({ more = false } = {}) {
   list.busy(true);
   try {
     const address = more && next ? next : query();
-    const { data } = /** @type {Answer<{ features: Gap[], next: string | null }>} */ (await get(address));
+    const { data } = /** @type {Answer<{ features: DataIssue[], next: string | null }>} */ (await get(address));
     if (turn !== asked) return; // the filter has changed since
-    gaps = more ? [...gaps, ...data.features] : data.features;
+    issues = more ? [...issues, ...data.features] : data.features;
     next = data.next;
     draw();
   } catch (error) {
@@ -104,16 +104,16 @@ async function load({ more = false } = {}) {
 }
 
 function draw() {
-  list.show(gaps, { hasMore: next !== null, hasSearched: Boolean(summary?.searched_at || summary?.is_current) });
+  list.show(issues, { hasMore: next !== null, hasSearched: Boolean(summary?.searched_at || summary?.is_current) });
   if (summary) list.counts(summary.kinds);
-  layer.showAll(map.map, gaps);
+  layer.showAll(map.map, issues);
 }
 
 async function look() {
   looks += 1;
   const turn = looks;
   try {
-    const { data } = /** @type {Answer<GapSummary>} */ (await get("/gaps/summary"));
+    const { data } = /** @type {Answer<DataIssueSummary>} */ (await get("/data-issues/summary"));
     if (turn < lastLook) return; // a later look was answered first
     lastLook = turn;
     const before = summary?.searched_at;
@@ -137,7 +137,7 @@ async function keepLooking() {
   }
 }
 
-/** @param {GapSummary} summary */
+/** @param {DataIssueSummary} summary */
 function showFacts({ kinds, is_current, searched_at }) {
   const open = Object.values(kinds).reduce((total, byState) => total + byState.open, 0);
   const facts = byId("page-facts");
@@ -147,7 +147,7 @@ function showFacts({ kinds, is_current, searched_at }) {
     return;
   }
   const when = is_current ? t("searched {when}", { when: whenText(searched_at) }) : t("searching the changed ground…");
-  facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${when}`;
+  facts.textContent = `${tn(open, "{count} issue open", "{count} issues open")} · ${when}`;
 }
 
 /** @param {number | null} id @param {{ stay?: boolean }} [how] stay: the map does */
@@ -161,11 +161,11 @@ async function choose(id, { stay = false } = {}) {
     return;
   }
   try {
-    const { data } = /** @type {Answer<Gap>} */ (await get(`/gaps/${id}`));
+    const { data } = /** @type {Answer<DataIssue>} */ (await get(`/data-issues/${id}`));
     if (turn !== choices) return; // another has been chosen since
     chosen = data;
     panel.show(data);
-    layer.showGap(map.map, data);
+    layer.showIssue(map.map, data);
     map.ring([]);
     list.mark(id);
     if (layout.isPhone()) byId("side-scroll").scrollTop = 0; // there the panel stands above the list
@@ -174,23 +174,23 @@ async function choose(id, { stay = false } = {}) {
     announce(data.properties.sentence);
   } catch (error) {
     const { status, message } = /** @type {ApiError} */ (error);
-    if (turn === choices) toast(status === 404 ? t("This gap is gone: its asset was taken away.") : message);
+    if (turn === choices) toast(status === 404 ? t("This issue is gone: its asset was taken away.") : message);
   }
 }
 
 function chooseNone() {
   /** @type {HTMLElement | null} */
-  const row = document.querySelector(".gap-row[aria-current=true]");
-  const hadFocus = byId("gap-panel").contains(document.activeElement);
+  const row = document.querySelector(".issue-row[aria-current=true]");
+  const hadFocus = byId("issue-panel").contains(document.activeElement);
   chosen = null;
   panel.show(null);
-  layer.showGap(map.map, null);
+  layer.showIssue(map.map, null);
   list.mark(null);
   remember();
   if (hadFocus) row?.focus();
 }
 
-/** What has become of the chosen gap; nothing where another has been chosen, or places are being clicked, before the answer comes. */
+/** What has become of the chosen issue; nothing where another has been chosen, or places are being clicked, before the answer comes. */
 async function refreshChosen() {
   if (!chosen) return;
   refreshes += 1;
@@ -198,11 +198,11 @@ async function refreshChosen() {
   const { id } = chosen;
   const isLate = () => turn !== refreshes || chosen?.id !== id || placed !== null;
   try {
-    const { data } = /** @type {Answer<Gap>} */ (await get(`/gaps/${id}`));
+    const { data } = /** @type {Answer<DataIssue>} */ (await get(`/data-issues/${id}`));
     if (isLate()) return;
     chosen = data;
     panel.refresh(data);
-    layer.showGap(map.map, data.properties.state === "repaired" ? null : data);
+    layer.showIssue(map.map, data.properties.state === "repaired" ? null : data);
     list.mark(id);
   } catch {
     if (!isLate()) chooseNone();
@@ -211,12 +211,12 @@ async function refreshChosen() {
 
 function remember() {
   const address = new URL(location.href);
-  if (chosen) address.searchParams.set("gap", String(chosen.id));
-  else address.searchParams.delete("gap");
+  if (chosen) address.searchParams.set("issue", String(chosen.id));
+  else address.searchParams.delete("issue");
   history.replaceState(history.state, "", address);
 }
 
-/** @param {Gap} gap @returns {Box} */
+/** @param {DataIssue} issue @returns {Box} */
 function boxOf({ geometry, properties }) {
   const { nearest } = properties.details;
   const places = [...layer.placesOf(geometry), ...(nearest ? [nearest] : [])];
@@ -233,9 +233,9 @@ async function repair(body) {
   panel.busy(true);
   panel.fault("");
   try {
-    const { data } = /** @type {Answer<Repaired>} */ (await post(`/gaps/${id}/repair`, body));
+    const { data } = /** @type {Answer<Repaired>} */ (await post(`/data-issues/${id}/repair`, body));
     stopPlacing();
-    const undo = () => settle(post(`/gaps/${id}/undo`, { entries: data.entries }), t("Taken back."), id);
+    const undo = () => settle(post(`/data-issues/${id}/undo`, { entries: data.entries }), t("Taken back."), id);
     toast(data.said, { label: t("Undo"), act: undo });
     await afterChange(id);
   } catch (error) {
@@ -246,7 +246,7 @@ async function repair(body) {
 }
 
 /**
- * Takes a decision about the chosen gap; `back(id)` takes it back.
+ * Takes a decision about the chosen issue; `back(id)` takes it back.
  *
  * @param {(id: number) => Promise<unknown>} change
  * @param {string} words
@@ -278,7 +278,7 @@ async function settle(promise, words, id) {
   }
 }
 
-/** The list and the map anew; the changed gap stays in sight, so that one sees what has become of it. @param {number} id */
+/** The list and the map anew; the changed issue stays in sight, so that one sees what has become of it. @param {number} id */
 async function afterChange(id) {
   map.refreshTiles();
   layer.showRepair(map.map, null);
@@ -323,7 +323,7 @@ map.map.on("moveend", () => {
 
 const showChosen = () => {
   const row = document.activeElement;
-  if (!(row instanceof HTMLElement) || !row.classList.contains("gap-row")) return false;
+  if (!(row instanceof HTMLElement) || !row.classList.contains("issue-row")) return false;
   row.click();
   return true;
 };
@@ -331,8 +331,8 @@ const showChosen = () => {
 open({
   bindings: [
     { keys: ["/"], words: t("Find"), act: list.focusText },
-    { keys: ["j"], words: t("Next gap"), act: () => list.step(1) },
-    { keys: ["k"], words: t("Previous gap"), act: () => list.step(-1) },
+    { keys: ["j"], words: t("Next issue"), act: () => list.step(1) },
+    { keys: ["k"], words: t("Previous issue"), act: () => list.step(-1) },
     { keys: ["enter"], words: t("Show it on the map"), act: showChosen },
     { keys: ["escape"], act: () => (placed ? placeCancel() : chosen ? choose(null) : false) },
   ],
@@ -341,7 +341,7 @@ open({
     map.onRecolour(() => layer.recolour(map.map));
     await look();
     await load();
-    const wanted = Number(new URLSearchParams(location.search).get("gap"));
+    const wanted = Number(new URLSearchParams(location.search).get("issue"));
     if (wanted) await choose(wanted, { stay: map.opensAtPlace });
     keepLooking();
   },

@@ -1,4 +1,4 @@
-/** Gaps in the data. English → German; [one, other] where there is a plural. */
+/** Data issues. English → German; [one, other] where there is a plural. */
 
 export default {
   "Give one voltage or several in kV, with commas.": "Eine oder mehrere Spannungen in kV angeben, mit Komma getrennt.",
@@ -14,7 +14,7 @@ export default {
   "Cuts off": "Trennt ab",
   "cuts off {length} of network": "trennt {length} Netz ab",
   "Dead ends": "Lose Enden",
-  "Gaps come up here when that is done.": "Lücken erscheinen hier, wenn das getan ist.",
+  "Data issues come up here when that is done.": "Datenprobleme erscheinen hier, wenn das getan ist.",
   "Hangs together with it": "Hängt damit zusammen",
   "It is meant to end here": "Sie soll hier enden",
   "Leave it": "Belassen",
@@ -25,9 +25,9 @@ export default {
   "Lines without towers": "Leitungen ohne Masten",
   "Long spans": "Lange Spannfelder",
   "may be right": "kann richtig sein",
-  "Next gap": "Nächste Lücke",
-  "No gap like that here.": "Hier ist keine solche Lücke.",
-  "No gap matches “{text}”.": "Keine Lücke passt zu „{text}“.",
+  "Next issue": "Nächstes Datenproblem",
+  "No issue like that here.": "Hier ist kein solches Datenproblem.",
+  "No issue matches “{text}”.": "Kein Datenproblem passt zu „{text}“.",
   "No longer found": "Nicht mehr gefunden",
   "Nothing has been ignored.": "Noch ist nichts ignoriert.",
   "Nothing has been repaired yet.": "Noch ist nichts behoben.",
@@ -37,7 +37,7 @@ export default {
   "Open it again": "Wieder öffnen",
   "Place them on the map": "Auf der Karte setzen",
   "Place {count} tower": ["{count} Mast setzen", "{count} Masten setzen"],
-  "Previous gap": "Vorige Lücke",
+  "Previous issue": "Voriges Datenproblem",
   "Repaired": "Behoben",
   "Repaired by {name}": "Behoben von {name}",
   "searched {when}": "durchsucht {when}",
@@ -51,7 +51,7 @@ export default {
   "The ground is being searched.": "Der Bestand wird durchsucht.",
   "The ground is searched again after each change.": "Der Bestand wird nach jeder Änderung neu durchsucht.",
   "The server cannot be reached. Trying again.": "Der Server ist nicht erreichbar. Neuer Versuch läuft.",
-  "This gap is gone: its asset was taken away.": "Diese Lücke ist weg: Ihr Objekt wurde entfernt.",
+  "This issue is gone: its asset was taken away.": "Dieses Datenproblem ist weg: Sein Objekt wurde entfernt.",
   "Towers missing": "Masten fehlen",
   "Towers on no line": "Masten ohne Leitung",
   "Vertices inside a substation may hang on its portals.":
@@ -59,5 +59,5 @@ export default {
   "Voltage": "Spannung",
   "Why it is right": "Warum es stimmt",
   "Without a tower": "Ohne Mast",
-  "{count} gap open": ["{count} Lücke offen", "{count} Lücken offen"],
+  "{count} issue open": ["{count} Datenproblem offen", "{count} Datenprobleme offen"],
 };

@@ -1,13 +1,13 @@
-/** Gaps on the map: dots for those in the list, the chosen one drawn whole, and what a repair would draw. */
+/** Data issues on the map: dots for those in the list, the chosen one drawn whole, and what a repair would draw. */
 
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { MapLibreMap, ScreenPoint } from "../map/types.d.ts" */
-/** @import { Collection, Gap } from "./types.d.ts" */
+/** @import { Collection, DataIssue } from "./types.d.ts" */
 
-const SOURCES = ["gaps", "gap", "gap-repair"];
-const DOTS = "gaps-dots";
+const SOURCES = ["issues", "issue", "issue-repair"];
+const DOTS = "issues-dots";
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 16 : 7;
 
 /** @param {number} far @param {number} near [px] */
@@ -29,35 +29,35 @@ function layers() {
     {
       id: DOTS,
       type: "circle",
-      source: "gaps",
+      source: "issues",
       paint: { "circle-radius": 4, "circle-color": mark, "circle-stroke-color": casing, "circle-stroke-width": 1.5 },
     },
     {
-      id: "gap-casing",
+      id: "issue-casing",
       type: "line",
-      source: "gap",
+      source: "issue",
       filter: isLine,
       layout: round,
       paint: { "line-color": casing, "line-width": 9 },
     },
     {
-      id: "gap-line",
+      id: "issue-line",
       type: "line",
-      source: "gap",
+      source: "issue",
       filter: isLine,
       paint: { "line-color": mark, "line-width": 4, "line-dasharray": [2, 1.2] },
     },
     {
-      id: "gap-halo",
+      id: "issue-halo",
       type: "circle",
-      source: "gap",
+      source: "issue",
       filter: isPoint,
       paint: { "circle-radius": byZoom(4, 11), "circle-color": mark, "circle-opacity": 0.18 },
     },
     {
-      id: "gap-places",
+      id: "issue-places",
       type: "circle",
-      source: "gap",
+      source: "issue",
       filter: isPoint,
       paint: {
         "circle-radius": byZoom(1.6, 5.5),
@@ -67,25 +67,25 @@ function layers() {
       },
     },
     {
-      id: "gap-repair-casing",
+      id: "issue-repair-casing",
       type: "line",
-      source: "gap-repair",
+      source: "issue-repair",
       filter: isLine,
       layout: round,
       paint: { "line-color": casing, "line-width": 6.5 },
     },
     {
-      id: "gap-repair-line",
+      id: "issue-repair-line",
       type: "line",
-      source: "gap-repair",
+      source: "issue-repair",
       filter: isLine,
       layout: round,
       paint: { "line-color": accent, "line-width": 3 },
     },
     {
-      id: "gap-repair-places",
+      id: "issue-repair-places",
       type: "circle",
-      source: "gap-repair",
+      source: "issue-repair",
       filter: isPoint,
       paint: {
         "circle-radius": byZoom(2, 5),
@@ -114,23 +114,25 @@ const feature = (geometry, properties = {}) => ({ type: "Feature", properties, g
 /** @param {number[][]} positions */
 const points = (positions) => positions.map((coordinates) => feature({ type: "Point", coordinates }));
 
-/** @param {MapLibreMap} map @param {Gap[]} gaps */
-export function showAll(map, gaps) {
-  const features = gaps.map((gap) => feature({ type: "Point", coordinates: gap.properties.position }, { id: gap.id }));
-  setFeatures(map, "gaps", features);
+/** @param {MapLibreMap} map @param {DataIssue[]} issues */
+export function showAll(map, issues) {
+  const features = issues.map((issue) =>
+    feature({ type: "Point", coordinates: issue.properties.position }, { id: issue.id }),
+  );
+  setFeatures(map, "issues", features);
 }
 
 /**
- * The gap's own geometry, with a ring at each of its places; of a dead end also the way to the next part of the network.
+ * The issue's own geometry, with a ring at each of its places; of a dead end also the way to the next part of the network.
  *
  * @param {MapLibreMap} map
- * @param {Gap | null} gap
+ * @param {DataIssue | null} issue
  */
-export function showGap(map, gap) {
-  const features = gap ? [feature(gap.geometry), ...points(placesOf(gap.geometry))] : [];
-  const nearest = gap?.properties.details.nearest;
-  if (nearest) features.unshift(feature({ type: "LineString", coordinates: [gap.properties.position, nearest] }));
-  setFeatures(map, "gap", features);
+export function showIssue(map, issue) {
+  const features = issue ? [feature(issue.geometry), ...points(placesOf(issue.geometry))] : [];
+  const nearest = issue?.properties.details.nearest;
+  if (nearest) features.unshift(feature({ type: "LineString", coordinates: [issue.properties.position, nearest] }));
+  setFeatures(map, "issue", features);
 }
 
 /**
@@ -142,22 +144,22 @@ export function showGap(map, gap) {
 export function showRepair(map, preview) {
   const features =
     preview?.features.filter(({ geometry }) => geometry.type === "Point" || geometry.type === "LineString") ?? [];
-  setFeatures(map, "gap-repair", features);
+  setFeatures(map, "issue-repair", features);
 }
 
 /** @param {MapLibreMap} map @param {number[][]} positions */
 export function showPlaces(map, positions) {
-  setFeatures(map, "gap-repair", points(positions));
+  setFeatures(map, "issue-repair", points(positions));
 }
 
 /**
- * The id of the gap whose dot is within reach of a point of the screen, or null.
+ * The id of the issue whose dot is within reach of a point of the screen, or null.
  *
  * @param {MapLibreMap} map
  * @param {ScreenPoint} point
  * @returns {number | null}
  */
-export function gapAt(map, { x, y }) {
+export function issueAt(map, { x, y }) {
   if (!map.getLayer(DOTS)) return null;
   const met = map.queryRenderedFeatures(
     [
@@ -175,7 +177,7 @@ export function gapAt(map, { x, y }) {
   return met.sort((a, b) => away(a) - away(b))[0]?.properties.id ?? null;
 }
 
-/** @param {Gap["geometry"]} geometry @returns {number[][]} */
+/** @param {DataIssue["geometry"]} geometry @returns {number[][]} */
 export function placesOf(geometry) {
   return geometry.type === "Point" ? [geometry.coordinates] : geometry.coordinates;
 }

@@ -1,4 +1,4 @@
-"""Where the data of the ground looks wrong, for a curator to mend or to leave."""
+"""Where map data look wrong, for a curator to repair or to leave. Tables, constraints and indexes keep the names of before."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -6,7 +6,7 @@ from django.db.models import Q
 from django.db.models.functions import Now
 
 
-class GapKind(models.TextChoices):
+class DataIssueKind(models.TextChoices):
     LONG_SPAN = "long_span", "Span far longer than the line's others"
     MISSING_SUPPORT = "missing_support", "Line vertex without a tower"
     TOWER_ON_NO_LINE = "tower_on_no_line", "Tower on no line"
@@ -17,19 +17,19 @@ class GapKind(models.TextChoices):
     IMPOSSIBLE_VOLTAGE = "impossible_voltage", "Impossible voltage"
 
 
-class GapState(models.TextChoices):
+class DataIssueState(models.TextChoices):
     OPEN = "open", "Open"
     REPAIRED = "repaired", "Repaired"  # no longer found, or mended here
     DISMISSED = "dismissed", "Left as it is"
 
 
-class DataGap(models.Model):
+class DataIssue(models.Model):
     """One place where the data looks wrong. Found again under the same key with each new ground, so that a decision stays."""
 
-    kind = models.CharField(max_length=30, choices=GapKind.choices)
+    kind = models.CharField(max_length=30, choices=DataIssueKind.choices)
     key = models.CharField(max_length=200, unique=True, help_text="kind and the places that it is about; the same on every run")
-    state = models.CharField(max_length=20, choices=GapState.choices, default=GapState.OPEN)
-    asset = models.ForeignKey("inspection.Asset", on_delete=models.CASCADE, null=True, blank=True, related_name="gaps")
+    state = models.CharField(max_length=20, choices=DataIssueState.choices, default=DataIssueState.OPEN)
+    asset = models.ForeignKey("inspection.Asset", on_delete=models.CASCADE, null=True, blank=True, related_name="issues")
     other_asset = models.ForeignKey("inspection.Asset", on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     position = models.PointField(srid=4326)
     geometry = models.GeometryField(srid=4326, null=True, blank=True, help_text="what to draw: the span, the two ends")
@@ -42,10 +42,11 @@ class DataGap(models.Model):
     found_at = models.DateTimeField(db_default=Now(), editable=False)
 
     class Meta:
+        db_table = "inspection_datagap"
         ordering = ["-cut_off_m", "pk"]
         constraints = [
-            models.CheckConstraint(condition=Q(kind__in=GapKind.values), name="gap_kind_known"),
-            models.CheckConstraint(condition=Q(state__in=GapState.values), name="gap_state_known"),
+            models.CheckConstraint(condition=Q(kind__in=DataIssueKind.values), name="gap_kind_known"),
+            models.CheckConstraint(condition=Q(state__in=DataIssueState.values), name="gap_state_known"),
         ]
         indexes = [models.Index(fields=["state", "-cut_off_m", "id"], name="gap_worst_idx")]
 
@@ -53,7 +54,7 @@ class DataGap(models.Model):
         return f"{self.get_kind_display()} {self.key}"
 
 
-class GapSearch(models.Model):
+class DataIssueSearch(models.Model):
     """One row: which ground was looked at last, by which rules, and how long that took."""
 
     SINGLE_ID = 1
@@ -67,8 +68,9 @@ class GapSearch(models.Model):
     searched_at = models.DateTimeField()
 
     class Meta:
-        verbose_name_plural = "gap searches"
+        db_table = "inspection_gapsearch"
+        verbose_name_plural = "issue searches"
         constraints = [models.CheckConstraint(condition=Q(id=1), name="gap_search_single")]
 
     def __str__(self) -> str:
-        return f"revision {self.ground_revision}: {self.found} gaps"
+        return f"revision {self.ground_revision}: {self.found} issues"

@@ -1,4 +1,4 @@
-"""Gaps as a list, worst first, and how many of each kind there are."""
+"""Data issues as a list, worst first, and how many of each kind there are."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.db.models import Count, QuerySet
 
-from inspection.models import DataGap, GapKind, GapSearch, GapState
+from inspection.models import DataIssue, DataIssueKind, DataIssueSearch, DataIssueState
 from inspection.selectors.assets import COORDINATE_DIGITS, AsDrawn, Box, area_of, assets_on_the_ground
 
 if TYPE_CHECKING:
     from django_stubs_ext import WithAnnotations
 
-    DrawnGap = WithAnnotations[DataGap, AsDrawn]
+    DrawnIssue = WithAnnotations[DataIssue, AsDrawn]
 else:
-    DrawnGap = DataGap
+    DrawnIssue = DataIssue
 WORST_FIRST = ("-cut_off_m", "pk")
 _UNREAD = [
     f"{path}__{name}"
@@ -25,17 +25,17 @@ _UNREAD = [
 
 
 @dataclass(frozen=True)
-class GapSummary:
+class DataIssueSummary:
     counts: dict[str, dict[str, int]]  # by kind, then by state
     searched_at: datetime | None
     found: int
 
 
-def gaps(
-    *, kinds: list[GapKind] | None = None, state: GapState | None = None, box: Box | None = None, text: str = ""
-) -> QuerySet[DrawnGap]:
-    """Gaps with what they are about, and their geometry as GeoJSON text in `geometry_json`."""
-    found = DataGap.objects.select_related("asset__line", "other_asset__line", "decided_by")
+def issues(
+    *, kinds: list[DataIssueKind] | None = None, state: DataIssueState | None = None, box: Box | None = None, text: str = ""
+) -> QuerySet[DrawnIssue]:
+    """Data issues with what they are about, and their geometry as GeoJSON text in `geometry_json`."""
+    found = DataIssue.objects.select_related("asset__line", "other_asset__line", "decided_by")
     if kinds:
         found = found.filter(kind__in=kinds)
     if state is not None:
@@ -47,9 +47,9 @@ def gaps(
     return found.defer(*_UNREAD).annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
 
 
-def gap_summary() -> GapSummary:
-    counts = {kind.value: dict.fromkeys(GapState.values, 0) for kind in GapKind}
-    for kind, state, number in DataGap.objects.order_by().values_list("kind", "state").annotate(Count("pk")):
+def issue_summary() -> DataIssueSummary:
+    counts = {kind.value: dict.fromkeys(DataIssueState.values, 0) for kind in DataIssueKind}
+    for kind, state, number in DataIssue.objects.order_by().values_list("kind", "state").annotate(Count("pk")):
         counts[kind][state] = number
-    last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
-    return GapSummary(counts, last.searched_at if last else None, last.found if last else 0)
+    last = DataIssueSearch.objects.filter(pk=DataIssueSearch.SINGLE_ID).first()
+    return DataIssueSummary(counts, last.searched_at if last else None, last.found if last else 0)

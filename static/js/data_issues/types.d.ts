@@ -1,10 +1,10 @@
-/** Shapes of the page of data gaps that the API leaves open. */
+/** Shapes of the page of data issues that the API leaves open. */
 
-import type { GapFeature, GapProperties, Offer } from "../api_types.d.ts";
+import type { DataIssueFeature, DataIssueProperties, Offer } from "../api_types.d.ts";
 import type { Geometry } from "../map/types.d.ts";
 
-/** Figures of a gap's kind (inspection/quality). */
-export interface GapDetails {
+/** Figures of an issue's kind (inspection/quality). */
+export interface DataIssueDetails {
   nearest?: number[];
   is_advisory?: boolean;
   is_impossible?: boolean;
@@ -20,18 +20,21 @@ export interface Collection {
 }
 
 /** A repair that is offered, with the values of its parameter, and what it would draw. */
-export type GapOffer = Omit<Offer, "choices" | "preview"> & {
+export type DataIssueOffer = Omit<Offer, "choices" | "preview"> & {
   choices: { value: unknown; words: string }[];
   preview: Collection | null;
 };
 
-export type Gap = Omit<GapFeature, "properties" | "geometry"> & {
+export type DataIssue = Omit<DataIssueFeature, "properties" | "geometry"> & {
   geometry: { type: "Point"; coordinates: number[] } | { type: "MultiPoint" | "LineString"; coordinates: number[][] };
-  properties: Omit<GapProperties, "details" | "repairs"> & { details: GapDetails; repairs: GapOffer[] };
+  properties: Omit<DataIssueProperties, "details" | "repairs"> & {
+    details: DataIssueDetails;
+    repairs: DataIssueOffer[];
+  };
 };
 
-export interface GapFilter {
-  state: GapProperties["state"];
+export interface DataIssueFilter {
+  state: DataIssueProperties["state"];
   kinds: Set<string>;
   text: string;
   inView: boolean;

@@ -1,11 +1,11 @@
-/** The dock: the chosen gap in one sentence, its facts, and what can be done about it. */
+/** The dock: the chosen issue in one sentence, its facts, and what can be done about it. */
 
 import { byId, h, icon, setChildren } from "../dom.js";
 import { t, tn } from "../text.js";
 import { coordinateText, whenText } from "../units.js";
 import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 
-/** @import { Collection, Gap, GapOffer } from "./types.d.ts" */
+/** @import { Collection, DataIssue, DataIssueOffer } from "./types.d.ts" */
 
 const MAX_NOTE_LENGTH = 500;
 
@@ -18,7 +18,7 @@ const MAX_NOTE_LENGTH = 500;
  * @property {() => void} reopen
  * @property {(collection: Collection | null) => void} preview
  * @property {(notify: (count: number) => void) => void} place begins to take places from the map and tells how many there are
- * @property {(offer: GapOffer) => void} placeDone
+ * @property {(offer: DataIssueOffer) => void} placeDone
  * @property {() => void} placeBack
  * @property {() => void} placeCancel
  * @property {() => void} next
@@ -26,17 +26,17 @@ const MAX_NOTE_LENGTH = 500;
  */
 
 /** @param {boolean} canCurate @param {PanelHandlers} on */
-export const mountGapPanel = (canCurate, on) => new GapPanel(canCurate, on);
+export const mountIssuePanel = (canCurate, on) => new DataIssuePanel(canCurate, on);
 
-class GapPanel {
+class DataIssuePanel {
   #canCurate;
   #on;
   #dock = byId("dock");
-  #panel = byId("gap-panel");
-  #acts = h("div", { class: "gap-acts" });
+  #panel = byId("issue-panel");
+  #acts = h("div", { class: "issue-acts" });
   #fault = h("p", { class: "field-error", role: "alert" });
-  #drawn = ""; // the gap as it is shown
-  /** The form of a note, with the gap's id: it outlives a new drawing of the gap. @type {{ id: number, form: HTMLElement } | null} */
+  #drawn = ""; // the issue as it is shown
+  /** The form of a note, with the issue's id: it outlives a new drawing of the issue. @type {{ id: number, form: HTMLElement } | null} */
   #noting = null;
 
   /** @param {boolean} canCurate @param {PanelHandlers} on */
@@ -45,38 +45,38 @@ class GapPanel {
     this.#on = on;
   }
 
-  /** @param {Gap | null} gap */
-  show(gap) {
-    this.#dock.hidden = !gap;
-    this.#drawn = JSON.stringify(gap);
-    if (gap?.id !== this.#noting?.id || gap?.properties.state !== "open") this.#noting = null;
-    if (!gap) {
+  /** @param {DataIssue | null} issue */
+  show(issue) {
+    this.#dock.hidden = !issue;
+    this.#drawn = JSON.stringify(issue);
+    if (issue?.id !== this.#noting?.id || issue?.properties.state !== "open") this.#noting = null;
+    if (!issue) {
       this.#panel.replaceChildren();
       return;
     }
     const words = t("Close");
     const close = {
-      class: "icon-button tight gap-close",
+      class: "icon-button tight issue-close",
       type: "button",
       "aria-label": words,
       onclick: this.#on.close,
     };
     this.fault("");
-    setChildren(this.#acts, this.#actsOf(gap));
+    setChildren(this.#acts, this.#actsOf(issue));
     setChildren(
       this.#panel,
-      wordsOf(gap.properties),
-      h("div", { class: "gap-do" }, this.#acts, this.#fault),
+      wordsOf(issue.properties),
+      h("div", { class: "issue-do" }, this.#acts, this.#fault),
       h("button", { ...close, title: t("Close (Esc)") }, icon("x")),
     );
   }
 
-  /** The same gap again: leaves alone what is being done in the panel. @param {Gap} gap */
-  refresh(gap) {
-    if (JSON.stringify(gap) === this.#drawn) return;
+  /** The same issue again: leaves alone what is being done in the panel. @param {DataIssue} issue */
+  refresh(issue) {
+    if (JSON.stringify(issue) === this.#drawn) return;
     const { activeElement } = document;
     const focused = activeElement instanceof HTMLElement && this.#panel.contains(activeElement) ? activeElement : null;
-    this.show(gap);
+    this.show(issue);
     if (focused?.isConnected) focused.focus();
   }
 
@@ -91,18 +91,18 @@ class GapPanel {
     setChildren(this.#fault, sentence && [icon("circle-alert"), sentence]);
   }
 
-  /** @param {Gap} gap @returns {(Node | null)[]} */
-  #actsOf(gap) {
-    const { repairs, state } = gap.properties;
+  /** @param {DataIssue} issue @returns {(Node | null)[]} */
+  #actsOf(issue) {
+    const { repairs, state } = issue.properties;
     if (!this.#canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
-    const next = h("button", { class: "button primary", type: "button", onclick: this.#on.next }, t("Next gap"));
+    const next = h("button", { class: "button primary", type: "button", onclick: this.#on.next }, t("Next issue"));
     const reopen = { class: "button", type: "button", onclick: this.#on.reopen };
     if (state === "dismissed") return [next, h("button", reopen, icon("undo-2"), t("Open it again"))];
     if (state === "repaired") return [next];
-    return [...repairs.flatMap((offer, index) => this.#offerActs(offer, index === 0)), this.#dismissAct(gap)];
+    return [...repairs.flatMap((offer, index) => this.#offerActs(offer, index === 0)), this.#dismissAct(issue)];
   }
 
-  /** @param {GapOffer} offer @param {boolean} isFirst @returns {(HTMLElement | null)[]} */
+  /** @param {DataIssueOffer} offer @param {boolean} isFirst @returns {(HTMLElement | null)[]} */
   #offerActs(offer, isFirst) {
     if (offer.parameter === "way") return [this.#choiceOf(offer)];
     const { refused, preview, action } = offer;
@@ -124,7 +124,7 @@ class GapPanel {
     return [act, h("button", placing, icon("map-pin"), t("Place them on the map"))];
   }
 
-  /** @param {GapOffer} offer */
+  /** @param {DataIssueOffer} offer */
   #choiceOf({ action, parameter, choices, words: question }) {
     const buttons = choices.map(({ value, words }) => {
       const act = () => this.#on.repair({ action, [parameter]: value });
@@ -132,17 +132,17 @@ class GapPanel {
     });
     return h(
       "div",
-      { class: "gap-choice", role: "group", "aria-label": question },
+      { class: "issue-choice", role: "group", "aria-label": question },
       h("span", { class: "field-label" }, question),
       buttons,
     );
   }
 
-  /** @param {GapOffer} offer @param {boolean} isFirst */
+  /** @param {DataIssueOffer} offer @param {boolean} isFirst */
   #voltageForm({ action }, isFirst) {
     const input = h("input", {
       class: "input",
-      id: "gap-volts",
+      id: "issue-volts",
       inputmode: "decimal",
       placeholder: "110, 20",
       autocomplete: "off",
@@ -158,14 +158,14 @@ class GapPanel {
     };
     return h(
       "form",
-      { class: "gap-form", onsubmit: submit },
-      h("label", { for: "gap-volts" }, t("Voltage")),
+      { class: "issue-form", onsubmit: submit },
+      h("label", { for: "issue-volts" }, t("Voltage")),
       h("span", { class: "with-unit" }, input, h("span", { class: "unit" }, "kV")),
       h("button", { class: isFirst ? "button primary" : "button" }, t("Set")),
     );
   }
 
-  /** @param {Gap} gap */
+  /** @param {DataIssue} issue */
   #dismissAct({ id, properties }) {
     if (this.#noting) return this.#noting.form;
     const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(properties.kind));
@@ -177,7 +177,7 @@ class GapPanel {
   #note(id, opener) {
     const note = h("input", {
       class: "input",
-      id: "gap-note",
+      id: "issue-note",
       maxlength: MAX_NOTE_LENGTH,
       placeholder: t("Why it is right"),
       "aria-label": t("Note"),
@@ -195,7 +195,7 @@ class GapPanel {
     /** @type {HTMLFormElement} */
     const form = h(
       "form",
-      { class: "gap-form", onsubmit: submit },
+      { class: "issue-form", onsubmit: submit },
       note,
       h("button", { class: "button primary" }, t("Leave it")),
       h("button", { class: "button quiet", type: "button", onclick: cancel }, t("Cancel")),
@@ -205,7 +205,7 @@ class GapPanel {
     note.focus();
   }
 
-  /** While places are clicked on the map the acts say how many there are. @param {GapOffer} offer @param {number} count */
+  /** While places are clicked on the map the acts say how many there are. @param {DataIssueOffer} offer @param {number} count */
   #placing(offer, count) {
     this.#drawn = "";
     const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");
@@ -224,7 +224,7 @@ class GapPanel {
   }
 }
 
-/** @param {Gap["properties"]} properties */
+/** @param {DataIssue["properties"]} properties */
 function wordsOf(properties) {
   const { state, sentence, position } = properties;
   const facts = [...factsOf(properties), [t("Place"), coordinateText(position)]];
@@ -232,27 +232,27 @@ function wordsOf(properties) {
   const decided = () => [icon(state === "repaired" ? "circle-check" : "hand"), decidedWords(properties)];
   return h(
     "div",
-    { class: "gap-words" },
-    h("h2", { class: "gap-sentence" }, sentence),
-    h("p", { class: "gap-assets" }, assetWords(properties)),
+    { class: "issue-words" },
+    h("h2", { class: "issue-sentence" }, sentence),
+    h("p", { class: "issue-assets" }, assetWords(properties)),
     h(
       "dl",
-      { class: "gap-facts" },
+      { class: "issue-facts" },
       facts.map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
     ),
     caution && h("p", { class: "caption" }, caution),
-    state !== "open" && h("p", { class: "gap-decided" }, decided()),
+    state !== "open" && h("p", { class: "issue-decided" }, decided()),
   );
 }
 
-/** @param {Gap["properties"]} properties */
+/** @param {DataIssue["properties"]} properties */
 function assetWords({ asset, other_asset: other }) {
   return [asset, other]
     .flatMap((thing) => (thing ? [[thing.label, thing.detail].filter(Boolean).join(", ")] : []))
     .join(" · ");
 }
 
-/** @param {Gap["properties"]} properties */
+/** @param {DataIssue["properties"]} properties */
 function decidedWords({ state, decided_by: who, decided_at: when, note }) {
   const repaired = who ? t("Repaired by {name}", { name: who }) : t("No longer found");
   const dismissed = who ? t("Ignored by {name}", { name: who }) : t("Ignored");

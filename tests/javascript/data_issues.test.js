@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { cautionOf, cutOffText, factsOf, KINDS } from "../../static/js/gaps/kinds.js";
+import { cautionOf, cutOffText, factsOf, KINDS } from "../../static/js/data_issues/kinds.js";
 
 const SPACE = "\u00a0";
 
-test("a gap says what it cuts off, and nothing where that is nothing", () => {
+test("an issue says what it cuts off, and nothing where that is nothing", () => {
   assert.equal(cutOffText({ kind: "ends_apart", cut_off_m: 34_240 }), `cuts off 34.2${SPACE}km of network`);
   assert.equal(cutOffText({ kind: "line_without_towers", cut_off_m: 905 }), `concerns 905${SPACE}m`);
   assert.equal(cutOffText({ kind: "bridge_without_way", cut_off_m: 0 }), "");

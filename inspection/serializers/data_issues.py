@@ -1,4 +1,4 @@
-"""Gaps as GeoJSON features."""
+"""Data issues as GeoJSON features."""
 
 import json
 from typing import Any
@@ -7,9 +7,9 @@ from django.utils.formats import number_format
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 
-from inspection.models import Asset, AssetKind, GapKind, GapState
+from inspection.models import Asset, AssetKind, DataIssueKind, DataIssueState
 from inspection.selectors import asset_detail, asset_label
-from inspection.selectors.gaps import DrawnGap, GapSummary
+from inspection.selectors.data_issues import DataIssueSummary, DrawnIssue
 from inspection.serializers.features import collection_serializer, feature_serializer
 from inspection.services.repairs import Offer, Repaired
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
@@ -175,7 +175,7 @@ _SENTENCES = {
 MAX_NOTE_LENGTH = 500
 
 
-class GapAssetSerializer(serializers.Serializer):
+class DataIssueAssetSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     kind = serializers.ChoiceField(choices=AssetKind.choices)
     label: Declared = serializers.CharField()
@@ -191,13 +191,13 @@ class OfferSerializer(serializers.Serializer):
     refused = serializers.CharField(help_text="why it cannot be done now; mostly empty")
 
 
-class GapPropertiesSerializer(serializers.Serializer):
-    kind = serializers.ChoiceField(choices=GapKind.choices)
-    state = serializers.ChoiceField(choices=GapState.choices)
+class DataIssuePropertiesSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=DataIssueKind.choices)
+    state = serializers.ChoiceField(choices=DataIssueState.choices)
     title = serializers.CharField()
     sentence = serializers.CharField()
-    asset = GapAssetSerializer(allow_null=True)
-    other_asset = GapAssetSerializer(allow_null=True)
+    asset = DataIssueAssetSerializer(allow_null=True)
+    other_asset = DataIssueAssetSerializer(allow_null=True)
     position = serializers.ListField(child=serializers.FloatField(), help_text="lon, lat")
     details = serializers.DictField(help_text="figures with units in their names")
     cut_off_m = serializers.FloatField(help_text="length of network that depends on it")
@@ -208,11 +208,11 @@ class GapPropertiesSerializer(serializers.Serializer):
     found_at = serializers.DateTimeField()
 
 
-GapFeatureSerializer = feature_serializer("GapFeature", GapPropertiesSerializer)
-GapCollectionSerializer = collection_serializer("GapCollection", GapFeatureSerializer)
+DataIssueFeatureSerializer = feature_serializer("DataIssueFeature", DataIssuePropertiesSerializer)
+DataIssueCollectionSerializer = collection_serializer("DataIssueCollection", DataIssueFeatureSerializer)
 
 
-class GapSummarySerializer(serializers.Serializer):
+class DataIssueSummarySerializer(serializers.Serializer):
     kinds = serializers.DictField(child=serializers.DictField(child=serializers.IntegerField()), help_text="number by kind, then state")
     is_current = serializers.BooleanField(help_text="false while the ground has changed and is not yet searched again")
     searched_at = serializers.DateTimeField(allow_null=True, help_text="null before the first search")
@@ -234,31 +234,31 @@ class DismissSerializer(serializers.Serializer):
 
 
 class RepairedSerializer(serializers.Serializer):
-    gap = GapFeatureSerializer(allow_null=True)
+    issue = DataIssueFeatureSerializer(allow_null=True)
     entries = serializers.ListField(child=serializers.IntegerField(), help_text="of the history, oldest first")
     said = serializers.CharField(help_text="what was done, in words")
     is_current = serializers.BooleanField(help_text="whether the ground has been searched again already")
 
 
-def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]], reader: User) -> dict[str, Any]:
-    """`gap` comes with `geometry_json` from inspection.selectors.gaps."""
+def issue_feature(issue: DrawnIssue, repairs: list[dict[str, Any]], reader: User) -> dict[str, Any]:
+    """`issue` comes with `geometry_json` from inspection.selectors.data_issues."""
     properties = {
-        "kind": gap.kind,
-        "state": gap.state,
-        "title": title(gap.kind, gap.details),
-        "sentence": sentence(gap.kind, gap.details),
-        "asset": _asset_json(gap.asset),
-        "other_asset": _asset_json(gap.other_asset),
-        "position": list(gap.position.coords),
-        "details": gap.details,
-        "cut_off_m": gap.cut_off_m,
+        "kind": issue.kind,
+        "state": issue.state,
+        "title": title(issue.kind, issue.details),
+        "sentence": sentence(issue.kind, issue.details),
+        "asset": _asset_json(issue.asset),
+        "other_asset": _asset_json(issue.other_asset),
+        "position": list(issue.position.coords),
+        "details": issue.details,
+        "cut_off_m": issue.cut_off_m,
         "repairs": repairs,
-        "note": gap.note,
-        "decided_by": author_name(gap.decided_by, reader),
-        "decided_at": gap.decided_at,
-        "found_at": gap.found_at,
+        "note": issue.note,
+        "decided_by": author_name(issue.decided_by, reader),
+        "decided_at": issue.decided_at,
+        "found_at": issue.found_at,
     }
-    return {"type": "Feature", "id": gap.pk, "geometry": json.loads(gap.geometry_json), "properties": properties}
+    return {"type": "Feature", "id": issue.pk, "geometry": json.loads(issue.geometry_json), "properties": properties}
 
 
 def offer_json(offer: Offer, preview: dict[str, Any] | None = None, refused: str = "") -> dict[str, Any]:
@@ -269,12 +269,12 @@ def offer_json(offer: Offer, preview: dict[str, Any] | None = None, refused: str
     }  # fmt: skip
 
 
-def summary_json(summary: GapSummary, *, is_current: bool) -> dict[str, Any]:
+def summary_json(summary: DataIssueSummary, *, is_current: bool) -> dict[str, Any]:
     return {"kinds": summary.counts, "is_current": is_current, "searched_at": summary.searched_at}
 
 
 def repaired_json(repaired: Repaired, feature: dict[str, Any] | None, *, is_current: bool) -> dict[str, Any]:
-    return {"gap": feature, "entries": repaired.entries, "said": repaired.said, "is_current": is_current}
+    return {"issue": feature, "entries": repaired.entries, "said": repaired.said, "is_current": is_current}
 
 
 def _asset_json(asset: Asset | None) -> dict[str, Any] | None:

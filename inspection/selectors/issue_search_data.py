@@ -1,4 +1,4 @@
-"""Reads the ground as the plain arrays in which gaps are looked for."""
+"""Reads the ground as the plain arrays in which issues are looked for."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inspection.models import AssetKind
 from inspection.network.infrastructure import InfrastructurePlaces, InfrastructureWays
-from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts, asset_key
+from inspection.quality.infrastructure import NO_OSM_ID, IssueSearchData, PlainBridge, SupportFacts, WayFacts, asset_key
 from inspection.selectors.ground_data import ground_data
 
 _WAYS = """
@@ -41,7 +41,7 @@ FROM inspection_asset WHERE kind = 'bridge' AND carries = '' AND is_flyable AND 
 """
 
 
-def gap_ground() -> GapGround:
+def issue_search_data() -> IssueSearchData:
     """The ground as of the revision that it names, or a little newer."""
     data = ground_data()
     with connection.cursor() as cursor:
@@ -56,7 +56,7 @@ def gap_ground() -> GapGround:
             PlainBridge(pk, asset_key(osm_type or "a", NO_OSM_ID if osm_id is None else osm_id, pk), (lon, lat))
             for pk, osm_type, osm_id, lon, lat in cursor.fetchall()
         )
-    return GapGround(
+    return IssueSearchData(
         revision=data.revision,
         lines=data.lines,
         line_facts=_way_facts(AssetKind.LINE, data.lines),
