@@ -1,0 +1,238 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+
+import { isWide } from "../../../static/js/map/lasso.js";
+import { partOfLine } from "../../../static/js/map/line_part.js";
+import { listIn, refsIn, rowsToAdd } from "../../../static/js/mission/list_reading.js";
+import {
+  EMPTY,
+  isUsualTask,
+  keyOf,
+  requestOf,
+  storedTarget,
+  targetOf,
+  targetOfRow,
+  taskOf,
+  withTargets,
+  withTask,
+} from "../../../static/js/mission/selection.js";
+import { createHistory, createStore } from "../../../static/js/store.js";
+
+const tower = targetOf({ id: 7, kind: "tower", properties: { label: "T 7" }, centre: [10, 50] });
+const line = targetOf({ id: 9, kind: "line", properties: { label: "North" }, centre: [10, 50] });
+const point = targetOf({ id: 9, kind: "line", properties: { label: "North" }, position: [10.5, 50.5] });
+const place = storedTarget({
+  asset: null,
+  label: "Place",
+  detail: "",
+  kind: null,
+  position: [11, 51],
+  is_point: true,
+  stretch: null,
+  task: null,
+});
+
+test("a list is parted at line ends, tabs, commas and semicolons; each reference counts once", () => {
+  assert.deepEqual(refsIn(' T 1\r\n"T 2"\tT 3,T 4; T 5\n\nT 1\n'), ["T 1", "T 2", "T 3", "T 4", "T 5"]);
+  assert.deepEqual(refsIn(" \n , ;"), []);
+});
+
+test("a table whose first line names external_id gives each reference its id", () => {
+  const table = '\uFEFFref;External_ID;note\r\n"T;1";SAP-1;x\r\nT 2;;"a ""b"" c"\r\n;SAP-3;\r\nT 4;"SAP-4"\r\n';
+  const { refs, externalIds } = listIn(table);
+  assert.deepEqual(refs, ["T;1", "T 2", "T 4"]);
+  assert.deepEqual(
+    [...externalIds],
+    [
+      ["T;1", "SAP-1"],
+      ["T 4", "SAP-4"],
+    ],
+  );
+  assert.deepEqual(listIn("external_id\tmast\nA\tT 1\n").refs, ["T 1"]);
+  assert.deepEqual(listIn("a,,external_id\nT 1,,X").externalIds.get("T 1"), "X");
+  assert.deepEqual(listIn("T 1,T 2\nT 3"), { refs: ["T 1", "T 2", "T 3"], externalIds: new Map() });
+  const results = [
+    { ref: "T 1", match: "found", assets: [{ id: 1 }] },
+    { ref: "T 2", match: "several", assets: [{ id: 2 }, { id: 3 }] },
+  ];
+  const ids = new Map([
+    ["T 1", "A"],
+    ["T 2", "B"],
+  ]);
+  assert.deepEqual(rowsToAdd(results, new Map([["T 2", "3"]]), ids), [
+    { id: 1, external_id: "A" },
+    { id: 3, external_id: "B" },
+  ]);
+});
+
+test("what has one meaning is added, of several meanings what was chosen", () => {
+  const asset = (id) => ({ id });
+  const results = [
+    { ref: "a", match: "found", assets: [asset(1)] },
+    { ref: "b", match: "several", assets: [asset(2), asset(3)] },
+    { ref: "c", match: "several", assets: [asset(4), asset(5)] },
+    { ref: "d", match: "several", assets: [asset(6), asset(7)] },
+    { ref: "e", match: "none", assets: [] },
+  ];
+  assert.deepEqual(
+    rowsToAdd(
+      results,
+      new Map([
+        ["b", "all"],
+        ["c", "5"],
+      ]),
+    ).map(({ id }) => id),
+    [1, 2, 3, 5],
+  );
+});
+
+test("the usual task follows what is picked, as on the server", () => {
+  assert.deepEqual([tower, line, point, place].map(taskOf), [
+    { kind: "photo", hold_s: 10 },
+    { kind: "look", hold_s: 0 },
+    { kind: "look", hold_s: 5 },
+    { kind: "hold", hold_s: 10 },
+  ]);
+});
+
+test("a task is set for some targets and asked for where it is not the usual one", () => {
+  const selection = withTargets(EMPTY, [tower, point]);
+  const held = withTask(selection, [tower.key], { kind: "hold" });
+  assert.deepEqual(held.targets.map(taskOf), [
+    { kind: "hold", hold_s: 30 },
+    { kind: "look", hold_s: 5 },
+  ]);
+  assert.deepEqual(requestOf(held).targets, [
+    { asset: 7, task: { kind: "hold", hold_s: 30 } },
+    { asset: 9, position: [10.5, 50.5] },
+  ]);
+  const longer = withTask(held, [tower.key, point.key], { kind: "hold", hold_s: 90 });
+  assert.deepEqual(longer.targets.map(taskOf), [
+    { kind: "hold", hold_s: 90 },
+    { kind: "hold", hold_s: 90 },
+  ]);
+  assert.deepEqual(withTask(longer, [tower.key], { kind: "hold" }).targets.map(taskOf), longer.targets.map(taskOf)); // keeps its seconds
+  const back = withTask(withTask(longer, [tower.key], { kind: "photo" }), [point.key], { kind: "look" });
+  assert.deepEqual(requestOf(back).targets, requestOf(selection).targets);
+});
+
+test("a stored task that is the usual one asks for the same plan as none", () => {
+  const stored = storedTarget({
+    asset: 7,
+    label: "T 7",
+    detail: "",
+    kind: "tower",
+    position: [10, 50],
+    is_point: false,
+    stretch: null,
+    task: { kind: "photo", hold_s: 10 },
+  });
+  assert.ok(isUsualTask(stored));
+  assert.deepEqual(requestOf({ ...EMPTY, targets: [stored] }).targets, [{ asset: 7 }]);
+});
+
+test("a stretch is another target than its line and says how long it is", () => {
+  const stretch = [
+    [10, 50],
+    [10.1, 50],
+  ];
+  const target = targetOf({
+    id: 9,
+    kind: "line",
+    properties: { label: "North", length_m: 7_150 },
+    centre: [10.05, 50],
+    stretch,
+  });
+  assert.notEqual(target.key, line.key);
+  assert.equal(target.key, keyOf({ asset: 9, stretch }));
+  assert.equal(target.detail, "tower to tower, 7.2\u00a0km");
+  assert.deepEqual(requestOf(withTargets(EMPTY, [target])).targets, [{ asset: 9, stretch }]);
+});
+
+test("a short row of the API is a target like any other", () => {
+  assert.deepEqual(
+    targetOfRow({ id: 7, kind: "tower", label: "T 7", detail: "", length_m: null, centre: [10, 50] }),
+    tower,
+  );
+});
+
+test("the part of a line between two places goes over the vertices between them, in the line's direction", () => {
+  const geometry = {
+    type: "LineString",
+    coordinates: [
+      [0, 0],
+      [1, 0],
+      [2, 0],
+      [3, 0],
+    ],
+  };
+  const part = {
+    type: "LineString",
+    coordinates: [
+      [0.5, 0],
+      [1, 0],
+      [2, 0],
+      [2.5, 0],
+    ],
+  };
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [0.5, 0],
+      [2.5, 0],
+    ]),
+    part,
+  );
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [2.5, 0],
+      [0.5, 0],
+    ]),
+    part,
+  );
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [1.2, 0],
+      [1.8, 0],
+    ]).coordinates,
+    [
+      [1.2, 0],
+      [1.8, 0],
+    ],
+  );
+});
+
+test("a lasso that goes round nothing is a click", () => {
+  assert.equal(
+    isWide([
+      [0, 0],
+      [100, 0],
+    ]),
+    false,
+  );
+  assert.equal(
+    isWide([
+      [0, 0],
+      [5, 0],
+      [5, 5],
+    ]),
+    false,
+  );
+  assert.equal(
+    isWide([
+      [0, 0],
+      [50, 0],
+      [50, 50],
+    ]),
+    true,
+  );
+});
+
+test("undo goes back to the beginning, however many steps there were", () => {
+  const store = createStore({ selection: { step: 0 }, canUndo: false, canRedo: false });
+  const history = createHistory(store, "selection");
+  for (let step = 1; step <= 1_000; step += 1) history.changeTo({ step });
+  while (history.undo());
+  assert.deepEqual(store.state, { selection: { step: 0 }, canUndo: false, canRedo: true });
+  while (history.redo());
+  assert.equal(store.state.selection.step, 1_000);
+});
