@@ -25,7 +25,7 @@ class Queue:
         self.name = f"slow-{uuid4().hex[:8]}"
         self.folder = folder
         self.redis = Redis.from_url(settings.REDIS_URL)
-        self.app = Celery("sender", broker=settings.CELERY_BROKER_URL)
+        self.app = Celery("sender", broker=settings.CELERY_BROKER_URL, set_as_current=False)
 
     def send(self, seconds: float, task: str = "take") -> None:
         self.app.send_task(f"tests.config.slow_tasks.{task}", args=[seconds], queue=self.name)

@@ -28,7 +28,7 @@ def test_a_redis_is_named_to_celery_in_its_own_words(redis_url: str, celerys: st
 
 
 def test_celery_and_the_cache_use_the_same_database_of_the_same_redis() -> None:
-    with Celery("test", broker=settings.CELERY_BROKER_URL).connection_for_write() as connection:
+    with Celery("test", broker=settings.CELERY_BROKER_URL, set_as_current=False).connection_for_write() as connection:
         celerys = connection.default_channel.client.connection_pool.connection_kwargs
         caches = redis.from_url(settings.REDIS_URL).connection_pool.connection_kwargs
         for name in ("path", "host", "port", "password"):
