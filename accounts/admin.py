@@ -12,7 +12,7 @@ from django.utils import timezone
 from django.utils.safestring import SafeString
 
 from accounts.invitations import InvitationState, in_state, revoke_invitation
-from accounts.users import NoAdministratorLeft, OperatorsAlone, change_people, delete_person, save_person
+from accounts.users import NoAdministratorLeft, OperatorsAlone, change_users, delete_user, save_user
 from workspace.admin_pages.history import HistoryAdmin, as_table, what_changed
 from workspace.admin_pages.scope import OrganisationScopedAdmin
 from workspace.api.permissions import may_change
@@ -42,15 +42,15 @@ class OrganisationAdmin(OrganisationScopedAdmin):
     organisation_path = "pk"
     is_for_operators_alone = True
 
-    list_display = ["name", "people", "created_at"]
+    list_display = ["name", "user_count", "created_at"]
     search_fields = ["name"]
 
     def get_queryset(self, request: HttpRequest) -> QuerySet[Organisation]:
-        return super().get_queryset(request).annotate(people=Count("users"))
+        return super().get_queryset(request).annotate(user_count=Count("users"))
 
-    @admin.display(ordering="people")
-    def people(self, organisation: Any) -> int:
-        return int(organisation.people)
+    @admin.display(ordering="user_count")
+    def user_count(self, organisation: Any) -> int:
+        return int(organisation.user_count)
 
     def has_delete_permission(self, request: HttpRequest, obj: Any = None) -> bool:
         if obj is None:
@@ -106,15 +106,15 @@ class UserAdmin(HistoryAdmin):
         return self._unless_last(request, super().changelist_view, *args, **options)
 
     def save_model(self, request: HttpRequest, obj: User, form: Any, change: bool) -> None:
-        save_person(user=obj, actor=user_of(request))
+        save_user(user=obj, actor=user_of(request))
 
     def delete_model(self, request: HttpRequest, obj: User) -> None:
-        delete_person(user=obj, actor=user_of(request))
+        delete_user(user=obj, actor=user_of(request))
 
     def delete_queryset(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
         with transaction.atomic():
             for user in queryset:
-                delete_person(user=user, actor=user_of(request))
+                delete_user(user=user, actor=user_of(request))
 
     @admin.action(description="Let the chosen sign in", permissions=["change"])
     def let_in(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
@@ -141,7 +141,7 @@ class UserAdmin(HistoryAdmin):
         self._change(request, queryset, "made administrators", role=Role.ADMINISTRATOR)
 
     def _change(self, request: HttpRequest, queryset: QuerySet[User], words: str, **change: Any) -> None:
-        changed = change_people(users=queryset, actor=user_of(request), **change)
+        changed = change_users(users=queryset, actor=user_of(request), **change)
         self.message_user(request, f"{changed} {words}.")
 
     def _unless_last(self, request: HttpRequest, view: Any, *args: Any, **options: Any) -> HttpResponse:

@@ -14,7 +14,7 @@ from django.template.loader import render_to_string
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from accounts.users import save_person
+from accounts.users import save_user
 from workspace.api_tokens import hash_token
 from workspace.audit import record_change
 from workspace.models import Invitation, Organisation, Role, User
@@ -116,7 +116,7 @@ def accept_invitation(*, token: str, user: User) -> User:
         if state_of(invitation) != InvitationState.OPEN:
             raise InvitationGone
         user.role, user.organisation_id = invitation.role, invitation.organisation_id
-        save_person(user=user, actor=user)
+        save_user(user=user, actor=user)
         invitation.accepted_at, invitation.accepted_by = timezone.now(), user
         invitation.save(update_fields=["accepted_at", "accepted_by"])
         _record(invitation, user, "accepted")

@@ -14,7 +14,7 @@ from django.utils import timezone
 
 from accounts.services import end_sessions
 from workspace.api_tokens import hash_token
-from workspace.audit import person_facts, record_change
+from workspace.audit import record_change, user_facts
 from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import Organisation, RecoveryCode, SecondFactor, User
 
@@ -208,7 +208,7 @@ def encrypt_with_current_key() -> int:
 
 
 def record(user: User, actor: User | None, action: str) -> None:
-    facts = person_facts(user)
+    facts = user_facts(user)
     record_change(
         organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
     )

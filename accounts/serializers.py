@@ -9,7 +9,7 @@ from django.utils.translation import gettext as _
 
 from accounts.invitations import MAX_DAYS, state_of
 from accounts.invitations import InvitationState as State
-from accounts.services import name_of, revision_of_person
+from accounts.services import name_of, revision_of_user
 from workspace.api import strict_serializers as serializers
 from workspace.jobs.serializers import Declared
 from workspace.models import (
@@ -157,7 +157,7 @@ class SecondFactorRuleSerializer(serializers.Serializer):
     is_of_the_installation = serializers.BooleanField(read_only=True, help_text="required whatever the organisation says")
 
 
-class PersonSerializer(serializers.ModelSerializer):
+class UserSerializer(serializers.ModelSerializer):
     """An account as administrators see it."""
 
     revision = serializers.SerializerMethodField(help_text="for If-Match")
@@ -173,10 +173,10 @@ class PersonSerializer(serializers.ModelSerializer):
         read_only_fields = fields
 
     def get_revision(self, user: User) -> int:
-        return revision_of_person(user)
+        return revision_of_user(user)
 
 
-class PersonChangeSerializer(serializers.Serializer):
+class UserChangeSerializer(serializers.Serializer):
     """Only what is to change."""
 
     first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
@@ -186,8 +186,8 @@ class PersonChangeSerializer(serializers.Serializer):
     is_active = serializers.BooleanField(required=False, help_text="whether they may sign in")
 
 
-class PersonPageSerializer(serializers.Serializer):
-    results = PersonSerializer(many=True)
+class UserPageSerializer(serializers.Serializer):
+    results = UserSerializer(many=True)
     next = serializers.CharField(allow_null=True, help_text="address of the next page")
 
 
@@ -210,7 +210,7 @@ class ServiceAccountSerializer(serializers.ModelSerializer):
         return name_of(account)
 
     def get_revision(self, account: User) -> int:
-        return revision_of_person(account)
+        return revision_of_user(account)
 
 
 class ServiceAccountInputSerializer(serializers.Serializer):

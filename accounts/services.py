@@ -10,9 +10,9 @@ from django.db import IntegrityError, transaction
 from django.db.models import Count, F, Max, Q, QuerySet
 from django.utils import timezone
 
-from accounts.users import save_person
+from accounts.users import save_user
 from workspace.api_tokens import create_api_token
-from workspace.audit import person_facts, record_change
+from workspace.audit import record_change, user_facts
 from workspace.models import ApiToken, Role, User
 
 MAX_TOKENS = 50  # of one person, valid at the same time
@@ -86,25 +86,25 @@ def revoke_token(*, token: ApiToken, actor: User) -> ApiToken:
     return token
 
 
-def revision_of_person(user: User) -> int:
+def revision_of_user(user: User) -> int:
     """A short digest of what administrators change: it differs when somebody else was faster."""
     facts = json.dumps([getattr(user, name) for name in CHANGEABLE_BY_ADMINISTRATORS])
     return zlib.crc32(facts.encode()) % 1_000_000_000
 
 
-def change_person(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
+def change_user(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
     """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         user = User.objects.select_for_update().get(pk=user_id, organisation_id=actor.organisation_id)
-        if seen_revision is not None and seen_revision != revision_of_person(user):
+        if seen_revision is not None and seen_revision != revision_of_user(user):
             raise ChangedMeanwhile(user)
         for name, value in values.items():
             setattr(user, name, value)
-        return save_person(user=user, actor=actor)
+        return save_user(user=user, actor=actor)
 
 
 def _record(user: User, actor: User | None, action: str) -> None:
-    facts = person_facts(user)
+    facts = user_facts(user)
     record_change(
         organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts
     )
@@ -146,7 +146,7 @@ def make_service_account(*, actor: User, name: str, role: Role) -> User:
     account.set_unusable_password()
     try:
         with transaction.atomic():
-            return save_person(user=account, actor=actor)
+            return save_user(user=account, actor=actor)
     except IntegrityError as error:  # two at the same moment
         raise AccountNameTaken from error
 

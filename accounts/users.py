@@ -8,7 +8,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from workspace.api.permissions import may_change
-from workspace.audit import person_facts, record_change
+from workspace.audit import record_change, user_facts
 from workspace.leases import lock_until_end
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
@@ -35,7 +35,7 @@ class OperatorsAlone(PermissionError):
         super().__init__(_("Only installation operators change the account of one."))
 
 
-def save_person(*, user: User, actor: User) -> User:
+def save_user(*, user: User, actor: User) -> User:
     """Store a new or changed account. Raises NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         before = User.objects.filter(pk=user.pk).first()
@@ -45,45 +45,45 @@ def save_person(*, user: User, actor: User) -> User:
         _refuse_without_administrator(before)
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
             _withdraw_invitations(user, actor)
-        _record_person(actor, user.pk, person_facts(before) if before else None, person_facts(user))
+        _record_user(actor, user.pk, user_facts(before) if before else None, user_facts(user))
     return user
 
 
-def change_people(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
-    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises as save_person."""
+def change_users(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
+    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises as save_user."""
     changed = 0
     with transaction.atomic():
         for user in users:
             wanted = (user.role if role is None else role, user.is_active if is_active is None else is_active)
             if wanted != (user.role, user.is_active):
                 user.role, user.is_active = wanted
-                save_person(user=user, actor=actor)
+                save_user(user=user, actor=actor)
                 changed += 1
     return changed
 
 
-def delete_person(*, user: User, actor: User) -> None:
+def delete_user(*, user: User, actor: User) -> None:
     """What they did stays in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
     if not may_change(actor, User.objects.get(pk=user.pk)):
         raise OperatorsAlone
     with transaction.atomic():
-        before, key = person_facts(user), user.pk
+        before, key = user_facts(user), user.pk
         held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id, is_service=user.is_service)
         _withdraw_invitations(user, actor)
         user.delete()
         _refuse_without_administrator(held)
-        _record_person(actor if actor.pk != key else None, key, before, None)
+        _record_user(actor if actor.pk != key else None, key, before, None)
 
 
 def set_installation_operator(*, user: User, is_operator: bool) -> None:
     """On the machine, by whoever has it; no page and no address of the API gives this."""
     with transaction.atomic():
-        before = person_facts(user)
+        before = user_facts(user)
         user.is_installation_operator = is_operator
         user.save(update_fields=["is_installation_operator"])
         record_change(
             organisation=user.organisation, actor=None, action="changed", subject_type="user", subject_id=user.pk,
-            before=before, after=person_facts(user),
+            before=before, after=user_facts(user),
         )  # fmt: skip
 
 
@@ -116,7 +116,7 @@ def _withdraw_invitations(user: User, actor: User) -> None:
         )  # fmt: skip
 
 
-def _record_person(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
+def _record_user(actor: User | None, key: int, before: dict[str, Any] | None, after: dict[str, Any] | None) -> None:
     if before == after:
         return
     organisation_id = actor.organisation_id if actor else DEFAULT_ORGANISATION_ID

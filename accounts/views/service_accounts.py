@@ -40,7 +40,7 @@ def _account(request: SignedInRequest, account_id: int) -> User:
 
 def _answer(request: SignedInRequest, account_id: int, *, status: int = 200) -> Response:
     account = _account(request, account_id)
-    headers = etag_of(services.revision_of_person(account))
+    headers = etag_of(services.revision_of_user(account))
     if status == 201:
         headers["Location"] = reverse("api-service-account", args=[account.pk])
     return Response(ServiceAccountSerializer(account).data, status=status, headers=headers)
@@ -98,7 +98,7 @@ class ServiceAccountDetail(APIView):
         body.is_valid(raise_exception=True)
         account = _account(request, account_id)
         try:
-            services.change_person(user_id=account.pk, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
+            services.change_user(user_id=account.pk, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
         except services.ChangedMeanwhile as error:
             current = ServiceAccountSerializer(_account(request, account_id)).data
             words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=services.name_of(account))

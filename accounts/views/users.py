@@ -20,12 +20,12 @@ from accounts.serializers import (
     InvitationPageSerializer,
     InvitationSerializer,
     NewInvitationSerializer,
-    PersonChangeSerializer,
-    PersonPageSerializer,
-    PersonSerializer,
     SecondFactorRuleSerializer,
     SignInPageSerializer,
     SignInSerializer,
+    UserChangeSerializer,
+    UserPageSerializer,
+    UserSerializer,
     with_secret,
 )
 from accounts.users import NoAdministratorLeft, OperatorsAlone
@@ -49,7 +49,7 @@ def _users(request: SignedInRequest) -> QuerySet[User]:
     )
 
 
-def _person(request: SignedInRequest, user_id: int) -> User:
+def _user_of_id(request: SignedInRequest, user_id: int) -> User:
     try:
         return _users(request).get(pk=user_id)
     except User.DoesNotExist as error:
@@ -68,58 +68,58 @@ def _named(text: str, before: str = "") -> Q:
     return wanted
 
 
-class PersonList(APIView):
+class UserList(APIView):
     permission_classes = [AdministratorsAlone]
 
     @extend_schema(
-        operation_id="list_people",
-        summary="People of one's organisation by user name",
+        operation_id="list_users",
+        summary="Users of one's organisation by user name",
         parameters=[
             OpenApiParameter("text", str, description="words of the user name, the name or the e-mail address"),
             OpenApiParameter("role", str, enum=Role.values),
             OpenApiParameter("access", str, enum=["in", "out", "here"], description="may sign in; is kept out; was here in the last 5 min"),
             *PAGE_PARAMETERS,
         ],
-        responses=PersonPageSerializer,
+        responses=UserPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        people = _users(request).filter(_named(request.query_params.get("text", "")[:200]))
+        users = _users(request).filter(_named(request.query_params.get("text", "")[:200]))
         if role := asked_choice(request, "role", Role.values):
-            people = people.filter(role=role)
+            users = users.filter(role=role)
         if access := asked_choice(request, "access", ["in", "out", "here"]):
             wanted: dict[str, dict[str, Any]] = {
                 "in": {"is_active": True},
                 "out": {"is_active": False},
                 "here": {"is_active": True, "last_seen_at__gt": timezone.now() - HERE_WITHIN},
             }
-            people = people.filter(**wanted[access])
-        page = page_of(request, people, order=("username",))
-        return Response({"results": PersonSerializer(page.rows, many=True).data, "next": page.next})
+            users = users.filter(**wanted[access])
+        page = page_of(request, users, order=("username",))
+        return Response({"results": UserSerializer(page.rows, many=True).data, "next": page.next})
 
 
-class PersonDetail(APIView):
+class UserDetail(APIView):
     permission_classes = [AdministratorsInTheBrowser]
 
-    @extend_schema(operation_id="get_person", summary="One person", responses=PersonSerializer)
+    @extend_schema(operation_id="get_user", summary="One user", responses=UserSerializer)
     def get(self, request: SignedInRequest, user_id: int) -> Response:
         return self._answer(request, user_id)
 
     @extend_schema(
-        operation_id="change_person",
+        operation_id="change_user",
         summary="Change somebody's name, address, role or access",
         description="One administrator who can sign in is always left.",
         parameters=[IF_MATCH_REQUIRED],
-        request=PersonChangeSerializer,
-        responses={200: PersonSerializer, 409: OpenApiResponse(description="No administrator would be left."), **PRECONDITION_ANSWERS},
+        request=UserChangeSerializer,
+        responses={200: UserSerializer, 409: OpenApiResponse(description="No administrator would be left."), **PRECONDITION_ANSWERS},
     )
     def patch(self, request: SignedInRequest, user_id: int) -> Response:
-        body = PersonChangeSerializer(data=request.data)
+        body = UserChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        _person(request, user_id)
+        _user_of_id(request, user_id)
         try:
-            services.change_person(user_id=user_id, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
+            services.change_user(user_id=user_id, actor=request.user, seen_revision=expected_revision(request), **body.validated_data)
         except services.ChangedMeanwhile as error:
-            current = PersonSerializer(_person(request, user_id)).data
+            current = UserSerializer(_user_of_id(request, user_id)).data
             words = _("Somebody else has changed {name} in the meantime. Look again.").format(name=error.person.username)
             raise ApiProblem(412, "changed", words, details={"current": current}) from error
         except NoAdministratorLeft as error:
@@ -130,49 +130,49 @@ class PersonDetail(APIView):
 
     @staticmethod
     def _answer(request: SignedInRequest, user_id: int) -> Response:
-        person = _person(request, user_id)
-        return Response(PersonSerializer(person).data, headers=etag_of(services.revision_of_person(person)))
+        person = _user_of_id(request, user_id)
+        return Response(UserSerializer(person).data, headers=etag_of(services.revision_of_user(person)))
 
 
-class PersonSessions(APIView):
+class UserSessions(APIView):
     permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
-        operation_id="sign_person_out",
+        operation_id="sign_user_out",
         summary="End all sessions of somebody",
         description="Their tokens stay. Not with a token.",
         request=None,
         responses={204: OpenApiResponse(description="Ended.")},
     )
     def post(self, request: SignedInRequest, user_id: int) -> Response:
-        services.end_sessions(user=_person(request, user_id), actor=request.user)
+        services.end_sessions(user=_user_of_id(request, user_id), actor=request.user)
         return Response(status=204)
 
 
-class PersonTokens(APIView):
+class UserTokens(APIView):
     permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
-        operation_id="revoke_tokens_of_person",
+        operation_id="revoke_tokens_of_user",
         summary="Revoke all tokens of somebody",
         responses={204: OpenApiResponse(description="Revoked.")},
     )
     def delete(self, request: SignedInRequest, user_id: int) -> Response:
-        services.revoke_tokens(user=_person(request, user_id), actor=request.user)
+        services.revoke_tokens(user=_user_of_id(request, user_id), actor=request.user)
         return Response(status=204)
 
 
-class PersonSecondFactor(APIView):
+class UserSecondFactor(APIView):
     permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
-        operation_id="reset_second_factor_of_person",
+        operation_id="reset_second_factor_of_user",
         summary="Take the second factor away from somebody who has lost it",
         description="Their sessions end. Where the organisation asks for one, their next sign-in sets another one up. Not with a token.",
         responses={204: OpenApiResponse(description="There is none any more.")},
     )
     def delete(self, request: SignedInRequest, user_id: int) -> Response:
-        person = _person(request, user_id)
+        person = _user_of_id(request, user_id)
         if person.pk == request.user.pk:
             raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
         if not may_change(request.user, person):

@@ -45,7 +45,7 @@ DAY: list[tuple[type[User], tuple[str, int], dict[str, int], str]] = [
      "a program that plans its customers' wishes as they come, and follows what flies where it has no websocket"),
     (KeepsZones, (FIXED, 1), {"zone_comes_and_goes": 20},
      "short-lived zones of a busy day; each changes the ground for everybody"),
-    (Administers, (FIXED, 1), {"edit_people": 30, "edit_uavs": 30},
+    (Administers, (FIXED, 1), {"edit_users": 30, "edit_uavs": 30},
      "somebody new, somebody who left, a battery that was replaced"),
     (PlansMissions, (WEIGHT, 5),
      {"plan_small": 60, "save_and_edit": 30, "plan_large": 6, "open_mission": 40, "list_missions": 20, "tiles": 80},

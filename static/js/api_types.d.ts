@@ -3542,15 +3542,6 @@ export interface components {
                 [key: string]: unknown;
             };
         };
-        /** @description Only what is to change. */
-        PatchedPersonChangeRequest: {
-            first_name?: string;
-            last_name?: string;
-            email?: string;
-            role?: components["schemas"]["Role"];
-            /** @description whether they may sign in */
-            is_active?: boolean;
-        };
         /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept. */
         PatchedSelectionInputRequest: {
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -3727,6 +3718,15 @@ export interface components {
             sensors?: string[];
         };
         PatchedUavWriteRequest: components["schemas"]["PatchedUavFlatRequest"] | components["schemas"]["PatchedUavFeatureRequest"];
+        /** @description Only what is to change. */
+        PatchedUserChangeRequest: {
+            first_name?: string;
+            last_name?: string;
+            email?: string;
+            role?: components["schemas"]["Role"];
+            /** @description whether they may sign in */
+            is_active?: boolean;
+        };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedVehicleChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
@@ -3748,43 +3748,6 @@ export interface components {
             upper_limit?: components["schemas"]["LimitInputRequest"] | null;
             /** @description periods as ED-318's limitedApplicability; null = always */
             schedule?: unknown;
-        };
-        /** @description An account as administrators see it. */
-        Person: {
-            readonly id: number;
-            /** @description Required. 150 characters or fewer. Letters, digits and @/./+/-/_ only. */
-            readonly username: string;
-            readonly first_name: string;
-            readonly last_name: string;
-            /**
-             * Email address
-             * Format: email
-             */
-            readonly email: string;
-            readonly role: components["schemas"]["Role"];
-            /**
-             * Active
-             * @description Designates whether this user should be treated as active. Unselect this instead of deleting accounts.
-             */
-            readonly is_active: boolean;
-            /** Format: date-time */
-            readonly date_joined: string;
-            /** Format: date-time */
-            readonly last_login: string | null;
-            /**
-             * Format: date-time
-             * @description to the minute
-             */
-            readonly last_seen_at: string | null;
-            readonly valid_tokens: number;
-            readonly has_second_factor: boolean;
-            /** @description for If-Match */
-            readonly revision: number;
-        };
-        PersonPage: {
-            results: components["schemas"]["Person"][];
-            /** @description address of the next page */
-            next: string | null;
         };
         /** @description What a list of targets shows of an asset; its shape: GET /assets/{id}. */
         PickedAsset: {
@@ -7308,6 +7271,43 @@ export interface components {
             file_name: string;
             size_bytes: number;
         };
+        /** @description An account as administrators see it. */
+        User: {
+            readonly id: number;
+            /** @description Required. 150 characters or fewer. Letters, digits and @/./+/-/_ only. */
+            readonly username: string;
+            readonly first_name: string;
+            readonly last_name: string;
+            /**
+             * Email address
+             * Format: email
+             */
+            readonly email: string;
+            readonly role: components["schemas"]["Role"];
+            /**
+             * Active
+             * @description Designates whether this user should be treated as active. Unselect this instead of deleting accounts.
+             */
+            readonly is_active: boolean;
+            /** Format: date-time */
+            readonly date_joined: string;
+            /** Format: date-time */
+            readonly last_login: string | null;
+            /**
+             * Format: date-time
+             * @description to the minute
+             */
+            readonly last_seen_at: string | null;
+            readonly valid_tokens: number;
+            readonly has_second_factor: boolean;
+            /** @description for If-Match */
+            readonly revision: number;
+        };
+        UserPage: {
+            results: components["schemas"]["User"][];
+            /** @description address of the next page */
+            next: string | null;
+        };
         VehicleReport: {
             /** Format: date-time */
             at: string;
@@ -8092,7 +8092,6 @@ export type PatchedAssetInputRequest = components['schemas']['PatchedAssetInputR
 export type PatchedBaseRequest = components['schemas']['PatchedBaseRequest'];
 export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPatchRequest'];
 export type PatchedParametersRequest = components['schemas']['PatchedParametersRequest'];
-export type PatchedPersonChangeRequest = components['schemas']['PatchedPersonChangeRequest'];
 export type PatchedSelectionInputRequest = components['schemas']['PatchedSelectionInputRequest'];
 export type PatchedServiceAccountChangeRequest = components['schemas']['PatchedServiceAccountChangeRequest'];
 export type PatchedSimulationChangeRequest = components['schemas']['PatchedSimulationChangeRequest'];
@@ -8101,10 +8100,9 @@ export type PatchedUavFeatureRequest = components['schemas']['PatchedUavFeatureR
 export type PatchedUavFlatRequest = components['schemas']['PatchedUavFlatRequest'];
 export type PatchedUavTypeRequest = components['schemas']['PatchedUavTypeRequest'];
 export type PatchedUavWriteRequest = components['schemas']['PatchedUavWriteRequest'];
+export type PatchedUserChangeRequest = components['schemas']['PatchedUserChangeRequest'];
 export type PatchedVehicleChangeRequest = components['schemas']['PatchedVehicleChangeRequest'];
 export type PatchedZoneInputRequest = components['schemas']['PatchedZoneInputRequest'];
-export type Person = components['schemas']['Person'];
-export type PersonPage = components['schemas']['PersonPage'];
 export type PickedAsset = components['schemas']['PickedAsset'];
 export type Plan = components['schemas']['Plan'];
 export type PlanInputRequest = components['schemas']['PlanInputRequest'];
@@ -8324,6 +8322,8 @@ export type UnknownVehicleStateEnum = components['schemas']['UnknownVehicleState
 export type Unresolved = components['schemas']['Unresolved'];
 export type Upload = components['schemas']['Upload'];
 export type UploadInputRequest = components['schemas']['UploadInputRequest'];
+export type User = components['schemas']['User'];
+export type UserPage = components['schemas']['UserPage'];
 export type VehicleReport = components['schemas']['VehicleReport'];
 export type VehicleText = components['schemas']['VehicleText'];
 export type VehicleTextPage = components['schemas']['VehicleTextPage'];

@@ -11,7 +11,7 @@ from django.urls import reverse
 from django.utils import timezone
 
 import config.urls  # noqa: F401 - the models are registered when the addresses are read
-from accounts.users import OperatorsAlone, change_people, delete_person
+from accounts.users import OperatorsAlone, change_users, delete_user
 from missions.models import Approval, InspectionTarget, MissionUav, Route, UavType, Waypoint, WaypointKind
 from telemetry.models import UnknownVehicle
 from tests.accounts.test_invitations import FORM
@@ -168,15 +168,15 @@ def test_nobody_else_takes_an_installation_operators_account_over() -> None:
     client = client_of(administrator)
     assert client.post(reverse("admin:workspace_user_change", args=[operator.pk]), {"email": "a@example.org"}).status_code == 403
     assert client.post(reverse("admin:workspace_user_delete", args=[operator.pk]), {"post": "yes"}).status_code == 403
-    person = f"/api/v1/people/{operator.pk}"
+    person = f"/api/v1/users/{operator.pk}"
     headers = {"If-Match": client.get(person).headers["ETag"]}
     answer = client.patch(person, {"email": "a@example.org"}, content_type="application/json", headers=headers)
     assert (answer.status_code, answer.json()["error"]["code"]) == (403, "operators_alone")
     assert client.delete(f"{person}/second-factor").status_code == 403
     with pytest.raises(OperatorsAlone):
-        change_people(users=[operator], actor=administrator, role=Role.VIEWER)
+        change_users(users=[operator], actor=administrator, role=Role.VIEWER)
     with pytest.raises(OperatorsAlone):
-        delete_person(user=operator, actor=administrator)
+        delete_user(user=operator, actor=administrator)
     assert User.objects.get(username="root").operates_installation
 
 

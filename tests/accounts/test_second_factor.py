@@ -284,7 +284,7 @@ def test_a_token_does_not_change_the_rule_or_reset_anybody(ida: User) -> None:
     token = create_api_token(user=boss, name="script", expires_at=timezone.now() + timedelta(days=1))
     client = Client(headers={"Authorization": f"Bearer {token}"})
     assert client.put("/api/v1/second-factor-rule", {"required": True}, content_type="application/json").status_code == 403
-    assert client.delete(f"/api/v1/people/{ida.pk}/second-factor").status_code == 403
+    assert client.delete(f"/api/v1/users/{ida.pk}/second-factor").status_code == 403
 
 
 def test_an_administrator_resets_it_of_their_own_people_and_not_of_themselves(ida: User) -> None:
@@ -292,7 +292,7 @@ def test_an_administrator_resets_it_of_their_own_people_and_not_of_themselves(id
     for user in (boss, stranger, ida):
         with_app(user)
     client, hers = client_of(boss), client_of(ida)
-    answers = [client.delete(f"/api/v1/people/{user.pk}/second-factor").status_code for user in (ida, stranger, boss)]
+    answers = [client.delete(f"/api/v1/users/{user.pk}/second-factor").status_code for user in (ida, stranger, boss)]
     assert answers == [204, 404, 409]
     assert set(SecondFactor.objects.values_list("user", flat=True)) == {boss.pk, stranger.pk}
     assert not is_in(hers), "whoever has the telephone is signed out"

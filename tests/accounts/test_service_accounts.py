@@ -12,7 +12,7 @@ from django.test import Client
 from django.utils import timezone
 
 from accounts.services import make_service_account
-from accounts.users import NoAdministratorLeft, delete_person, save_person
+from accounts.users import NoAdministratorLeft, delete_user, save_user
 from tests.accounts.users import a_user, client_of
 from tests.workspace.api.described_answers import openapi_document
 from workspace.api_tokens import create_api_token
@@ -140,7 +140,7 @@ def test_a_token_is_revoked_alone(client: Client) -> None:
 def test_it_stays_when_whoever_made_it_is_gone(client: Client, administrator: User) -> None:
     asks = program(client, made(client))
     other = a_user(Role.ADMINISTRATOR)
-    delete_person(user=administrator, actor=other)
+    delete_user(user=administrator, actor=other)
     assert asks.get("/api/v1/missions").status_code == 200
 
 
@@ -149,7 +149,7 @@ def test_it_is_no_administrator_that_is_left(client: Client, administrator: User
     User.objects.exclude(pk=administrator.pk).filter(is_service=False).delete()
     administrator.is_active = False
     with pytest.raises(NoAdministratorLeft):
-        save_person(user=administrator, actor=administrator)
+        save_user(user=administrator, actor=administrator)
 
 
 def test_a_token_is_made_within_a_quarter_of_an_hour_of_the_password_alone(client: Client, administrator: User) -> None:
@@ -170,7 +170,7 @@ def test_administrators_alone_see_them(client: Client, role: Role) -> None:
     assert send(other, "post", f"{ACCOUNTS}/{account['id']}/tokens", {"name": "mine"}).status_code == 403
 
 
-PEOPLE = ("/api/v1/people", "/api/v1/invitations", "/api/v1/service-accounts", "/api/v1/account", "/api/v1/second-factor-rule",
+PEOPLE = ("/api/v1/users", "/api/v1/invitations", "/api/v1/service-accounts", "/api/v1/account", "/api/v1/second-factor-rule",
           "/api/v1/rehearsal-rule")  # fmt: skip
 
 
@@ -192,8 +192,8 @@ def test_it_changes_no_people_sessions_tokens_and_rules(client: Client) -> None:
 
 def test_people_and_programs_are_apart(client: Client) -> None:
     account = made(client)
-    assert account["username"] not in {row["username"] for row in client.get("/api/v1/people").json()["results"]}
-    assert send(client, "patch", f"/api/v1/people/{account['id']}", {"email": "a@example.org"}).status_code == 404
+    assert account["username"] not in {row["username"] for row in client.get("/api/v1/users").json()["results"]}
+    assert send(client, "patch", f"/api/v1/users/{account['id']}", {"email": "a@example.org"}).status_code == 404
     person = a_user()
     assert client.get(f"{ACCOUNTS}/{person.pk}").status_code == 404
 

@@ -7,7 +7,7 @@ from django.db import connection, transaction
 from django.test import Client
 from django.urls import reverse
 
-from accounts.users import NoAdministratorLeft, change_people, delete_person
+from accounts.users import NoAdministratorLeft, change_users, delete_user
 from tests.accounts.users import a_user, client_of
 from workspace.models import AuditEntry, Organisation, Role, User
 
@@ -90,9 +90,9 @@ def test_the_last_administrator_cannot_be_deleted_alone_or_among_others(client: 
 
 def test_an_administrator_who_is_kept_out_does_not_count(administrator: User) -> None:
     other = a_user(Role.ADMINISTRATOR)
-    change_people(users=[other], actor=administrator, is_active=False)
+    change_users(users=[other], actor=administrator, is_active=False)
     with pytest.raises(NoAdministratorLeft):
-        delete_person(user=administrator, actor=other)
+        delete_user(user=administrator, actor=other)
 
 
 def test_with_another_administrator_the_role_can_be_given_up(client: Client, administrator: User) -> None:
@@ -108,12 +108,12 @@ def test_who_takes_an_administrators_role_holds_others_up_until_it_is_done(admin
     """So that of two who demote each other the second sees what the first did."""
     other = a_user(Role.ADMINISTRATOR)
     with transaction.atomic():
-        change_people(users=[other], actor=administrator, role=Role.VIEWER)
+        change_users(users=[other], actor=administrator, role=Role.VIEWER)
         with connection.cursor() as cursor:
             cursor.execute("SELECT count(*) FROM pg_locks WHERE locktype = 'advisory' AND pid = pg_backend_pid()")
             assert cursor.fetchone()[0] == 1
     with pytest.raises(NoAdministratorLeft):
-        change_people(users=[administrator], actor=other, role=Role.VIEWER)
+        change_users(users=[administrator], actor=other, role=Role.VIEWER)
 
 
 def test_people_are_found_by_mail_and_organisation() -> None:
@@ -138,7 +138,7 @@ def test_an_organisation_that_has_anything_is_not_deleted() -> None:
 
 def test_the_whole_history_shows_what_changed(client: Client, administrator: User) -> None:
     person = a_user(Role.VIEWER)
-    change_people(users=[person], actor=administrator, role=Role.CURATOR)
+    change_users(users=[person], actor=administrator, role=Role.CURATOR)
     entry = AuditEntry.objects.get()
     page = client.get(reverse("admin:workspace_auditentry_change", args=[entry.pk])).content.decode()
     assert "<th scope='row'>role</th><td>viewer</td><td>curator</td>" in page

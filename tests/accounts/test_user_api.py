@@ -43,11 +43,11 @@ def person() -> User:
 
 
 def change(client: Client, person: User, if_match: str = "*", **values: Any) -> HttpResponse:
-    return client.patch(f"/api/v1/people/{person.pk}", values, content_type="application/json", headers={"If-Match": if_match})
+    return client.patch(f"/api/v1/users/{person.pk}", values, content_type="application/json", headers={"If-Match": if_match})
 
 
 def found(client: Client, query: str = "") -> set[str]:
-    return {row["username"] for row in client.get(f"/api/v1/people?{query}").json()["results"]}
+    return {row["username"] for row in client.get(f"/api/v1/users?{query}").json()["results"]}
 
 
 @pytest.mark.parametrize("text", ["opal", "FIELD op", "example.org", "operator-"])
@@ -64,16 +64,16 @@ def test_people_are_found_by_role_and_access(client: Client, administrator: User
     assert found(client, "access=out") == {kept_out.username}
     assert found(client, "access=in") == {administrator.username, person.username}
     assert found(client, "access=here") == {administrator.username}
-    assert client.get("/api/v1/people?role=king").status_code == 400
+    assert client.get("/api/v1/users?role=king").status_code == 400
 
 
 def test_people_of_another_organisation_are_not_there(client: Client, administrator: User) -> None:
     other = a_user(Role.VIEWER, Organisation.objects.create(name="Others"))
     SignInEntry.objects.create(user=other, outcome="wrong")
     assert other.username not in found(client)
-    assert client.get(f"/api/v1/people/{other.pk}").status_code == 404
+    assert client.get(f"/api/v1/users/{other.pk}").status_code == 404
     assert change(client, other, role="administrator").status_code == 404
-    assert client.post(f"/api/v1/people/{other.pk}/sign-out").status_code == 404
+    assert client.post(f"/api/v1/users/{other.pk}/sign-out").status_code == 404
     assert client.get("/api/v1/sign-ins").json()["results"] == []
 
 
@@ -85,19 +85,19 @@ def test_a_change_of_role_is_in_the_history(client: Client, administrator: User,
 
 
 def test_of_two_administrators_nobody_overwrites_what_they_have_not_seen(client: Client, administrator: User, person: User) -> None:
-    seen = client.get(f"/api/v1/people/{person.pk}")["ETag"]
+    seen = client.get(f"/api/v1/users/{person.pk}")["ETag"]
     assert change(client, person, seen, role="curator").status_code == 200
     late = change(client, person, seen, role="viewer")
     assert late.status_code == 412
     assert late.json()["error"]["details"]["current"]["role"] == "curator"
     person.refresh_from_db()
     assert person.role == Role.CURATOR
-    missing = client.patch(f"/api/v1/people/{person.pk}", {"role": "viewer"}, content_type="application/json")
+    missing = client.patch(f"/api/v1/users/{person.pk}", {"role": "viewer"}, content_type="application/json")
     assert missing.status_code == 428
 
 
 def test_a_visit_in_between_is_no_change(client: Client, administrator: User, person: User) -> None:
-    seen = client.get(f"/api/v1/people/{person.pk}")["ETag"]
+    seen = client.get(f"/api/v1/users/{person.pk}")["ETag"]
     client_of(person).get("/account")
     assert change(client, person, seen, last_name="Moss").status_code == 200
 
@@ -124,8 +124,8 @@ def test_whoever_is_kept_out_is_out_at_once_with_session_and_token(client: Clien
 def test_a_token_gives_nobody_a_role(administrator: User, person: User) -> None:
     token = create_api_token(user=administrator, name="api", expires_at=timezone.now() + timedelta(days=1))
     program = Client(headers={"Authorization": f"Bearer {token}", "If-Match": "*"})
-    assert program.get(f"/api/v1/people/{person.pk}").status_code == 200
-    answer = program.patch(f"/api/v1/people/{person.pk}", {"role": "administrator"}, content_type="application/json")
+    assert program.get(f"/api/v1/users/{person.pk}").status_code == 200
+    answer = program.patch(f"/api/v1/users/{person.pk}", {"role": "administrator"}, content_type="application/json")
     assert (answer.status_code, answer.json()["error"]["message"]) == (403, "A token cannot do this. Sign in with a browser.")
     assert program.post("/api/v1/invitations", {"role": "administrator"}, content_type="application/json").status_code == 403
     person.refresh_from_db()
@@ -135,18 +135,18 @@ def test_a_token_gives_nobody_a_role(administrator: User, person: User) -> None:
 def test_an_administrator_ends_somebodys_sessions_and_tokens(client: Client, administrator: User, person: User) -> None:
     create_api_token(user=person, name="api", expires_at=timezone.now() + timedelta(days=1))
     at_work = client_of(person)
-    assert client.get(f"/api/v1/people/{person.pk}").json()["valid_tokens"] == 1
-    assert client.post(f"/api/v1/people/{person.pk}/sign-out").status_code == 204
+    assert client.get(f"/api/v1/users/{person.pk}").json()["valid_tokens"] == 1
+    assert client.post(f"/api/v1/users/{person.pk}/sign-out").status_code == 204
     assert at_work.get("/api/v1/account").status_code == 401
-    assert client.delete(f"/api/v1/people/{person.pk}/tokens").status_code == 204
-    assert client.get(f"/api/v1/people/{person.pk}").json()["valid_tokens"] == 0
+    assert client.delete(f"/api/v1/users/{person.pk}/tokens").status_code == 204
+    assert client.get(f"/api/v1/users/{person.pk}").json()["valid_tokens"] == 0
     assert ApiToken.objects.get().revoked_at is not None
 
 
 def test_people_come_page_by_page(client: Client, administrator: User) -> None:
     for _ in range(4):
         a_user(Role.VIEWER)
-    first = client.get("/api/v1/people?limit=3").json()
+    first = client.get("/api/v1/users?limit=3").json()
     rest = client.get(first["next"]).json()
     names = [row["username"] for row in first["results"] + rest["results"]]
     assert names == sorted(names) and len(names) == 5
@@ -156,7 +156,7 @@ def test_people_come_page_by_page(client: Client, administrator: User) -> None:
 def test_no_answer_holds_a_password_or_its_hash(client: Client, administrator: User, person: User) -> None:
     person.set_password("inspect-the-lines")
     person.save()
-    answers = client.get("/api/v1/people").content + client.get(f"/api/v1/people/{person.pk}").content
+    answers = client.get("/api/v1/users").content + client.get(f"/api/v1/users/{person.pk}").content
     assert person.password.encode() not in answers and b"password" not in answers and b"session_generation" not in answers
 
 

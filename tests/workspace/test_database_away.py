@@ -14,7 +14,7 @@ pytestmark = pytest.mark.django_db(transaction=True)
 
 PAGES = ["/", "/missions/new", "/live", "/uavs", "/assets", "/zones", "/imports", "/account", "/administration", "/admin/"]
 API = ["/api/v1/missions", "/api/v1/uavs", "/api/v1/assets", "/api/v1/zones", "/api/v1/jobs", "/api/v1/alerts", "/api/v1/live",
-       "/api/v1/people"]  # fmt: skip
+       "/api/v1/users"]  # fmt: skip
 
 
 @pytest.fixture

@@ -164,6 +164,6 @@ def test_the_same_rows_are_there_for_their_own() -> None:
     for name, address in {
         "mission_id": "missions/{}", "uav_id": "uavs/{}", "base_id": "bases/{}", "type_id": "uav-types/{}", "command_id": "commands/{}",
         "selection_id": "selections/{}", "alert_id": "alerts/{}", "offer_id": "replan-offers/{}", "job_id": "jobs/{}",
-        "simulation_id": "simulations/{}", "user_id": "people/{}",
+        "simulation_id": "simulations/{}", "user_id": "users/{}",
     }.items():  # fmt: skip
         assert client.get(f"/api/v1/{address.format(rows[name].pk)}").status_code == 200, name

@@ -12,7 +12,7 @@ from django.db.models import Exists, OuterRef
 from django.utils import timezone
 from django.utils.crypto import constant_time_compare
 
-from workspace.audit import person_facts, record_change
+from workspace.audit import record_change, user_facts
 from workspace.models import BrowserSession, User
 
 NOTED_EVERY = timedelta(minutes=1)
@@ -85,7 +85,7 @@ def _lets_in(session: Session, user: User) -> bool:
 
 def end_session(row: BrowserSession, *, actor: User) -> None:
     """At the next request, and within 5 s for its websockets."""
-    facts = person_facts(row.user)
+    facts = user_facts(row.user)
     with transaction.atomic():
         Session.objects.filter(pk=row.session_id).delete()
         record_change(

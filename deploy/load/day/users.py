@@ -208,9 +208,9 @@ class Administers(Person):
     abstract = True
     role = "administrator"
 
-    def edit_people(self) -> None:
+    def edit_users(self) -> None:
         self.ask("GET", "/administration", "page: administration")
-        self.get("people?limit=50", "people: list")
+        self.get("users?limit=50", "users: list")
         self.get("sign-ins?limit=50", "sign-ins: list")
         self.get("history?limit=50", "history: list")
 

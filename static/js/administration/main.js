@@ -1,4 +1,4 @@
-/** Administration: people, invitations, service accounts and the log of sign-ins, each a list with filters; and the organisation's rules. */
+/** Administration: users, invitations, service accounts and the log of sign-ins, each a list with filters; and the organisation's rules. */
 
 import { byId, find } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
@@ -10,13 +10,13 @@ import { mountServiceAccounts } from "./service_accounts.js";
 import { mountSignIns } from "./sign_ins.js";
 import { mountUsers } from "./users.js";
 
-/** @typedef {"people" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
+/** @typedef {"users" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
 
 /** @type {Tab[]} */
-const TABS = ["people", "invitations", "service-accounts", "sign-ins", "rules"];
+const TABS = ["users", "invitations", "service-accounts", "sign-ins", "rules"];
 
 const lists = {
-  people: mountUsers({ notify, settle }),
+  users: mountUsers({ notify, settle }),
   invitations: mountInvitations({ notify, settle, show: () => showTab("invitations") }),
   "service-accounts": mountServiceAccounts({ notify, settle }),
   "sign-ins": mountSignIns({ notify }),
@@ -34,14 +34,14 @@ function showTab(name, { isNew = true } = {}) {
   for (const tab of TABS) byId(`tab-${tab}`).hidden = tab !== name;
   find(document, `input[name=tab][value=${name}]`, HTMLInputElement).checked = true;
   if (isNew && tabInAddress() !== name)
-    history.pushState(null, "", name === "people" ? location.pathname : `?tab=${name}`);
+    history.pushState(null, "", name === "users" ? location.pathname : `?tab=${name}`);
   settle();
   return lists[name].load();
 }
 
 function tabInAddress() {
   const name = new URLSearchParams(location.search).get("tab");
-  return TABS.find((tab) => tab === name) ?? "people";
+  return TABS.find((tab) => tab === name) ?? "users";
 }
 
 startChrome({

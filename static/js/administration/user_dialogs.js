@@ -1,12 +1,12 @@
-/** Dialogs about one person: name and address, and a question before something is taken from them. */
+/** Dialogs about one user: name and address, and a question before something is taken from them. */
 
 import { ApiError } from "../api.js";
 import { h, icon } from "../dom.js";
 import { open } from "../page/keyboard.js";
 import { t } from "../text.js";
 
-/** @import { Person } from "../api_types.d.ts" */
-/** @import { PersonChange } from "./users.js" */
+/** @import { User } from "../api_types.d.ts" */
+/** @import { UserChange } from "./users.js" */
 
 /** @param {{ title: string, words: string, keep: string, go: string, act: () => unknown }} question */
 export function confirmRemoval({ title, words, keep, go, act }) {
@@ -33,23 +33,23 @@ export function confirmRemoval({ title, words, keep, go, act }) {
 /**
  * Edits name and address. What somebody else has changed meanwhile is shown in the row, and then counts as seen.
  *
- * @param {Person} person
+ * @param {User} user
  * @param {object} on
- * @param {(person: Person, values: PersonChange) => Promise<Person>} on.send
- * @param {(person: Person) => void} on.redraw
- * @param {(changed: Person) => void} on.done
+ * @param {(user: User, values: UserChange) => Promise<User>} on.send
+ * @param {(user: User) => void} on.redraw
+ * @param {(changed: User) => void} on.done
  */
-export function editPerson(person, { send, redraw, done }) {
-  let current = person;
-  const first = inputOf("first_name", person.first_name, { maxlength: 150 });
-  const last = inputOf("last_name", person.last_name, { maxlength: 150 });
-  const email = inputOf("email", person.email, { type: "email", maxlength: 254 });
+export function editUser(user, { send, redraw, done }) {
+  let current = user;
+  const first = inputOf("first_name", user.first_name, { maxlength: 150 });
+  const last = inputOf("last_name", user.last_name, { maxlength: 150 });
+  const email = inputOf("email", user.email, { type: "email", maxlength: 254 });
   const fault = h("div", {});
   const close = () => dialog.close();
   const form = h(
     "form",
     { class: "stack", novalidate: true },
-    h("h2", { id: "person-title" }, person.username),
+    h("h2", { id: "user-title" }, user.username),
     h("div", { class: "pair" }, field(t("First name"), first), field(t("Last name"), last)),
     field(t("E-mail address"), email),
     fault,
@@ -61,7 +61,7 @@ export function editPerson(person, { send, redraw, done }) {
     ),
   );
   /** @type {HTMLDialogElement} */
-  const dialog = h("dialog", { "aria-labelledby": "person-title" }, form);
+  const dialog = h("dialog", { "aria-labelledby": "user-title" }, form);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     const values = { first_name: first.value.trim(), last_name: last.value.trim(), email: email.value.trim() };
@@ -88,4 +88,4 @@ const field = (label, input) => h("div", { class: "field" }, h("label", { for: i
 
 /** @param {string} name @param {string} value @param {object} properties */
 const inputOf = (name, value, properties) =>
-  h("input", { class: "input", id: `person-${name}`, value, autocomplete: "off", ...properties });
+  h("input", { class: "input", id: `user-${name}`, value, autocomplete: "off", ...properties });

@@ -55,7 +55,7 @@ BESIDE_THE_SCHEMA = re.compile(
     "|The names are ids of UAVs|There is no (base|type) [0-9]"  # OpenAPI 3.0 bounds no names of an object
 )
 EXAMPLES = 8  # an operation
-LEFT_OUT = re.compile(r"/(account|people|uav-link)\b")  # they end the token that asks, or have one of their own
+LEFT_OUT = re.compile(r"/(account|users|uav-link)\b")  # they end the token that asks, or have one of their own
 BOUNDED = settings(
     max_examples=EXAMPLES,
     derandomize=True,

@@ -58,7 +58,7 @@ def send(client: Client, method: str, path: str, body: Any = None) -> tuple[int,
         ("post", "assets", "curate"),
         ("post", "zones", "curate"),
         ("get", "imports", "curate"),
-        ("get", "people", "administer"),
+        ("get", "users", "administer"),
         ("get", "sign-ins", "administer"),
     ],
 )
@@ -82,16 +82,16 @@ def test_the_short_way_of_small_plans_asks_for_the_scope_too() -> None:
 def test_a_scope_gives_nothing_that_the_role_does_not_have() -> None:
     viewer = a_user(Role.VIEWER)
     assert send(with_token(viewer, "plan", "fly", "administer"), "post", "missions")[0] == 403
-    assert send(with_token(viewer, "administer"), "get", "people")[0] == 403
+    assert send(with_token(viewer, "administer"), "get", "users")[0] == 403
 
 
 @pytest.mark.parametrize(
     ("method", "path", "body"),
     [
-        ("post", "people/{}/sign-out", None),
-        ("delete", "people/{}/tokens", None),
-        ("delete", "people/{}/second-factor", None),
-        ("patch", "people/{}", {"role": "administrator"}),
+        ("post", "users/{}/sign-out", None),
+        ("delete", "users/{}/tokens", None),
+        ("delete", "users/{}/second-factor", None),
+        ("patch", "users/{}", {"role": "administrator"}),
         ("put", "rehearsal-rule", {"requires_green": False}),
         ("put", "second-factor-rule", {"required": False}),
         ("post", "invitations", {"role": "administrator"}),

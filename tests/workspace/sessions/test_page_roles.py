@@ -20,7 +20,7 @@ OPEN_TO_ALL = {
 SENDS_BACK_TO_THE_DOOR = {"sign-out", "sign-in/code"}  # the code is asked of whoever has just typed the password
 FOR_ADMINISTRATORS = {"administration"}
 OF_THE_API = "api/v1/"  # see test_roles.py
-OF_THE_ADMIN = "admin/"  # Django's own; see test_people_admin.py
+OF_THE_ADMIN = "admin/"  # Django's own; see test_user_admin.py
 
 
 def addresses(patterns: list[URLPattern | URLResolver], before: str = "") -> Iterator[str]:

@@ -1,4 +1,4 @@
-/** People, invitations, sign-ins. English → German; [one, other] where there is a plural. */
+/** Users, invitations, sign-ins. English → German; [one, other] where there is a plural. */
 
 export default {
   "1 day": "1 Tag",
@@ -15,7 +15,7 @@ export default {
   "Another administrator changes your role.": "Ihre Rolle ändert ein anderer Administrator.",
   "As before.": "Wie zuvor.",
   "{count} invitation": ["{count} Einladung", "{count} Einladungen"],
-  "{count} person": ["{count} Person", "{count} Personen"],
+  "{count} user": ["{count} Benutzer", "{count} Benutzer"],
   "{count} service account": ["{count} Dienstkonto", "{count} Dienstkonten"],
   "Curator": "Kurator",
   "{days} days": "{days} Tage",
@@ -73,7 +73,7 @@ export default {
   "Nothing was changed.": "Nichts wurde geändert.",
   "Nothing was revoked.": "Nichts wurde widerrufen.",
   "Operator|role": "Operator",
-  "People could not be loaded.": "Personen konnten nicht geladen werden.",
+  "Users could not be loaded.": "Benutzer konnten nicht geladen werden.",
   "plans and flies missions": "plant und fliegt Missionen",
   "Programs that use them stop working at once. This cannot be taken back; new tokens can be made.":
     "Programme, die sie benutzen, hören sofort auf zu arbeiten. Das lässt sich nicht zurücknehmen; neue Tokens können erstellt werden.",

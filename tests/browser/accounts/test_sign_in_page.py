@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from accounts.second_factors import STEP_S, code_of
+from tests.browser.accounts.test_account import account, newcomer
 from tests.browser.conftest import PASSWORD, Visitor
-from tests.browser.people.test_account import account, newcomer
 from tests.browser.pictures import THEMES
 
 pytestmark = pytest.mark.browser

@@ -104,7 +104,7 @@ def test_a_person_is_found_given_a_role_and_the_role_is_taken_back(visitor: Visi
     administration(page)
     page.keyboard.press("/")
     page.keyboard.type("rolf")
-    expect(page.get_by_text("1 person", exact=True)).to_be_visible()
+    expect(page.get_by_text("1 user", exact=True)).to_be_visible()
     row = row_of(page, "rolf")
     expect(row).to_contain_text("Online")
     row.get_by_label("Role of rolf").select_option("Curator")
@@ -114,7 +114,7 @@ def test_a_person_is_found_given_a_role_and_the_role_is_taken_back(visitor: Visi
     expect(page.get_by_text("As before.")).to_be_visible()
     expect(row.get_by_label("Role of rolf")).to_have_value("operator")
 
-    page.get_by_role("searchbox", name="Find people by name or address").fill("bexley")
+    page.get_by_role("searchbox", name="Find users by name or address").fill("bexley")
     expect(page.get_by_text("Nothing matches")).to_be_visible()
     page.get_by_role("button", name="Clear the filters").click()
     expect(row).to_be_visible()
@@ -132,7 +132,7 @@ def test_whoever_is_kept_out_is_out_at_once_and_let_in_again(visitor: Visitor) -
     guest.goto("/account")
     expect(guest.get_by_role("heading", name="Sign in")).to_be_visible()
     page.get_by_label("Access").select_option("Blocked")
-    expect(page.get_by_text("1 person", exact=True)).to_be_visible()
+    expect(page.get_by_text("1 user", exact=True)).to_be_visible()
     page.get_by_role("button", name="More for kept").click()
     page.get_by_role("button", name="Unblock").click()
     expect(page.get_by_text("kept may sign in.")).to_be_visible()
@@ -204,7 +204,7 @@ def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
     page.get_by_role("radio", name="Sign-ins").check()
     expect(page).to_have_url(re.compile(r"\?tab=sign-ins$"))
     table = page.get_by_role("table", name="Sign-ins, newest first")
-    person = page.get_by_role("searchbox", name="Find sign-ins of a person")
+    person = page.get_by_role("searchbox", name="Find sign-ins of a user")
     person.fill("ada")
     expect(table.get_by_role("row").nth(1)).to_contain_text("ada")
     expect(table.get_by_role("row").nth(1)).to_contain_text("127.0.0.1")
@@ -215,7 +215,7 @@ def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
     page.get_by_label("IP address, or its beginning").fill("10.9")
     expect(page.get_by_text("Nothing matches")).to_be_visible()
     page.go_back()
-    expect(page.get_by_role("table", name="People", exact=True)).to_be_visible()
+    expect(page.get_by_role("table", name="Users", exact=True)).to_be_visible()
 
 
 def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
