@@ -9,6 +9,7 @@ from mavlink.addressing import Addressing, Message, Messages
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import Reason
 
 BY_NAME = -1  # in place of a parameter's number
 
@@ -94,7 +95,7 @@ class ParameterSetting:
             self._other, self._is_set = reported, False
             return []
         if self._is_set:
-            self.outcome, self.wake_at_s = CommandOutcome(CommandEnd.APPLIED, words=f"{self._name} is {self._value:g}, read back."), None
+            self.outcome, self.wake_at_s = self._outcome(CommandEnd.APPLIED, "", "parameter_read_back", self._value), None
             return []
         self._is_set, self._tries = True, 0
         return self._asked(now_s)
@@ -106,9 +107,9 @@ class ParameterSetting:
         if self._tries > self._rules.retries:
             self.wake_at_s = None
             if self._other is None:
-                self.outcome = CommandOutcome(CommandEnd.FAILED, "silent", f"The vehicle does not answer about {self._name}.")
+                self.outcome = self._outcome(CommandEnd.FAILED, "silent", "parameter_unanswered")
             else:
-                self.outcome = CommandOutcome(CommandEnd.FAILED, "denied", f"{self._name} stays {self._other:g}.")
+                self.outcome = self._outcome(CommandEnd.FAILED, "denied", "parameter_kept", self._other)
             return []
         self._tries += 1
         self.wake_at_s = now_s + self._rules.timeout_s
@@ -116,3 +117,7 @@ class ParameterSetting:
         if self._is_set:
             return [mavlink.MAVLink_param_request_read_message(system, component, name, BY_NAME)]
         return [mavlink.MAVLink_param_set_message(system, component, name, self._value, mavlink.MAV_PARAM_TYPE_REAL32)]
+
+    def _outcome(self, state: CommandEnd, code: str, reason: str, value: float | None = None) -> CommandOutcome:
+        params = {"parameter": self._name} | ({} if value is None else {"value": value})
+        return CommandOutcome(state, code, (Reason(reason, params),))

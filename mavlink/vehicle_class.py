@@ -8,6 +8,8 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from operation.reasons import Reason
+
 
 class VehicleClass(StrEnum):
     COPTER = "multicopter"
@@ -62,6 +64,7 @@ def type_name(mav_type: int) -> str:
     return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {mav_type}"
 
 
-def refusal_message(vehicle_class: VehicleClass) -> str:
+def refusal_of(vehicle_class: VehicleClass) -> Reason:
     """Why it is given no mission."""
-    return f"The vehicle is a {vehicle_class.value}: Spanwise plans for and commands multicopters only."
+    kind = "other" if vehicle_class is VehicleClass.OTHER else vehicle_class.value
+    return Reason("only_multicopters", {"kind": Reason(f"kind_{kind}")})

@@ -1,0 +1,1 @@
+from missions import reasons as reasons

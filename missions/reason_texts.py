@@ -3,30 +3,15 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from django.utils.translation import get_language, gettext, ngettext
+from django.utils.translation import get_language
 
-from planning.reasons import Reason, Wording, reason_from_json
 from planning.request import InvalidRequest
-from workspace.locale_negotiation import number_text
-
-WORDING = Wording(gettext, ngettext, number_text)  # of the language that is active when a text is made
-
-
-def reason_text(reason: Reason | str) -> str:
-    return reason if isinstance(reason, str) else reason.text(WORDING)
+from workspace.reason_texts import reason_text, why_text
 
 
 def fault_texts(error: InvalidRequest) -> dict[str, str]:
     """What is wrong with a request, by place."""
     return {place: reason_text(fault) for place, fault in error.faults.items()}
-
-
-def why_text(why: Sequence[Mapping[str, Any]], stored: str) -> str:
-    """The text of reasons as a plan's JSON has them; `stored`, in English, where there are none or one is not known any more."""
-    try:
-        return " ".join(reason_text(reason_from_json(reason)) for reason in why) or stored
-    except (KeyError, TypeError, ValueError):
-        return stored
 
 
 def with_texts(items: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -14,9 +14,9 @@ from inspection.network.export import by_length
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray, ZoneTable
+from operation.reasons import Reason
 from planning.connection_points import AccessRules
 from planning.context import Box, PlanningContext
-from planning.reasons import Reason
 from planning.rules import FlightRules
 
 NEAR_SHARE = 0.5  # of what a plan extends over, on each side; paths lead farther round only where nothing nearer is left

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from operation.reasons import Reason
 from planning.energy.charging import ChargingStop
-from planning.reasons import Reason
 from planning.request import EndAction, PlanRequest
 from planning.separation.separation import Separation
 from planning.trajectory.heights import FloatArray

@@ -8,10 +8,10 @@ import numpy as np
 import orjson
 
 from inspection.geodesy import path_length_m
+from operation.reasons import Reason
 from planning.energy.charging import ChargingStop
 from planning.energy.conditions import conditions_to_json
 from planning.plan import ALL_PLANS, Plan, PlannedRoute, PlanWarning, Shortfall
-from planning.reasons import Reason
 from planning.request import lock_to_json, moment_to_json, task_to_json
 from planning.separation.report import separation_json
 from planning.trajectory.heights import FloatArray

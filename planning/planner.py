@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inspection.geodesy import LonLat
+from operation.reasons import Reason
 from planning.airspace import Airspace, ZoneChoice, airspace_on, zone_choice
 from planning.assignment.assignment import quality_of
 from planning.assignment.candidate_plan import CandidatePlan, candidate_plan
@@ -21,7 +22,6 @@ from planning.explain.other_limits import with_other_limits
 from planning.plan import Plan, PlannedRoute, PlanWarning
 from planning.problem import Objective, Priority
 from planning.progress import OnPlanProgress, PlanProgress, no_progress
-from planning.reasons import Reason
 from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
 

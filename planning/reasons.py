@@ -1,199 +1,104 @@
-"""Reasons as a code and what fills its sentence. Sentences are English; `missions/reason_texts.py` translates them."""
+"""The planner's reasons: the sentence of each code."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from operation.reasons import gettext_noop, ngettext_noop, register_sentences
 
-
-def gettext_noop(sentence: str) -> str:
-    """Mark a sentence for translation."""
-    return sentence
-
-
-def ngettext_noop(singular: str, plural: str) -> tuple[str, str]:
-    """Mark a sentence that has a plural for translation."""
-    return singular, plural
-
-
-# By code. A pair is the singular and the plural, chosen by the parameter `count`.
-SENTENCES: dict[str, str | tuple[str, str]] = {
-    # what is wrong with a request
-    "no_battery_to_save": gettext_noop("Without a battery %(uav)s has no energy to save."),
-    "sorties_without_return": gettext_noop("%(uav)s can fly again only where it returns to its start."),
-    "unknown_uav_name": gettext_noop("There is no UAV named %(name)s in this plan."),
-    "ambiguous_uav_name": gettext_noop("%(count)s UAVs of this plan are named %(name)s."),
-    "unknown_target": gettext_noop("There is no target %(target)s."),
-    "target_locked_twice": gettext_noop("Target %(target)s is locked twice."),
-    "target_tied_elsewhere": gettext_noop("Target %(target)s is tied to %(uav)s, another UAV than it is locked to."),
-    "sensor_missing": gettext_noop("Target %(target)s needs the sensor %(sensor)s, which %(uav)s does not have."),
-    "two_runs_at_start": gettext_noop("%(uav)s has another locked run at its start."),
-    "two_runs_at_end": gettext_noop("%(uav)s has another locked run at its end."),
-    "run_is_whole_route": gettext_noop("A locked run is all that %(uav)s flies: it has no place for another one."),
-    "too_many_locked": ngettext_noop(
-        "%(uav)s may do %(most)s target at most, but %(locked)s are locked to it.",
-        "%(uav)s may do %(most)s targets at most, but %(locked)s are locked to it.",
-    ),
-    "wind_too_strong_on_route": gettext_noop("The wind is too strong for %(uav)s on its route."),
-    "target_deleted": gettext_noop("A target of this route is no longer in the data. Plan again."),
-    "target_unreachable": gettext_noop("A target of this route cannot be reached any more. Plan again."),
-    "uav_now_inside_zone": gettext_noop("This UAV stands inside a no-fly zone now. Plan again."),
-    "uav_flies_no_route": gettext_noop("This UAV flies no route."),
-    # why no route visits a target
-    "asset_deleted": gettext_noop("The asset has been deleted since it was picked."),
-    "above_height_limit": gettext_noop("It is %(height_m)s high: a UAV would have to fly at %(needed_m)s, above the limit of %(limit_m)s."),
-    "stands_inside_zone": gettext_noop("It stands inside %(zone)s."),
-    "runs_through_zone": gettext_noop("It runs through %(zone)s."),
-    "lands_through_zone": gettext_noop("Landing there leads through %(zone)s."),
-    "locked_to_grounded": gettext_noop("It is locked to %(uav)s."),
-    "locked_to_unreachable": gettext_noop("It is locked to others of which one cannot be reached: the run is left out as a whole."),
-    "locked_run": gettext_noop("It is locked to others: the run is left out as a whole."),
-    "tied_without_sensor": gettext_noop("It is tied to %(uav)s, which does not have the sensor %(sensor)s."),
-    "tied_to_grounded": gettext_noop("It is tied to %(uav)s."),
-    "tied_to_unable": gettext_noop("It is tied to %(uav)s, which cannot fly to it."),
-    "tied_to_full": gettext_noop("It is tied to %(uav)s, which has as many targets as it may have."),
-    "no_uav_with_sensor": gettext_noop("No UAV of the plan has the sensor %(sensor)s."),
-    "no_flying_uav_with_sensor": gettext_noop("No UAV that can take off has the sensor %(sensor)s."),
-    "no_uav_allowed": gettext_noop("No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to."),
-    "no_uav_takes_off": gettext_noop("There is no UAV that can take off."),
-    "all_uavs_full": gettext_noop("Each UAV that can do it has as many targets as it may have."),
-    "uav_full": gettext_noop("%(uav)s has as many targets as it may have (%(most)s)."),
-    "uavs_full": gettext_noop("%(uavs)s and %(last)s have as many targets as they may have."),
-    "no_path": gettext_noop("No UAV can get there: no path on the network is clear of every zone."),
-    "no_path_for_uavs": gettext_noop("There is no permitted route for %(uavs)s."),
-    "no_path_to_base": gettext_noop("There is no path from it to a base outside every no-fly zone."),
-    "not_on_one_route": gettext_noop("A UAV can get there, but not on one route with its other targets. Add a UAV."),
-    "access_barred": gettext_noop("Every straight leg to it from the network within %(reach_km)s meets a no-fly zone."),
-    "too_far_from_network": gettext_noop("It is more than %(reach_km)s from the network."),
-    "no_access_for_uavs": gettext_noop("No UAV has a clear leg of up to %(reach_km)s to the network from where it stands."),
-    "wind_too_strong": gettext_noop("The wind is too strong on every path to it, or back."),
-    "beyond_range": gettext_noop("It is %(needed_m)s %(there)s, %(missing_m)s more than the range of %(uav)s."),
-    "in_range_alone": gettext_noop("In range on its own, but not together with the other targets."),
-    "beyond_battery": gettext_noop("It takes %(needed_wh)s %(there)s, %(missing_wh)s more than the usable battery of %(uav)s."),
-    "beyond_battery_as_drawn": gettext_noop(
-        "Including terrain and obstacles it needs %(needed_wh)s %(there)s, %(missing_wh)s more than the usable battery of %(uav)s."
-    ),
-    "beyond_battery_with_charging": gettext_noop("Even with charging stops, %(uav)s is up to %(missing_wh)s short for this target."),
-    "beyond_battery_in_every_route": gettext_noop(
-        "Including terrain and obstacles, every route tried with it takes more than the usable battery."
-    ),
-    "battery_too_small": gettext_noop("The battery of %(any_uav)s is too small for it."),
-    "battery_too_small_with_charging": gettext_noop("Even with charging stops, the battery of %(any_uav)s is too small for it."),
-    "in_reach_alone": gettext_noop("Reachable on its own, but not together with the other targets."),
-    "wires_in_the_way": gettext_noop("%(uav)s would have to pass a mast or wires that cannot be flown over."),
-    "wires_after_others": gettext_noop("From its other targets %(uav)s would have to pass a mast or wires that cannot be flown over."),
-    "other_uavs": gettext_noop("Other UAVs: %(limits)s."),
-    # why a UAV stays on the ground, and of what else a plan warns
-    "uav_retired": gettext_noop("%(uav)s is retired and flies no more."),
-    "uav_in_maintenance": gettext_noop("%(uav)s is in maintenance and does not fly."),
-    "uav_inside_zone": gettext_noop("%(uav)s stands inside %(zone)s and cannot take off."),
-    "uav_in_air": gettext_noop(
-        "%(uav)s is reported to be in the air: the plan begins with a take-off from the ground where it was last seen."
-    ),
-    "shortest_paths": gettext_noop(
-        "The routes take shorter paths than preferred, farther from the lines: along the lines, not all targets are in reach."
-    ),
-    "airspeed_not_stated": gettext_noop("%(uav)s states no top airspeed: it is taken to fly no faster than its speed, through the air."),
-    "edits_discarded": gettext_noop(
-        "%(missed)s of %(legs)s manually edited legs of %(uav)s were discarded: their endpoints moved, or they are now obstructed."
-    ),
-    # what stands in sentences
-    "there": gettext_noop("there"),
-    "there_and_back": gettext_noop("there and back"),
-    "there_and_to_base": gettext_noop("there and on to the nearest base"),
-    "zone_margin": gettext_noop("the %(margin_m)s around a no-fly zone"),
-    "obstacle_margin": gettext_noop("the surroundings of a mast or wires that cannot be flown over"),
-    "cannot_take_off": gettext_noop("cannot take off (%(uavs)s)"),
-    "without_sensor": gettext_noop("without the sensor (%(uavs)s)"),
-    "no_permitted_route": gettext_noop("no permitted route (%(uavs)s)"),
-    "wind_too_strong_for": gettext_noop("wind too strong (%(uavs)s)"),
-    "range_too_short": gettext_noop("range too short (%(uavs)s)"),
-    "battery_too_small_of": gettext_noop("battery too small (%(uavs)s)"),
-    "wires_for": gettext_noop("mast or wires in the way (%(uavs)s)"),
-}
-MINUTES = gettext_noop("%(sentence)s: %(minutes)s min of flight.")
-OR = gettext_noop("or")
-MAX_NAMED = 3  # UAVs that a reason names; of more it tells how many
-
-
-@dataclass(frozen=True)
-class Wording:
-    """How texts are written in one language: gettext, ngettext, and a number with so many decimals."""
-
-    gettext: Callable[[str], str]
-    ngettext: Callable[[str, str, int], str]
-    number: Callable[[float, int], str]
-
-
-ENGLISH = Wording(lambda text: text, lambda one, many, count: one if count == 1 else many, lambda value, decimals: f"{value:,.{decimals}f}")
-
-
-@dataclass(frozen=True)
-class Reason:
-    """code is a key of SENTENCES; params fill its sentence.
-
-    A param is a text, a number, a Reason, or a sequence of texts or Reasons; a number whose name ends in _m, _km or _wh is written with
-    its unit. `minutes` of flight, if given, are told behind the sentence.
-    """
-
-    code: str
-    params: Mapping[str, Any] = field(default_factory=dict)
-
-    def __str__(self) -> str:
-        return self.text(ENGLISH)
-
-    def text(self, wording: Wording) -> str:
-        """The sentence in the language of the wording."""
-        sentence = SENTENCES[self.code]
-        words = wording.gettext(sentence) if isinstance(sentence, str) else wording.ngettext(*sentence, self.params["count"])
-        words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
-        if "minutes" in self.params:
-            minutes = wording.number(self.params["minutes"], 1)
-            words = wording.gettext(MINUTES) % {"sentence": words.removesuffix("."), "minutes": minutes}
-        return words
-
-    def to_json(self) -> dict[str, Any]:
-        return {"code": self.code, "params": {name: _to_json(value) for name, value in self.params.items()}}
-
-
-def reason_from_json(value: Mapping[str, Any]) -> Reason:
-    """The inverse of Reason.to_json. Raises KeyError for a code that is not known."""
-    SENTENCES[value["code"]]
-    return Reason(value["code"], {name: _from_json(param) for name, param in value["params"].items()})
-
-
-def _to_json(value: Any) -> Any:
-    if isinstance(value, Reason):
-        return value.to_json()
-    return [_to_json(one) for one in value] if isinstance(value, Sequence) and not isinstance(value, str) else value
-
-
-def _from_json(value: Any) -> Any:
-    if isinstance(value, dict):
-        return reason_from_json(value)
-    return [_from_json(one) for one in value] if isinstance(value, list) else value
-
-
-def _text(name: str, value: Any, wording: Wording) -> str:
-    if isinstance(value, Reason):
-        return value.text(wording)
-    if isinstance(value, str):
-        return value
-    if isinstance(value, Sequence):
-        return _list_text(name, [_text("", one, wording) for one in value], wording)
-    if name.endswith("_km"):
-        return f"{wording.number(value, 0 if value == round(value) else 1)} km"
-    if name.endswith("_m"):
-        return f"{wording.number(value, 0)} m" if value < 1_000 else f"{wording.number(value / 1_000, 1)} km"
-    if name.endswith("_wh"):
-        return f"{wording.number(value, 1)} Wh"
-    return str(value)
-
-
-def _list_text(name: str, words: Sequence[str], wording: Wording) -> str:
-    """`limits` stand one behind the other, of `any_uav` one is meant, of other names the first few are told."""
-    if name == "limits":
-        return "; ".join(words)
-    if name == "any_uav":
-        return f" {wording.gettext(OR)} ".join(words)
-    more = len(words) - MAX_NAMED
-    return ", ".join(words[:MAX_NAMED]) + (f" +{more}" if more > 0 else "")
+SENTENCES = register_sentences(
+    {
+        # what is wrong with a request
+        "no_battery_to_save": gettext_noop("Without a battery %(uav)s has no energy to save."),
+        "sorties_without_return": gettext_noop("%(uav)s can fly again only where it returns to its start."),
+        "unknown_uav_name": gettext_noop("There is no UAV named %(name)s in this plan."),
+        "ambiguous_uav_name": gettext_noop("%(count)s UAVs of this plan are named %(name)s."),
+        "unknown_target": gettext_noop("There is no target %(target)s."),
+        "target_locked_twice": gettext_noop("Target %(target)s is locked twice."),
+        "target_tied_elsewhere": gettext_noop("Target %(target)s is tied to %(uav)s, another UAV than it is locked to."),
+        "sensor_missing": gettext_noop("Target %(target)s needs the sensor %(sensor)s, which %(uav)s does not have."),
+        "two_runs_at_start": gettext_noop("%(uav)s has another locked run at its start."),
+        "two_runs_at_end": gettext_noop("%(uav)s has another locked run at its end."),
+        "run_is_whole_route": gettext_noop("A locked run is all that %(uav)s flies: it has no place for another one."),
+        "too_many_locked": ngettext_noop(
+            "%(uav)s may do %(most)s target at most, but %(locked)s are locked to it.",
+            "%(uav)s may do %(most)s targets at most, but %(locked)s are locked to it.",
+        ),
+        "wind_too_strong_on_route": gettext_noop("The wind is too strong for %(uav)s on its route."),
+        "target_deleted": gettext_noop("A target of this route is no longer in the data. Plan again."),
+        "target_unreachable": gettext_noop("A target of this route cannot be reached any more. Plan again."),
+        "uav_now_inside_zone": gettext_noop("This UAV stands inside a no-fly zone now. Plan again."),
+        "uav_flies_no_route": gettext_noop("This UAV flies no route."),
+        # why no route visits a target
+        "asset_deleted": gettext_noop("The asset has been deleted since it was picked."),
+        "above_height_limit": gettext_noop(
+            "It is %(height_m)s high: a UAV would have to fly at %(needed_m)s, above the limit of %(limit_m)s."
+        ),
+        "stands_inside_zone": gettext_noop("It stands inside %(zone)s."),
+        "runs_through_zone": gettext_noop("It runs through %(zone)s."),
+        "lands_through_zone": gettext_noop("Landing there leads through %(zone)s."),
+        "locked_to_grounded": gettext_noop("It is locked to %(uav)s."),
+        "locked_to_unreachable": gettext_noop("It is locked to others of which one cannot be reached: the run is left out as a whole."),
+        "locked_run": gettext_noop("It is locked to others: the run is left out as a whole."),
+        "tied_without_sensor": gettext_noop("It is tied to %(uav)s, which does not have the sensor %(sensor)s."),
+        "tied_to_grounded": gettext_noop("It is tied to %(uav)s."),
+        "tied_to_unable": gettext_noop("It is tied to %(uav)s, which cannot fly to it."),
+        "tied_to_full": gettext_noop("It is tied to %(uav)s, which has as many targets as it may have."),
+        "no_uav_with_sensor": gettext_noop("No UAV of the plan has the sensor %(sensor)s."),
+        "no_flying_uav_with_sensor": gettext_noop("No UAV that can take off has the sensor %(sensor)s."),
+        "no_uav_allowed": gettext_noop("No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to."),
+        "no_uav_takes_off": gettext_noop("There is no UAV that can take off."),
+        "all_uavs_full": gettext_noop("Each UAV that can do it has as many targets as it may have."),
+        "uav_full": gettext_noop("%(uav)s has as many targets as it may have (%(most)s)."),
+        "uavs_full": gettext_noop("%(uavs)s and %(last)s have as many targets as they may have."),
+        "no_path": gettext_noop("No UAV can get there: no path on the network is clear of every zone."),
+        "no_path_for_uavs": gettext_noop("There is no permitted route for %(uavs)s."),
+        "no_path_to_base": gettext_noop("There is no path from it to a base outside every no-fly zone."),
+        "not_on_one_route": gettext_noop("A UAV can get there, but not on one route with its other targets. Add a UAV."),
+        "access_barred": gettext_noop("Every straight leg to it from the network within %(reach_km)s meets a no-fly zone."),
+        "too_far_from_network": gettext_noop("It is more than %(reach_km)s from the network."),
+        "no_access_for_uavs": gettext_noop("No UAV has a clear leg of up to %(reach_km)s to the network from where it stands."),
+        "wind_too_strong": gettext_noop("The wind is too strong on every path to it, or back."),
+        "beyond_range": gettext_noop("It is %(needed_m)s %(there)s, %(missing_m)s more than the range of %(uav)s."),
+        "in_range_alone": gettext_noop("In range on its own, but not together with the other targets."),
+        "beyond_battery": gettext_noop("It takes %(needed_wh)s %(there)s, %(missing_wh)s more than the usable battery of %(uav)s."),
+        "beyond_battery_as_drawn": gettext_noop(
+            "Including terrain and obstacles it needs %(needed_wh)s %(there)s, %(missing_wh)s more than the usable battery of %(uav)s."
+        ),
+        "beyond_battery_with_charging": gettext_noop("Even with charging stops, %(uav)s is up to %(missing_wh)s short for this target."),
+        "beyond_battery_in_every_route": gettext_noop(
+            "Including terrain and obstacles, every route tried with it takes more than the usable battery."
+        ),
+        "battery_too_small": gettext_noop("The battery of %(any_uav)s is too small for it."),
+        "battery_too_small_with_charging": gettext_noop("Even with charging stops, the battery of %(any_uav)s is too small for it."),
+        "in_reach_alone": gettext_noop("Reachable on its own, but not together with the other targets."),
+        "wires_in_the_way": gettext_noop("%(uav)s would have to pass a mast or wires that cannot be flown over."),
+        "wires_after_others": gettext_noop("From its other targets %(uav)s would have to pass a mast or wires that cannot be flown over."),
+        "other_uavs": gettext_noop("Other UAVs: %(limits)s."),
+        # why a UAV stays on the ground, and of what else a plan warns
+        "uav_retired": gettext_noop("%(uav)s is retired and flies no more."),
+        "uav_in_maintenance": gettext_noop("%(uav)s is in maintenance and does not fly."),
+        "uav_inside_zone": gettext_noop("%(uav)s stands inside %(zone)s and cannot take off."),
+        "uav_in_air": gettext_noop(
+            "%(uav)s is reported to be in the air: the plan begins with a take-off from the ground where it was last seen."
+        ),
+        "shortest_paths": gettext_noop(
+            "The routes take shorter paths than preferred, farther from the lines: along the lines, not all targets are in reach."
+        ),
+        "airspeed_not_stated": gettext_noop(
+            "%(uav)s states no top airspeed: it is taken to fly no faster than its speed, through the air."
+        ),
+        "edits_discarded": gettext_noop(
+            "%(missed)s of %(legs)s manually edited legs of %(uav)s were discarded: their endpoints moved, or they are now obstructed."
+        ),
+        # what stands in sentences
+        "there": gettext_noop("there"),
+        "there_and_back": gettext_noop("there and back"),
+        "there_and_to_base": gettext_noop("there and on to the nearest base"),
+        "zone_margin": gettext_noop("the %(margin_m)s around a no-fly zone"),
+        "obstacle_margin": gettext_noop("the surroundings of a mast or wires that cannot be flown over"),
+        "cannot_take_off": gettext_noop("cannot take off (%(uavs)s)"),
+        "without_sensor": gettext_noop("without the sensor (%(uavs)s)"),
+        "no_permitted_route": gettext_noop("no permitted route (%(uavs)s)"),
+        "wind_too_strong_for": gettext_noop("wind too strong (%(uavs)s)"),
+        "range_too_short": gettext_noop("range too short (%(uavs)s)"),
+        "battery_too_small_of": gettext_noop("battery too small (%(uavs)s)"),
+        "wires_for": gettext_noop("mast or wires in the way (%(uavs)s)"),
+    }
+)

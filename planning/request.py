@@ -7,11 +7,11 @@ from enum import StrEnum
 from typing import Any
 
 from inspection.geodesy import LonLat
+from operation.reasons import Reason
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import Performance, performance_from_json, performance_to_json
 from planning.problem import End, Objective, Priority, Task, TaskKind
-from planning.reasons import Reason
 
 
 class EndAction(StrEnum):

@@ -27,7 +27,7 @@ LANGUAGES = ("de",)
 LOCALE = ROOT / "locale"
 TEMPLATES = ROOT / "templates"
 SCRIPTS = ROOT / "static" / "js"
-APPS = ("config", "workspace", "accounts", "inspection", "planning", "mavlink", "missions", "telemetry", "simulation")
+APPS = ("operation", "config", "workspace", "accounts", "inspection", "planning", "mavlink", "missions", "telemetry", "simulation")
 
 Text = str | tuple[str, str]  # the second form has a plural
 

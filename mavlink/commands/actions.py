@@ -10,8 +10,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import Addressing, Message
 from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, AutopilotType, Mode
 from mavlink.commands.command import CommandStep, Effect, Seven
-from mavlink.vehicle_class import VehicleClass, refusal_message
+from mavlink.vehicle_class import VehicleClass, refusal_of
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import Reason
 
 FIRST_PAUSE_S, MAX_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
@@ -42,9 +43,10 @@ STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUS
 class CannotOrder(ValueError):
     """This cannot be asked of this vehicle now; `code` names why."""
 
-    def __init__(self, code: str, words: str) -> None:
-        super().__init__(words)
+    def __init__(self, code: str, reason: Reason) -> None:
+        super().__init__(str(reason))
         self.code = code
+        self.reason = reason
 
 
 @dataclass(frozen=True)
@@ -66,9 +68,9 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     home. A return with an `item` goes on with the list from there, at `speed_mps`: the rest of it is the way home.
     """
     if state.autopilot_type not in COMMANDED:
-        raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
+        raise CannotOrder("autopilot", Reason("only_known_autopilots"))
     if state.vehicle_class is not VehicleClass.COPTER and not (order in STOPS and state.can_be_stopped):
-        raise CannotOrder("vehicle-class", refusal_message(state.vehicle_class))
+        raise CannotOrder("vehicle-class", refusal_of(state.vehicle_class))
     if order in (Order.PAUSE, Order.HOLD):
         return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
     if order is Order.RETURN and ITEM in parameters:
@@ -87,7 +89,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
         return OrderPlan(_is_disarmed, ((_DISARM,),))
     if order is Order.RESUME:
         if not _is_ordered_to_fly(state):
-            raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
+            raise CannotOrder("not-flying", Reason("resume_on_ground"))
         return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
     if order is Order.TAKE_OFF:
         return _take_off(state, parameters)
@@ -128,11 +130,11 @@ def _or_on_ground(effect: Effect) -> Effect:
 
 # steps
 
-_ARM = CommandStep("arm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_armed)
-_DISARM = CommandStep("disarm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_disarmed)
+_ARM = CommandStep(Reason("order_arm"), mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_armed)
+_DISARM = CommandStep(Reason("order_disarm"), mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_disarmed)
 _STAY_DOWN = replace(_DISARM, is_too_late=lambda state: state.is_in_air)
-_LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow=True)
-_MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
+_LEAVE_GROUND = CommandStep(Reason("step_leave_ground"), None, effect=_is_flying, is_slow=True)
+_MISSION_START = CommandStep(Reason("step_start_mission"), mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
 
 
 def mode_numbers(autopilot_type: AutopilotType | None, mode: Mode) -> Seven:
@@ -143,7 +145,9 @@ def mode_numbers(autopilot_type: AutopilotType | None, mode: Mode) -> Seven:
 
 
 def _mode(state: VehicleState, mode: Mode) -> CommandStep:
-    return CommandStep(f"mode {mode.value}", mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.autopilot_type, mode), _is_in(mode))
+    return CommandStep(
+        Reason("step_mode", {"mode": mode.value}), mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.autopilot_type, mode), _is_in(mode)
+    )
 
 
 def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
@@ -169,16 +173,16 @@ def _start(state: VehicleState) -> OrderPlan:
 def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
     """Of a UAV that is held: it is on its way to the item. Told again while it flies its list, nothing is sent."""
     if not _is_ordered_to_fly(state):
-        raise CannotOrder("not-flying", "The UAV is on the ground: this route begins in the air.")
+        raise CannotOrder("not-flying", Reason("mid_air_start_on_ground"))
     return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
 
 
 def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
     """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
     if state.vehicle_class is not VehicleClass.COPTER:
-        raise CannotOrder("vehicle-class", refusal_message(state.vehicle_class))
+        raise CannotOrder("vehicle-class", refusal_of(state.vehicle_class))
     if not _is_ordered_to_fly(state):
-        raise CannotOrder("not-flying", "The UAV is on the ground.")
+        raise CannotOrder("not-flying", Reason("on_ground"))
     place = int(parameters[ITEM])
     number = _number_of(state, place)
 
@@ -191,7 +195,7 @@ def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> Ord
 def _is_ordered_to_fly(state: VehicleState) -> bool:
     """Raises CannotOrder where it is not known."""
     if state.is_in_air is None:
-        raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
+        raise CannotOrder("not-told", Reason("in_air_unknown"))
     return state.is_in_air
 
 
@@ -204,7 +208,7 @@ def _item(state: VehicleState, place: int) -> CommandStep:
     """place: from 0 without home."""
     item = _number_of(state, place)
     return CommandStep(
-        "begin with the first item" if place == 0 else f"begin with item {place + 1}",
+        Reason("step_first_item") if place == 0 else Reason("step_item", {"item": place + 1}),
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
         (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
         effect=lambda seen: seen.mission_item == item,
@@ -224,12 +228,12 @@ def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan
     if state.autopilot_type is AutopilotType.PX4:
         ground_m = state.altitude_amsl_m if state.home_amsl_m is None else state.home_amsl_m
         if ground_m is None:
-            raise CannotOrder("no-home", "The UAV has not told its height above sea level.")
+            raise CannotOrder("no-home", Reason("height_unknown"))
         numbers = (-1.0, 0.0, 0.0, NAN, NAN, NAN, ground_m + relative_m)
-        up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_in(Mode.TAKE_OFF))
+        up = CommandStep(Reason("step_take_off"), mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_in(Mode.TAKE_OFF))
         return OrderPlan(_is_flying, ((up, _ARM, _LEAVE_GROUND),))
     numbers = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, relative_m)
-    up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_flying, is_slow=True)
+    up = CommandStep(Reason("step_take_off"), mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_flying, is_slow=True)
     return OrderPlan(_is_flying, ((_mode(state, Mode.GUIDED), _ARM, up),))
 
 
@@ -244,13 +248,13 @@ def _abort(state: VehicleState) -> OrderPlan:
 def _speed(parameters: Mapping[str, float]) -> CommandStep:
     """Over ground; no message of every vehicle shows it, so its yes has to be enough."""
     numbers = (1.0, _positive(parameters, SPEED_MPS), -1.0, 0.0, 0.0, 0.0, 0.0)
-    return CommandStep("change speed", mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
+    return CommandStep(Reason("step_change_speed"), mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
 
 
 def _positive(parameters: Mapping[str, float], name: str) -> float:
     value = parameters.get(name)
     if value is None or not (math.isfinite(value) and value > 0):
-        raise CannotOrder("parameters", f"{name} must be above 0.")
+        raise CannotOrder("parameters", Reason("not_positive", {"name": name}))
     return float(value)
 
 

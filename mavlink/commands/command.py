@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import Addressing, Message, Messages
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import Reason, text_reason
 
 Effect = Callable[[VehicleState], bool | None]
 Seven = tuple[float, float, float, float, float, float, float]
@@ -25,7 +26,7 @@ class CommandOutcome:
 
     state: CommandEnd
     code: str = ""
-    words: str = ""
+    why: tuple[Reason, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class CommandStep:
     to a vehicle that does not know the command.
     """
 
-    words: str
+    name: Reason
     command: int | None  # MAV_CMD; None: nothing is sent, its effect is waited for
     parameters: Seven = (0.0,) * 7
     effect: Effect | None = None
@@ -83,7 +84,7 @@ class CommandMachine:
         if self.outcome is None and self._shows_effect():
             self._end(CommandEnd.APPLIED)
         if self.outcome is None and self._step.is_too_late is not None and self._step.is_too_late(self._state):
-            self._end(CommandEnd.FAILED, "too-late", "The vehicle is in another state by now.")
+            self._end(CommandEnd.FAILED, "too-late", Reason("other_state"))
         return []
 
     def tick(self, now_s: float) -> Messages:
@@ -91,13 +92,18 @@ class CommandMachine:
             return []
         is_temporary = self._no == mavlink.MAV_RESULT_TEMPORARILY_REJECTED
         if self._no is not None and not (is_temporary and self._sent <= self._rules.retries):
-            return self._end(CommandEnd.FAILED, _result_name(self._no), self._state.words_since(self._begun_s))
+            return self._end(CommandEnd.FAILED, _result_name(self._no), *self._own_words)
         if self.is_acknowledged and (self._step.is_slow or self._step.command is None or self._sent > self._rules.retries):
-            words = f"The vehicle agreed, and nothing happened. {self._state.words_since(self._begun_s)}".strip()
-            return self._end(CommandEnd.FAILED, "no-effect", words)
+            return self._end(CommandEnd.FAILED, "no-effect", Reason("no_effect"), *self._own_words)
         if self._sent > self._rules.retries:
-            return self._end(CommandEnd.FAILED, "silent", "The vehicle did not answer.")
+            return self._end(CommandEnd.FAILED, "silent", Reason("no_answer"))
         return self._send(now_s)
+
+    @property
+    def _own_words(self) -> tuple[Reason, ...]:
+        """What the vehicle itself said since the beginning."""
+        words = self._state.words_since(self._begun_s)
+        return (text_reason(words),) if words else ()
 
     @property
     def _effect_s(self) -> float:
@@ -143,8 +149,8 @@ class CommandMachine:
             )
         ]
 
-    def _end(self, state: CommandEnd, code: str = "", words: str = "") -> Messages:
-        self.outcome, self.wake_at_s = CommandOutcome(state, code, words), None
+    def _end(self, state: CommandEnd, code: str = "", *why: Reason) -> Messages:
+        self.outcome, self.wake_at_s = CommandOutcome(state, code, why), None
         return []
 
 

@@ -8,6 +8,7 @@ from mavlink.commands.command import CommandEnd, CommandMachine, CommandOutcome
 from mavlink.script import Course, NextHeartbeat, Pause, Steps
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import Reason
 
 UNDONE_ROUNDS = 3
 
@@ -73,13 +74,13 @@ class CommandDriver:
             try:
                 plan = plan_of(self.order, self._state, self._parameters)
             except CannotOrder as refusal:
-                return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
+                return CommandOutcome(CommandEnd.FAILED, refusal.code, (refusal.reason,))
             if self._is_already(plan) and not has_waited:
                 has_waited = True
                 yield NextHeartbeat(self._state, self._begun_s, self._begun_s + self._rules.fresh_s)
                 continue
             if self._is_already(plan) and (self._state.heartbeat_at_s or 0.0) > self._begun_s:
-                return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
+                return CommandOutcome(CommandEnd.APPLIED, "already", (Reason("done_already"),))
             if plan.goal is None and self._unsettled_until_s is not None:
                 yield Pause(self._unsettled_until_s)  # else a late yes to an earlier one would be taken for the answer
             outcome = yield from self._tried(plan)
@@ -89,7 +90,7 @@ class CommandDriver:
                 if plan.goal is not None and not plan.goal(self._state):
                     if done < UNDONE_ROUNDS:
                         continue
-                    return CommandOutcome(CommandEnd.FAILED, "undone", "The vehicle did it, and left it again.")
+                    return CommandOutcome(CommandEnd.FAILED, "undone", (Reason("undone"),))
             if outcome.state is CommandEnd.APPLIED or outcome.code == "silent" or done >= plan.rounds:
                 return outcome
 
@@ -102,8 +103,9 @@ class CommandDriver:
                 yield machine
                 ended = machine.outcome
                 if ended is None or ended.state is CommandEnd.FAILED:
-                    code, words = ("", "") if ended is None else (ended.code, ended.words)
-                    failure = CommandOutcome(CommandEnd.FAILED, code, f"Could not {self.order.value}, at {step.words}. {words}".strip())
+                    code, why = ("", ()) if ended is None else (ended.code, ended.why)
+                    not_done = Reason("order_not_done", {"order": Reason(f"order_{self.order}"), "step": step.name})
+                    failure = CommandOutcome(CommandEnd.FAILED, code, (not_done, *why))
                     break
                 self.is_acknowledged = True
             else:

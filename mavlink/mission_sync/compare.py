@@ -13,6 +13,7 @@ import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -20,6 +21,7 @@ from mavlink.autopilot_type import AutopilotType
 from mavlink.mission_sync.supported_items import as_old_roi
 from mavlink.mission_sync.wire import OnboardItem, OnboardList
 from mavlink.vehicle_plan import MissionItem
+from operation.reasons import Reason
 
 CENTIMETRE_M = 0.01
 YAW_DEG = 0.001  # by way of radians in 32 bits
@@ -34,6 +36,12 @@ SAME_FRAME: dict[int, int] = {
     mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
     mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,
 }
+
+
+FIELDS = {name: Reason(f"field_{name}") for name in ("command", "frame", "longitude", "latitude", "altitude")}
+FIELDS |= {f"parameter {number}": Reason("field_parameter", {"number": number}) for number in range(1, 5)}
+FIELDS["going on afterwards"] = Reason("field_going_on")
+VALUES = {value: Reason(f"value_{value}") for value in ("missing", "nothing", "yes", "no")}
 
 
 class ReadbackMatch(StrEnum):
@@ -61,8 +69,8 @@ def found(
     return ReadbackMatch.MIXED if all(is_of_some) else ReadbackMatch.FOREIGN
 
 
-def mix_message(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> str:
-    """Which items are whose: "items 0-2 of 7 are new, 3-6 are of the list before"; `before` is None where it is not known."""
+def mix_of(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> Reason:
+    """Which items are whose: "0-2 are new, 3-6 are of the list before"; `before` is None where it is not known."""
     new = _of_list(held, wanted, autopilot_type)
     whose: list[str] = []
     for place, there in enumerate(held):
@@ -72,17 +80,19 @@ def mix_message(held: OnboardList, wanted: Sequence[MissionItem], before: Onboar
         elif place in new:
             whose.append("new")
         elif is_old:
-            whose.append("of the list before")
+            whose.append("before")
         else:
-            whose.append("of neither list" if before is not None else "not approved")
+            whose.append("neither" if before is not None else "not_approved")
     runs: list[tuple[int, int, str]] = []
-    for place, words in enumerate(whose):
-        if runs and runs[-1][2] == words:
-            runs[-1] = (runs[-1][0], place, words)
+    for place, origin in enumerate(whose):
+        if runs and runs[-1][2] == origin:
+            runs[-1] = (runs[-1][0], place, origin)
         else:
-            runs.append((place, place, words))
-    parts = [f"{first} is {words}" if first == last else f"{first}-{last} are {words}" for first, last, words in runs]
-    return f"{len(held)} items where {len(wanted)} are approved: " + ", ".join(parts) if parts else "no items"
+            runs.append((place, place, origin))
+    parts = [
+        Reason(f"item_{origin}" if first == last else f"items_{origin}", {"item": first, "last": last}) for first, last, origin in runs
+    ]
+    return Reason("mix", {"held": len(held), "wanted": len(wanted), "parts": parts}) if parts else Reason("no_items")
 
 
 def _of_list(held: OnboardList, items: Sequence[MissionItem], autopilot_type: AutopilotType) -> set[int]:
@@ -140,8 +150,10 @@ class ItemDifference:
     held: str
     waypoint: int | None = None
 
-    def __str__(self) -> str:
-        return f"item {self.item}: {self.field} is {self.held} instead of {self.wanted}"
+    @property
+    def params(self) -> dict[str, Any]:
+        field = FIELDS.get(self.field, self.field)
+        return {"item": self.item, "field": field, "wanted": VALUES.get(self.wanted, self.wanted), "held": VALUES.get(self.held, self.held)}
 
 
 def differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> tuple[ItemDifference, ...]:

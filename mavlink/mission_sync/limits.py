@@ -7,7 +7,9 @@ from itertools import pairwise
 from inspection.geodesy import LonLat
 from mavlink.autopilot_type import AutopilotType
 from mavlink.intermediate_waypoints import FLOWN, length_on_sphere_m, position_of
+from mavlink.reasons import list_reason
 from mavlink.vehicle_plan import FlightLoad, MissionType
+from operation.reasons import Reason
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
 # the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
@@ -27,27 +29,28 @@ class LimitWarning:
     """`code` is short and stable; `item` the place in the mission."""
 
     code: str
-    words: str
+    reason: Reason
     item: int | None = None
 
 
 def too_many(load: FlightLoad, autopilot_type: AutopilotType) -> LimitWarning | None:
     """The first list that no vehicle of the autopilot takes."""
-    return next(_longer(load, autopilot_type, MAX_ITEMS, "takes", "too-many-items"), None)
+    return next(_longer(load, autopilot_type, MAX_ITEMS, "too_many_items", "too-many-items"), None)
 
 
 def count_warnings(load: FlightLoad, autopilot_type: AutopilotType) -> tuple[LimitWarning, ...]:
     """Lists that are longer than most vehicles of the autopilot take."""
-    return tuple(_longer(load, autopilot_type, USUAL_ITEMS, "on most boards takes", "many-items"))
+    return tuple(_longer(load, autopilot_type, USUAL_ITEMS, "many_items", "many-items"))
 
 
 def _longer(
-    load: FlightLoad, autopilot_type: AutopilotType, most_items: Mapping[tuple[AutopilotType, MissionType], int], takes: str, code: str
+    load: FlightLoad, autopilot_type: AutopilotType, most_items: Mapping[tuple[AutopilotType, MissionType], int], reason: str, code: str
 ) -> Iterator[LimitWarning]:
     for kind in MissionType:
         most = most_items.get((autopilot_type, kind))
         if most is not None and len(load.of(kind)) > most:
-            yield LimitWarning(code, f"The {kind.name.lower()} has {len(load.of(kind))} items; {autopilot_type.value} {takes} {most}.")
+            params = {"list": list_reason(kind.name), "count": len(load.of(kind)), "autopilot": autopilot_type.value, "most": most}
+            yield LimitWarning(code, Reason(reason, params))
 
 
 def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: LonLat | None) -> tuple[LimitWarning, ...]:
@@ -58,15 +61,13 @@ def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: L
     if most_m > 0 and flown and stands_at is not None:
         length_m = length_on_sphere_m(stands_at, position_of(flown[0][1]))
         if length_m >= most_m:
-            warnings.append(
-                LimitWarning("far-first-waypoint", f"The first waypoint is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
-            )
+            params = {"metres": round(length_m), "parameter": FIRST_LEG, "allowed": round(most_m)}
+            warnings.append(LimitWarning("far-first-waypoint", Reason("far_first_waypoint", params), 0))
     most_m = parameters.get(ANY_LEG, 0.0)
     if most_m > 0:
         for (_, left), (place, right) in pairwise(flown):
             length_m = length_on_sphere_m(position_of(left), position_of(right))
             if length_m > most_m:
-                warnings.append(
-                    LimitWarning("long-leg", f"The leg to item {place} is {length_m:.0f} m; {ANY_LEG} allows {most_m:.0f} m.", place)
-                )
+                params = {"item": place, "metres": round(length_m), "parameter": ANY_LEG, "allowed": round(most_m)}
+                warnings.append(LimitWarning("long-leg", Reason("long_leg", params), place))
     return tuple(warnings)

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from mavlink.mission_sync.compare import ItemDifference
 from mavlink.vehicle_plan import MissionType
+from operation.reasons import Reason
 
 
 class SyncState(StrEnum):
@@ -21,7 +22,7 @@ class Mix:
     """A list that was found to be neither the approved one nor the one before."""
 
     kind: MissionType
-    words: str
+    what: Reason
 
 
 @dataclass(frozen=True)
@@ -29,18 +30,18 @@ class SyncOutcome:
     """`code` names why it failed; `sha256` is of the load that the vehicle holds, empty unless it is ready.
 
     `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
-    there, or may be. `left_alone` says in words what of the vehicle's own was kept beside the load, `left_sha256` names these
+    there, or may be. `left_alone` tells what of the vehicle's own was kept beside the load, `left_sha256` names these
     lists, by kind (see wire.onboard_sha256).
     """
 
     state: SyncState
     code: str
-    words: str
+    why: tuple[Reason, ...]
     sha256: str = ""
     is_critical: bool = False
     mixes: tuple[Mix, ...] = ()
     differences: tuple[ItemDifference, ...] = ()
-    left_alone: str = ""
+    left_alone: tuple[Reason, ...] = ()
     left_sha256: Mapping[MissionType, str] = field(default_factory=dict)
 
 

@@ -5,18 +5,20 @@ from typing import Any
 
 from mavlink.addressing import Addressing, Message, Messages
 from mavlink.autopilot_type import AutopilotType, Mode
-from mavlink.mission_sync.compare import ItemDifference, ReadbackMatch, are_identical, differences, found, mix_message
+from mavlink.mission_sync.compare import ItemDifference, ReadbackMatch, are_identical, differences, found, mix_of
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
 from mavlink.mission_sync.outcome import Mix, SyncOutcome, SyncProgress, SyncState
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
 from mavlink.mission_sync.upload import REQUESTS, Clear, ListUpload, TransferOutcome, TransferState
 from mavlink.mission_sync.wire import OnboardList, has_home, onboard_list, onboard_sha256, sent_list
+from mavlink.reasons import list_reason
 from mavlink.script import Course, Machine, Steps
 from mavlink.timeouts import TransferRules
-from mavlink.vehicle_class import VehicleClass, refusal_message
+from mavlink.vehicle_class import VehicleClass, refusal_of
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import Reason
 
 ORDER = (MissionType.FENCE, MissionType.MISSION, MissionType.RALLY)  # never a new mission under an old fence
 SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "restoring"
@@ -54,7 +56,7 @@ class MissionSync:
         self._sent: dict[MissionType, ListUpload] = {}
         self._touched: list[MissionType] = []
         self._reason = ""
-        self._why = ""  # in words: what the vehicle refused, or keeps otherwise than it was sent
+        self._why: tuple[Reason, ...] = ()  # what the vehicle refused, or keeps otherwise than it was sent
         self._is_cancelled = self._is_restoring = False
         self._kind = MissionType.FENCE
         self._stage = READING
@@ -122,7 +124,7 @@ class MissionSync:
         for kind in ORDER:
             read = yield from self._read(kind)
             if read is None:
-                return SyncOutcome(SyncState.INTACT, self._reason, "Nothing was sent: what the vehicle holds could not be read.")
+                return SyncOutcome(SyncState.INTACT, self._reason, (Reason("holdings_unreadable"),))
             self.before[kind] = read
             known = [load.of(kind) for load in self._known]
             self.found_before[kind] = found(read, self.load.of(kind), known, self._autopilot_type)
@@ -131,32 +133,33 @@ class MissionSync:
         for kind in ORDER:
             if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
                 return (yield from self._give_up())
-        held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
-        words, left = f"The vehicle holds {held}.", self._left_alone_message()
+        items = len(self.load.mission)
+        held = Reason("holds_approved", {"items": items}) if items else Reason("holds_no_mission")
         lists = {kind: onboard_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
         sha256, mixes = self.load.content_sha256, tuple(self.mixes)
-        return SyncOutcome(SyncState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
+        return SyncOutcome(SyncState.READY, "", (held,), sha256, mixes=mixes, left_alone=self._left_alone(), left_sha256=lists)
 
     def _cannot_begin(self) -> SyncOutcome | None:
         state = self._state
-        code = words = ""
+        code, reason = "", None
         if state.autopilot_type is None:
-            code, words = "not-heard", "The vehicle has not said what it is."
+            code, reason = "not-heard", Reason("vehicle_unknown")
         elif state.autopilot_type is AutopilotType.OTHER:
-            code, words = "autopilot", "Missions are sent to PX4 and ArduPilot only: how this autopilot keeps them is not known."
+            code, reason = "autopilot", Reason("missions_to_known_autopilots")
         elif state.vehicle_class is not VehicleClass.COPTER:
-            code, words = "vehicle-class", refusal_message(state.vehicle_class)
+            code, reason = "vehicle-class", refusal_of(state.vehicle_class)
         elif state.is_armed and not state.is_held:
-            code, words = "not-held", f"The vehicle is armed and in mode {state.mode}: it must be disarmed or held first."
+            code, reason = "not-held", Reason("armed_not_held", {"mode": state.mode})
         else:
             limit = too_many(self.load, state.autopilot_type)
             unknown = unknown_items(self.load.mission, state.autopilot_type, state.firmware)
             if limit is not None:
-                code, words = limit.code, limit.words
+                code, reason = limit.code, limit.reason
             elif unknown:
                 autopilot, first = firmware_words(state.autopilot_type, state.firmware), unknown[0]
-                code, words = "unknown-command", f"Not known to {autopilot}: item {first.place}, {command_words(first.item.command)}."
-        return SyncOutcome(SyncState.INTACT, code, f"Nothing was sent. {words}") if code else None
+                params = {"autopilot": autopilot, "item": first.place, "command": command_words(first.item.command)}
+                code, reason = "unknown-command", Reason("item_unknown", params)
+        return None if reason is None else SyncOutcome(SyncState.INTACT, code, (Reason("nothing_sent"), reason))
 
     @property
     def _autopilot_type(self) -> AutopilotType:
@@ -182,7 +185,7 @@ class MissionSync:
                 return True
             if held is not None:
                 self._note_mix(kind, held)
-                self._why = self._why if state is TransferState.REFUSED else self._difference_message(kind)
+                self._why = self._why if state is TransferState.REFUSED else self._difference_reasons(kind)
             if self._is_cancelled or state is TransferState.REFUSED:
                 return False
             self._reason = self._reason or "differs"
@@ -194,10 +197,10 @@ class MissionSync:
             return False
         return self.found_before[kind] is ReadbackMatch.FOREIGN
 
-    def _left_alone_message(self) -> str:
-        names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
+    def _left_alone(self) -> tuple[Reason, ...]:
+        names = {MissionType.FENCE: Reason("list_fence"), MissionType.RALLY: Reason("rally_points")}
         left = [kind for kind in ORDER if self._is_left_alone(kind)]
-        return " ".join(f"Of its own {names[kind]} {len(self.before[kind])} items were left as they are." for kind in left)
+        return tuple(Reason("list_left_alone", {"list": names[kind], "count": len(self.before[kind])}) for kind in left)
 
     def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
         """Where no reading got through after the last sending: whether it is there all the same."""
@@ -219,28 +222,28 @@ class MissionSync:
             step = Clear(kind, self._addressing, self._rules)
         yield step
         if isinstance(step, ListUpload) and not self._is_restoring:
-            self._why = self._refusal_message(step)
+            self._why = self._refusal_reasons(step)
         return self._ended(step.outcome)
 
-    def _refusal_message(self, upload: ListUpload) -> str:
+    def _refusal_reasons(self, upload: ListUpload) -> tuple[Reason, ...]:
         """Which item, by its command, which firmware would not take; empty where none was refused."""
         ended: TransferOutcome | None = upload.outcome
         if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
-            return ""
-        autopilot, command = (
-            firmware_words(self._state.autopilot_type, self._state.firmware),
-            command_words(upload.items[ended.item].command),
-        )
-        place = ended.item - has_home(upload.kind, self._autopilot_type)
-        return f"Refused by {autopilot}: item {place} of the {_name(upload.kind)}, {command} ({ended.code})."
+            return ()
+        params = {
+            "autopilot": firmware_words(self._state.autopilot_type, self._state.firmware),
+            "item": ended.item - has_home(upload.kind, self._autopilot_type),
+            "list": _list(upload.kind),
+            "command": command_words(upload.items[ended.item].command),
+            "code": ended.code,
+        }
+        return (Reason("item_refused", params),)
 
-    def _difference_message(self, kind: MissionType) -> str:
+    def _difference_reasons(self, kind: MissionType) -> tuple[Reason, ...]:
         found = self._differences(kind)
-        if not found:
-            return ""
-        first, name = found[0], _name(kind)
-        words = f"Of the {name}, item {first.item}: {first.field} was sent as {first.wanted} and came back as {first.held}."
-        return f"{words} There are {len(found) - 1} more differences." if len(found) > 1 else words
+        first = [Reason("item_differs", {"list": _list(kind), **difference.params}) for difference in found[:1]]
+        more = [Reason("more_differences", {"count": len(found) - 1})] if len(found) > 1 else []
+        return (*first, *more)
 
     def _read(self, kind: MissionType) -> Generator[Machine, None, OnboardList | None]:
         """As often as there are attempts. A list that the vehicle does not have at all is empty."""
@@ -298,22 +301,18 @@ class MissionSync:
         ]
         reason, mixes = self._reason or "differs", tuple(self.mixes)
         if mixed:
-            words = " ".join(self._left_message(kind, self._now[kind] or ()) for kind in mixed)
-            lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
+            left = [self._left_reason(kind, self._now[kind] or ()) for kind in mixed]
+            lost = [Reason("list_unreadable", {"list": _list(kind)}) for kind in unread]
             shown = self._differences(mixed[0])
-            return SyncOutcome(SyncState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
+            return SyncOutcome(SyncState.MIXED, reason, (*self._why, *left, *lost), "", True, mixes, shown)
         if unread:
             is_critical = self._autopilot_type is AutopilotType.ARDUPILOT
-            may = "part of the new one and part of the old" if is_critical else "the old one or the new one, whole"
-            words = f"The vehicle fell silent while its {_name(unread[0])} was sent: it may hold {may}. Read it back before any flight."
-            return SyncOutcome(SyncState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
+            may = Reason("part_of_each" if is_critical else "one_whole")
+            silent = Reason("silent_while_sent", {"list": _list(unread[0]), "what": may})
+            return SyncOutcome(SyncState.UNREAD, reason, (*self._why, silent, Reason("read_back_first")), "", is_critical, mixes)
         if MissionType.MISSION in self._touched and MissionType.MISSION not in kept:
-            words = "The mission could not be sent whole, and what was there of it was taken off: the vehicle holds none."
-            return SyncOutcome(SyncState.CLEARED, reason, self._with_why(words), mixes=mixes)
-        return SyncOutcome(SyncState.INTACT, reason, self._with_why("The vehicle holds what it held before."), mixes=mixes)
-
-    def _with_why(self, words: str) -> str:
-        return f"{self._why} {words}".strip()
+            return SyncOutcome(SyncState.CLEARED, reason, (*self._why, Reason("mission_taken_off")), mixes=mixes)
+        return SyncOutcome(SyncState.INTACT, reason, (*self._why, Reason("holds_what_before")), mixes=mixes)
 
     def _differs(self, kind: MissionType, held: OnboardList) -> bool:
         return bool(differences(self.load.of(kind), held, self._autopilot_type))
@@ -325,18 +324,18 @@ class MissionSync:
         """Of what was read while the list was being replaced, or found to be mixed before."""
         if not held or not self._differs(kind, held) or (kind in self._touched and are_identical(held, self.before[kind])):
             return
-        mix = Mix(kind, self._mix_message(kind, held))
+        mix = Mix(kind, self._mix(kind, held))
         if mix not in self.mixes:
             self.mixes.append(mix)
 
-    def _left_message(self, kind: MissionType, held: OnboardList) -> str:
+    def _left_reason(self, kind: MissionType, held: OnboardList) -> Reason:
         if not held:
-            return f"Its {_name(kind)} could not be put back: it holds none."
-        return f"Its {_name(kind)} is a mix: {self._mix_message(kind, held)}."
+            return Reason("list_not_put_back", {"list": _list(kind)})
+        return Reason("list_mixed", {"list": _list(kind), "mix": self._mix(kind, held)})
 
-    def _mix_message(self, kind: MissionType, held: OnboardList) -> str:
-        return mix_message(held, self.load.of(kind), self.before.get(kind), self._autopilot_type)
+    def _mix(self, kind: MissionType, held: OnboardList) -> Reason:
+        return mix_of(held, self.load.of(kind), self.before.get(kind), self._autopilot_type)
 
 
-def _name(kind: MissionType) -> str:
-    return kind.name.lower()
+def _list(kind: MissionType) -> Reason:
+    return list_reason(kind.name)

@@ -112,7 +112,8 @@ class UavCommand(models.Model):
     finished_at = models.DateTimeField(null=True, blank=True)
     progress = models.JSONField(null=True, blank=True, help_text="of an upload: items done and in all")
     outcome_code = models.CharField(max_length=50, blank=True)
-    outcome = models.CharField(max_length=500, blank=True, help_text="why it failed or expired, in words")
+    outcome = models.CharField(max_length=500, blank=True, help_text="why it failed or expired, in English")
+    outcome_why = models.JSONField(null=True, blank=True, help_text="the same as reasons; see workspace/reason_texts.py")
 
     class Meta:
         ordering = ["-created_at", "-sequence"]

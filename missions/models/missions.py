@@ -212,7 +212,7 @@ class InspectionTarget(models.Model):
     visit_stored_at = models.DateTimeField(null=True, blank=True, help_text="when reached_at and held_s were stored or changed")
     unassigned_reason = models.CharField(max_length=40, blank=True)
     unassigned_message = models.CharField(max_length=500, blank=True, help_text="in English")
-    unassigned_why = models.JSONField(default=list, db_default=[], blank=True, help_text="the reasons as codes; see planning/reasons.py")
+    unassigned_why = models.JSONField(default=list, db_default=[], blank=True, help_text="the reasons as codes; see operation/reasons.py")
     unassigned_missing = models.JSONField(default=dict, db_default={}, blank=True, help_text="what the message tells to be missing")
 
     class Meta:

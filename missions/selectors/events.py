@@ -13,8 +13,8 @@ from django.utils import timezone
 
 from missions.hooks.events import EventKind, EventPlace, EventSource, MissionEvent, registered_sources
 from missions.models import InspectionTarget, Mission, MissionState, TargetState, Uav, UavCommand
-from missions.outcome_messages import render_command_outcome
 from workspace.models import AuditEntry, Organisation
+from workspace.reason_texts import column_text
 
 SHOWN_AFTER_END = timedelta(hours=1)  # as live pages show missions
 
@@ -176,7 +176,7 @@ def _of_command(command: UavCommand, step: str) -> MissionEvent:
     why = f": {command.outcome}" if is_bad and command.outcome else f": {command.why}" if command.why and who else ""
     values = {"command": str(command.pk), "command_kind": command.kind, "why": command.why}
     if is_bad:
-        values["outcome"] = render_command_outcome(command.outcome_code, command.outcome)
+        values["outcome"] = column_text(command.outcome_why, command.outcome)
     return MissionEvent(
         kind, f"{command.uav.name}: {command.get_kind_display()}, {done}{why}", command.uav_id, command.uav.name, command.uav.is_simulated,
         who, "warning" if is_bad else None, values,

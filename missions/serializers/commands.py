@@ -5,13 +5,14 @@ from typing import Any
 from drf_spectacular.utils import extend_schema_field
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
-from missions.outcome_messages import render_command_outcome
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import MAX_LEG_M, MIN_LEG_M
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.commands.batch import BATCH_KINDS, UavAnswer
 from missions.services.commands.steering import MAX_WAIT_S
 from workspace.api import strict_serializers as serializers
+from workspace.api.reasons import WhySerializer
+from workspace.reason_texts import column_text, reasons_of_column
 
 MAX_FLIGHTS = 100
 MAX_UAVS = 1_000
@@ -152,6 +153,7 @@ class CommandSerializer(serializers.Serializer):
     progress = ProgressSerializer(allow_null=True)
     outcome_code = serializers.CharField()
     outcome = serializers.CharField(help_text="why it failed or expired; of one that is applied: what to beware of")
+    outcome_why = WhySerializer(many=True, help_text="the same for programs; empty where only a text is known")
 
 
 class CommandEventSerializer(serializers.Serializer):
@@ -293,7 +295,8 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "finished_at": command.finished_at,
         "progress": command.progress,
         "outcome_code": command.outcome_code,
-        "outcome": render_command_outcome(command.outcome_code, command.outcome),
+        "outcome": column_text(command.outcome_why, command.outcome),
+        "outcome_why": reasons_of_column(command.outcome_why, command.outcome),
     }
 
 

@@ -6,8 +6,8 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.models import OfferState, ReplanOffer
-from missions.reason_texts import why_text
 from workspace.message_rendering import render_message
+from workspace.reason_texts import why_text
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
 DECIDED = 3

@@ -7,7 +7,7 @@ import numpy as np
 
 from inspection.selectors import asset_detail, asset_label
 from missions.models import InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
-from missions.reason_texts import why_text, with_texts
+from missions.reason_texts import with_texts
 from missions.selectors.mission_list import ListedMission, sketch
 from missions.selectors.missions import approval_in_force, open_plan_of_mission
 from missions.selectors.stale_plans import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
@@ -20,6 +20,7 @@ from planning.energy.performance import performance_from_json, performance_to_js
 from planning.plan_json import straight_json
 from planning.request import EndAction, lost_link_from_json, lost_link_to_json
 from planning.trajectory.waypoints import KINDS, NONE
+from workspace.reason_texts import why_text
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from missions.serializers.commands import MissionApprovalSerializer
 from planning.clearance.lost_link import LostLink, Trouble
 from planning.problem import TaskKind
 from workspace.api.external_data import AttributesField
+from workspace.api.reasons import WhySerializer
 from workspace.jobs.serializers import Declared
 
 
@@ -84,11 +85,6 @@ class RouteSerializer(serializers.Serializer):
     explanation = StraightSerializer(allow_null=True, help_text="null when the UAV is not used")
     geometry = LineSerializer(allow_null=True, help_text="null when the UAV is not used")
     waypoints = WaypointSerializer(many=True)
-
-
-class WhySerializer(serializers.Serializer):
-    code = serializers.CharField(help_text="for programs: stays the same; see planning/reasons.py")
-    params = serializers.DictField(help_text="what fills the sentence: names, numbers in the unit of the name's end, other reasons")
 
 
 class UnassignedSerializer(serializers.Serializer):

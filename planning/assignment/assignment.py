@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from operation.reasons import Reason
 from planning.assignment.options import may_do
 from planning.assignment.refusals import Grounding
 from planning.assignment.routing_input import RoutingInput
@@ -14,7 +15,6 @@ from planning.energy.assignment_costs import FlightCosts
 from planning.energy.duration import ready_s
 from planning.plan import ALL_PLANS, WITHOUT_TIMED_ZONES
 from planning.problem import BoolArray, Lock, Objective, Priority, Problem, Resources, Solution, UavStart, Visit
-from planning.reasons import Reason
 from planning.request import EndAction, LockRequest, PlanRequest, UavRequest
 from planning.rules import FlightRules
 from planning.solver.exact import MAX_TARGETS

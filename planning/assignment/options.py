@@ -3,8 +3,8 @@
 from collections import Counter
 from collections.abc import Iterator
 
+from operation.reasons import Reason
 from planning.problem import Objective
-from planning.reasons import Reason
 from planning.request import EndAction, InvalidRequest, LockRequest, PlanRequest, TargetRequest, UavRequest
 
 

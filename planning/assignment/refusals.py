@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from inspection.network.route_index import asset_places
+from operation.reasons import Reason
 from planning.airspace import Airspace, zone_along, zone_at
 from planning.connection_points import tallest_support_m
 from planning.context import ResolvedTarget
 from planning.plan import UnassignedTarget
-from planning.reasons import Reason
 from planning.request import UavRequest
 from planning.trajectory.heights import inspection_agl_m, is_above_limit
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from operation.reasons import MAX_NAMED, Reason
 from planning.airspace import ZoneName
 from planning.assignment.assignment import Assignment
 from planning.assignment.options import has_sensor, may_do
@@ -16,7 +17,6 @@ from planning.context import ResolvedTarget
 from planning.energy.power import power_w
 from planning.plan import Shortfall, UnassignedTarget
 from planning.problem import End, Objective, Problem, Unassigned, UnassignedReason
-from planning.reasons import MAX_NAMED, Reason
 from planning.request import PlanRequest, TargetRequest, UavRequest
 from planning.solver.reach import needed_range_m, reachable
 

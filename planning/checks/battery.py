@@ -4,10 +4,10 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
+from operation.reasons import Reason
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.checks.least_shortfall import LeastShortfalls, shortfall_wh
 from planning.plan import PlannedRoute, UnassignedTarget
-from planning.reasons import Reason
 from planning.trajectory.sorties import wh_of_sorties
 
 JUST_BELOW = 1e-3

@@ -8,6 +8,7 @@ from inspection.geodesy import LonLat
 from inspection.network.build.obstacles import at_all_heights, with_obstacles
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.zones.reach import BoolArray
+from operation.reasons import Reason
 from planning.airspace import ZoneChoice
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.checks.battery import battery_overruns, not_lasting_for, without_overruns
@@ -23,7 +24,6 @@ from planning.checks.wires import (
 )
 from planning.context import PlanningContext
 from planning.plan import PlannedRoute
-from planning.reasons import Reason
 
 MAX_ROUND = 6  # candidates in one airspace; after the last one UAVs whose routes cannot be flown stay on the ground
 SHARES_FROM = MAX_ROUND - 2  # from this candidate on a battery counts as smaller, and no target is kept from its UAV for it any more

@@ -11,12 +11,12 @@ from inspection.network.build.network import Network
 from inspection.network.build.obstacles import obstacle_index_of, obstacles_along
 from inspection.network.spans import BESIDE_M, spans_of
 from inspection.network.zones.zone_index import ZoneIndex
+from operation.reasons import Reason
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.context import PlanningContext
 from planning.plan import PlannedRoute, UnassignedTarget
 from planning.problem import UnassignedReason
-from planning.reasons import Reason
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import FloatArray

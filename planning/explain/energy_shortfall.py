@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from operation.reasons import Reason
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.unassigned import LOCKED, of_battery, with_minutes
 from planning.checks.battery import IN_EVERY_ROUTE
@@ -10,7 +11,6 @@ from planning.checks.least_shortfall import IsClear, LeastShortfalls, RouteShort
 from planning.checks.wires import NO_PATH, wires_in_the_way
 from planning.plan import UnassignedTarget
 from planning.problem import UnassignedReason
-from planning.reasons import Reason
 from planning.request import PlanRequest, UavRequest
 from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE, THERE
 

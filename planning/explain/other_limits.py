@@ -6,6 +6,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from operation.reasons import Reason
 from planning.assignment.assignment import allowed_visits
 from planning.assignment.candidate_plan import CandidatePlan
 from planning.assignment.options import has_sensor
@@ -13,7 +14,6 @@ from planning.assignment.unassigned import LOCKED, WIND, in_calm
 from planning.checks.least_shortfall import LeastShortfalls
 from planning.plan import UnassignedTarget
 from planning.problem import BoolArray, UnassignedReason
-from planning.reasons import Reason
 from planning.request import PlanRequest
 from planning.solver.reach import least_needs, needed_range_m
 

@@ -11,6 +11,7 @@ import shapely
 from inspection.geodesy import LonLat, distance_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
+from operation.reasons import Reason
 from planning.airspace import Airspace, airspace_on, zone_at
 from planning.assignment.refusals import target_height_m
 from planning.assignment.routing_input import RoutingInput, costs_of_flying, visits_of_targets
@@ -18,7 +19,6 @@ from planning.connection_points import TargetPaths, Terminal, paths_between
 from planning.context import ResolvedTarget
 from planning.energy.assignment_costs import FlightCosts
 from planning.problem import Objective, Resources
-from planning.reasons import Reason
 from planning.request import CALM, EndAction, InvalidRequest, PlanRequest
 from planning.trajectory.heights import inspection_agl_m
 

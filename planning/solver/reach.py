@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from operation.reasons import Reason
 from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Routes, Unassigned, UnassignedReason
-from planning.reasons import Reason
 from planning.solver.cheapest_route import LeastRoutes
 from planning.solver.cost_matrices import NO_PATH_M, Kind, classes_of, quantities_of
 

@@ -12,13 +12,13 @@ from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.spans import spans_of
+from operation.reasons import Reason
 from planning.airspace import zone_at
 from planning.assignment.routing_input import RoutingInput
 from planning.energy.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
 from planning.problem import Routes
-from planning.reasons import Reason
 from planning.request import BaseRequest, EndAction, InvalidRequest
 from planning.trajectory.heights import pass_agl_m, with_heights
 from planning.trajectory.obstacles import rising_over

@@ -12,6 +12,7 @@ from missions.services.commands.outbox import end_commands
 from missions.services.commands.refused import Refused
 from missions.services.fleet.rows import FleetChanged
 from missions.services.fleet.uavs import change_uav
+from operation.reasons import Reason
 from simulation.models import SimulatedVehicle
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User
@@ -25,7 +26,7 @@ def end_copy(mission: Mission) -> None:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.simulates_id is None or held.state not in ON_ITS_WAY:
             return
-        end_commands(UavCommand.objects.filter(mission=held), code=SIMULATION_ENDED, words="The simulation has ended.")
+        end_commands(UavCommand.objects.filter(mission=held), code=SIMULATION_ENDED, why=(Reason("simulation_ended"),))
         is_open = held.targets.filter(state__in=UNDECIDED).exists()
         change_state(held, MissionState.ABORTED if is_open else MissionState.COMPLETED, None, "close", {"why": "The simulation has ended."})
 

@@ -860,6 +860,8 @@ export interface components {
             outcome_code: string;
             /** @description why it failed or expired; of one that is applied: what to beware of */
             outcome: string;
+            /** @description the same for programs; empty where only a text is known */
+            outcome_why: components["schemas"]["Why"][];
         };
         CommandDetail: {
             /** Format: uuid */
@@ -896,6 +898,8 @@ export interface components {
             outcome_code: string;
             /** @description why it failed or expired; of one that is applied: what to beware of */
             outcome: string;
+            /** @description the same for programs; empty where only a text is known */
+            outcome_why: components["schemas"]["Why"][];
             events: components["schemas"]["CommandEvent"][];
         };
         CommandEvent: {
@@ -7425,7 +7429,7 @@ export interface components {
          */
         WaypointKind: "start" | "pass" | "target" | "end" | "base";
         Why: {
-            /** @description for programs: stays the same; see planning/reasons.py */
+            /** @description for programs: stays the same; see operation/reasons.py */
             code: string;
             /** @description what fills the sentence: names, numbers in the unit of the name's end, other reasons */
             params: {

@@ -23,6 +23,7 @@ from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, cou
 from mavlink.mission_sync.outcome import SyncOutcome, SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.parameters import ParameterReading, ParameterSetting
+from mavlink.reasons import list_reason
 from mavlink.rtl import fence_off_by, return_height_parameter
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, UavCommand
@@ -37,6 +38,7 @@ from missions.services.commands.commands import (
     note_sent,
     note_sent_unacknowledged,
 )
+from operation.reasons import Reason
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (
     CannotCarry,
@@ -54,12 +56,10 @@ from telemetry.services.links.onboard_lists import Carried, LoadedLists, begin_l
 
 RETRIES = 2  # a parameter that a vehicle does not have draws no answer
 ADVICE = {
-    "far-first-waypoint": f"Bring the UAV to where its flight begins, or raise {FIRST_LEG} on it.",
-    "long-leg": "Revoke, and approve it again with points put in on longer legs.",
+    "far-first-waypoint": Reason("bring_to_start", {"parameter": FIRST_LEG}),
+    "long-leg": Reason("approve_with_more_points"),
 }
 FENCE_PARAMETERS = ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE")
-FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
-UNTOLD = "The UAV has not told how far apart waypoints may be."
 POLL_INTERVAL_S = 0.25
 logger = logging.getLogger(__name__)
 PROGRESS_INTERVAL_S = 0.5
@@ -94,24 +94,24 @@ async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], 
     await ProtocolDriver(session, reading, is_wanted).run(on_change=lambda: None)
 
 
-def warnings_of(load: FlightLoad, session: Session) -> str:
+def warnings_of(load: FlightLoad, session: Session) -> tuple[Reason, ...]:
     """What may go wrong although it is sent; empty where nothing is known."""
     if session.autopilot_type is None:
-        return ""
-    words = [warning.words for warning in count_warnings(load, session.autopilot_type)]
+        return ()
+    warnings = [warning.reason for warning in count_warnings(load, session.autopilot_type)]
     if session.autopilot_type is AutopilotType.PX4 and not session.limits:
-        words.append(UNTOLD)
+        warnings.append(Reason("limits_unknown"))
     off_by = fence_off_by(session.autopilot_type, session.state.parameters) if load.fence else ""
     if off_by:
-        words.append(FENCE_OFF.format(parameter=off_by))
-    return " ".join(words)
+        warnings.append(Reason("fence_does_nothing", {"parameter": off_by}))
+    return tuple(warnings)
 
 
 def _refusal(refused: tuple[LimitWarning, ...]) -> CannotCarry:
     first, others = refused[0], [warning for warning in refused[1:] if warning.code == "long-leg"]
-    more = [f"So are {len(others)} more legs." if len(others) > 1 else "So is one more leg."] if others else []
+    more = [Reason("more_long_legs", {"count": len(others)}) if len(others) > 1 else Reason("one_more_long_leg")] if others else []
     advice = [ADVICE[code] for code in dict.fromkeys(warning.code for warning in refused)]
-    return CannotCarry(first.code, " ".join(["The UAV would not fly it.", first.words, *more, *advice]))
+    return CannotCarry(first.code, (Reason("would_not_fly"), first.reason, *more, *advice))
 
 
 async def send_unacknowledged(
@@ -178,7 +178,7 @@ class Delivery:
             logger.exception(
                 "the command %s of %s broke down", self.command.kind, self.session.uav.name, extra={"uav": self.session.uav.uav_id}
             )
-            await self._end(note_failed, "internal", "The gateway failed; the error is in its log.")
+            await self._end(note_failed, "internal", (Reason("gateway_failed"),))
         finally:
             await asyncio.gather(*self._notes, return_exceptions=True)
 
@@ -195,9 +195,9 @@ class Delivery:
 
     async def _refuse(self, reason: CannotCarry) -> None:
         if reason.is_for_good or self.command.attempts >= MAX_ATTEMPTS:
-            await self._end(note_failed, reason.code, reason.words)
+            await self._end(note_failed, reason.code, reason.why)
         else:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.why, code=reason.code)
 
     async def _reason_against(self, task: DeliveryTask) -> CannotCarry | None:
         if task.onboard is not None:
@@ -251,8 +251,7 @@ class Delivery:
         """By the parameter that the vehicle has for it, read back afterwards."""
         wanted = return_height_parameter(self.session.autopilot_type, self.session.state.parameters, height_m)
         if wanted is None:
-            words = "The vehicle has not told how high it returns."
-            await self._refuse(CannotCarry("not-read", words, is_for_good=False))
+            await self._refuse(CannotCarry("not-read", (Reason("return_height_unknown"),), is_for_good=False))
             return
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
@@ -289,21 +288,21 @@ class Delivery:
                 return True
             await self._end(note_released)
         elif reading.code in UNACKNOWLEDGED:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words, code=reading.code)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.why, code=reading.code)
         else:
             if reading.code == OTHER_LIST_READ:
-                await self._surely(raise_other_list, self.command, reading.words)
-            await self._end_with(fail_loading, None, reading.code, reading.words)
+                await self._surely(raise_other_list, self.command, reading.why)
+            await self._end_with(fail_loading, None, reading.code, reading.why)
         return False
 
     async def _send_order(self, outcome: CommandOutcome) -> None:
         await asyncio.gather(*self._notes, return_exceptions=True)
         if outcome.state is CommandEnd.APPLIED:
-            await self._end(note_applied, note=outcome.words)
+            await self._end(note_applied, note=outcome.why)
         elif outcome.code in UNACKNOWLEDGED:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=outcome.words)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=outcome.why)
         else:
-            await self._end(note_failed, outcome.code or "failed", outcome.words or "The vehicle did not do it.")
+            await self._end(note_failed, outcome.code or "failed", outcome.why or (Reason("not_done"),))
 
     async def _load(self, task: DeliveryTask) -> None:
         assert task.load is not None  # noqa: S101 - the caller has looked
@@ -319,8 +318,8 @@ class Delivery:
                 self.session.send(keeper.cancel(time.monotonic()))
             if len(keeper.mixes) > mixes:
                 mixes = len(keeper.mixes)
-                words = "; ".join(mix.words for mix in keeper.mixes)
-                self._note(raise_mission_mismatch, self.command, is_mixed=True, words=words)
+                why = [Reason("list_mixed", {"list": list_reason(mix.kind.name), "mix": mix.what}) for mix in keeper.mixes]
+                self._note(raise_mission_mismatch, self.command, is_mixed=True, why=why)
             if time.monotonic() - noted_s >= PROGRESS_INTERVAL_S:
                 noted_s = time.monotonic()
                 progress = keeper.progress
@@ -336,23 +335,22 @@ class Delivery:
     async def _report_load(self, task: DeliveryTask, outcome: SyncOutcome) -> None:
         """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
         still_mixed = outcome.state is SyncState.MIXED or (outcome.state is SyncState.UNREAD and outcome.is_critical)
-        await self._surely(raise_mission_mismatch, self.command, is_mixed=still_mixed, words=outcome.words)
+        await self._surely(raise_mission_mismatch, self.command, is_mixed=still_mixed, why=outcome.why)
         before = task.before if outcome.state is SyncState.INTACT else None
         if outcome.state is SyncState.READY:
             await self._surely(raise_other_list, self.command)
-            warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
-            reported = " ".join(filter(None, [outcome.left_alone, warnings]))
+            warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ()
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
             self.session.forget_flown()
             self.session.message_requests.rtl_reading.ask_anew(time.monotonic())  # also of the rally points that it holds now
-            await self._end_with(end_loading, wanted, note=outcome.words, warnings=reported)
+            await self._end_with(end_loading, wanted, note=outcome.why, warnings=(*outcome.left_alone, *warnings))
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
-            await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.words)
+            await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.why)
         elif self.is_closing or (outcome.code in UNACKNOWLEDGED and not outcome.is_critical):
-            await self._end(note_released, retry_in_s=0.0 if self.is_closing else TRY_AGAIN_IN_S, note=outcome.words)
+            await self._end(note_released, retry_in_s=0.0 if self.is_closing else TRY_AGAIN_IN_S, note=outcome.why)
         else:
-            await self._end_with(fail_loading, before, outcome.code or outcome.state.value, outcome.words)
+            await self._end_with(fail_loading, before, outcome.code or outcome.state.value, outcome.why)
 
     @property
     def _fence(self) -> dict[str, Any]:

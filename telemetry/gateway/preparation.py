@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
+from typing import Any
 
 from django.conf import settings
 
@@ -19,6 +20,7 @@ from missions.command_rules import ALONG_ROUTE
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.commands.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
+from operation.reasons import Reason, text_reason
 from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
@@ -58,11 +60,15 @@ class CannotCarry:
     """`is_for_good`: another try will not help."""
 
     code: str
-    words: str
+    why: tuple[Reason, ...]
     is_for_good: bool = True
 
 
-_OFF_ROUTE = CannotCarry("off-route", "The UAV is not on the way on which its route begins. Plan the rest again.")
+def _cannot(code: str, reason: str, *, is_for_good: bool = True, **params: Any) -> CannotCarry:
+    return CannotCarry(code, (Reason(reason, params),), is_for_good)
+
+
+_OFF_ROUTE = _cannot("off-route", "off_first_leg")
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,7 @@ class DeliveryTask:
 def reason_not_to_start(start: UavCommand) -> CannotCarry | None:
     """Others that are in the air come near its route."""
     to_wait = reasons_to_carry_later(start)
-    return CannotCarry(START_SLOT, to_wait[0].message) if to_wait else None
+    return CannotCarry(START_SLOT, (text_reason(to_wait[0].message),)) if to_wait else None
 
 
 def task_of(command: UavCommand) -> DeliveryTask | CannotCarry:
@@ -108,20 +114,20 @@ def task_of(command: UavCommand) -> DeliveryTask | CannotCarry:
     try:
         approved = _approved(command, before)
     except DamagedApproval:
-        return CannotCarry("damaged-approval", "The approval is not the one that was given: its hash is another one.")
+        return _cannot("damaged-approval", "damaged_approval")
     except (LookupError, StopIteration):
-        return CannotCarry("no-flight", "The approval has no such flight of this UAV.")
+        return _cannot("no-flight", "no_such_flight")
     if isinstance(approved, CannotCarry):
         return approved
     if approved.load is None:
-        return CannotCarry("not-mavlink", "It was approved for a UAV with a companion computer. Revoke, and approve it again.")
+        return CannotCarry("not-mavlink", (Reason("approved_for_companion"), Reason("revoke_and_approve")))
     wanted = LoadedLists(approved.load.content_sha256, approved.approval, approved.flight)
     if command.kind == CommandKind.UPLOAD_MISSION:
         known = _others(command, approved.load)
         begun_by = approved.route.begun_by
         return DeliveryTask(load=approved.load, take_off=approved.take_off, wanted=wanted, before=before, begun_by=begun_by, known=known)
     if before != wanted:
-        return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
+        return _cannot("not-loaded", "flight_not_loaded")
     begun_by = approved.route.begun_by if command.kind == CommandKind.START else None
     if command.kind == CommandKind.START:
         too_near = reason_not_to_start(command)
@@ -134,26 +140,26 @@ def _return_along(command: UavCommand, before: LoadedLists | None) -> DeliveryTa
     approval = command.approval
     held = None if approval is None else held_flight(approval, command.uav_id, before)
     if held is None or approval is None or approval.revoked_at is not None or approval.revoke_requested_at is not None:
-        return CannotCarry("not-loaded", "The UAV does not surely hold its approved route: it cannot return along it.")
+        return _cannot("not-loaded", "list_not_sure")
     return DeliveryTask(order=Order.RETURN, before=before, along=held)
 
 
 def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: datetime) -> dict[str, float] | CannotCarry:
     """Parameters of a return along the route from where the vehicle is now; reads the database. now_s: by the state's clock."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
-        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+        return _cannot("no-position", "position_unknown", is_for_good=False)
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
-        return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
+        return _cannot("no-item", "waypoint_unknown", is_for_good=False)
     is_ardupilot = state.autopilot_type is AutopilotType.ARDUPILOT
     if is_ardupilot and not state.is_in(Mode.MISSION):
         if state.parameters.get(RESTARTS) is None:
-            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+            return _cannot("no-item", "restart_unknown", parameter=RESTARTS, is_for_good=False)
         if state.parameters[RESTARTS]:
-            return CannotCarry("begins-anew", f"The UAV would fly its route from the beginning: {RESTARTS} is not 0.")
+            return _cannot("begins-anew", "would_restart", parameter=RESTARTS)
     waypoint = held.waypoint_of(state.mission_item - 1 if is_ardupilot else state.mission_item)
     found = along_route(held, position=state.position, height_m=state.altitude_relative_m, waypoint=waypoint, now=now)
     if found is None:
-        return CannotCarry("not-clear", "From where the UAV is now no way along its route is clear.")
+        return _cannot("not-clear", "no_clear_return")
     return {ITEM: float(found.item), SPEED_MPS: found.path.speed_mps}
 
 
@@ -161,15 +167,15 @@ def _approved(command: UavCommand, before: LoadedLists | None) -> ApprovedLoad |
     """The flight that a command is about; a resumed one is that which is on the UAV. Raises as `load_of`."""
     approval = command.approval
     if approval is None or command.mission is None:
-        return CannotCarry("no-mission", "Only a mission that was approved can be flown.")
+        return _cannot("no-mission", "not_approved")
     if command.kind in FLIES_LIST and (approval.revoked_at is not None or approval.revoke_requested_at is not None):
-        return CannotCarry("revoked", "The approval was taken back.")
+        return _cannot("revoked", "approval_revoked")
     if command.kind != CommandKind.RESUME:
         return load_of(command)
     if command.mission.state != MissionState.ACTIVE:
-        return CannotCarry("not-active", "Only a mission that is being flown can be resumed.")
+        return _cannot("not-active", "only_active_resumed")
     if before is None or before.approval != approval.pk:
-        return CannotCarry("not-loaded", "The UAV does not hold a flight of the approved mission.")
+        return _cannot("not-loaded", "no_flight_loaded")
     return approved_load(approval, uav_id=command.uav_id, flight=before.flight)
 
 
@@ -181,18 +187,18 @@ def reason_not_to(task: DeliveryTask, state: VehicleState, now_s: float) -> Cann
     if task.take_off is None:
         return None
     if task.begun_by is not None and not state.is_in_air:
-        return CannotCarry("on-ground", "This route begins in the air, and the UAV does not fly.", is_for_good=state.is_in_air is False)
+        return _cannot("on-ground", "mid_air_start_not_flying", is_for_good=state.is_in_air is False)
     if not state.is_in_air:
         if state.position is None or not _is_new(state.position_at_s, now_s):
-            return CannotCarry("no-position", "The UAV does not tell where it stands.", is_for_good=False)
-        elsewhere = _elsewhere(task.take_off, state.position, state.altitude_amsl_m, "UAV stands", "UAV reports", "")
+            return _cannot("no-position", "stand_unknown", is_for_good=False)
+        elsewhere = _elsewhere(task.take_off, state.position, state.altitude_amsl_m, "stands", "elsewhere", "other-height")
         if elsewhere is not None:
             return elsewhere
     if task.order is None:
         return None
     if state.home is None or not _is_new(state.home_at_s, now_s):
-        return CannotCarry("no-home", "The UAV does not tell where its home is, from which it counts its heights.", is_for_good=False)
-    elsewhere = _elsewhere(task.take_off, state.home, state.home_amsl_m, "UAV's home is", "UAV's home is", "home-")
+        return _cannot("no-home", "home_unknown", is_for_good=False)
+    elsewhere = _elsewhere(task.take_off, state.home, state.home_amsl_m, "home", "home-elsewhere", "home-height")
     if elsewhere is not None or not state.is_in_air or task.onboard is None or state.is_in(Mode.MISSION):
         return elsewhere
     if task.begun_by is not None:
@@ -203,15 +209,15 @@ def reason_not_to(task: DeliveryTask, state: VehicleState, now_s: float) -> Cann
 def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s: float) -> CannotCarry | None:
     """It is begun with the item at the end of the leg on which the UAV is: each leg until then was looked at."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
-        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+        return _cannot("no-position", "position_unknown", is_for_good=False)
     item = item_to_begin_with(load, begun_by, state)
     if item is None:
         return _OFF_ROUTE
     if state.autopilot_type is AutopilotType.ARDUPILOT and item > 0:
         if state.parameters.get(RESTARTS) is None:
-            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+            return _cannot("no-item", "restart_unknown", parameter=RESTARTS, is_for_good=False)
         if state.parameters[RESTARTS]:
-            return CannotCarry("begins-anew", f"The UAV would fly back to where its route begins: set {RESTARTS} to 0.")
+            return _cannot("begins-anew", "would_fly_back", parameter=RESTARTS)
     return None
 
 
@@ -226,26 +232,22 @@ def as_begun(task: DeliveryTask, state: VehicleState) -> DeliveryTask | CannotCa
 def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s: float) -> CannotCarry | None:
     """In the air it goes on to its present item, straight on from wherever it is."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
-        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+        return _cannot("no-position", "position_unknown", is_for_good=False)
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
-        return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
+        return _cannot("no-item", "waypoint_unknown", is_for_good=False)
     item = state.mission_item
     if state.autopilot_type is AutopilotType.ARDUPILOT:
         if state.parameters.get(RESTARTS) is None:
-            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+            return _cannot("no-item", "restart_unknown", parameter=RESTARTS, is_for_good=False)
         item = 0 if state.parameters[RESTARTS] else max(item - 1, 0)
     beside = beside_leg(load, item, take_off.position, state.position, state.altitude_relative_m)
     if beside is None:
-        return CannotCarry("flown-already", "The UAV has flown its mission to the end: there is nothing to go on with.")
+        return _cannot("flown-already", "flown_to_end")
     if beside.away_m > settings.RESUME_DISTANCE_M:
-        words = f"The UAV is {beside.away_m:.0f} m from the leg that it would fly on; {settings.RESUME_DISTANCE_M:.0f} m are allowed."
-        return CannotCarry("off-route", words)
+        return _cannot("off-route", "beside_leg", metres=round(beside.away_m), allowed=round(settings.RESUME_DISTANCE_M))
     if abs(beside.above_m) > settings.TAKE_OFF_HEIGHT_M:
-        side = "above" if beside.above_m > 0 else "below"
-        words = (
-            f"The UAV is {abs(beside.above_m):.0f} m {side} the leg that it would fly on; {settings.TAKE_OFF_HEIGHT_M:.0f} m are allowed."
-        )
-        return CannotCarry("off-height", words)
+        reason = "above_leg" if beside.above_m > 0 else "below_leg"
+        return _cannot("off-height", reason, metres=round(abs(beside.above_m)), allowed=round(settings.TAKE_OFF_HEIGHT_M))
     return None
 
 
@@ -253,19 +255,17 @@ def _is_new(sent_at_s: float | None, now_s: float) -> bool:
     return sent_at_s is not None and now_s - sent_at_s <= NEW_S
 
 
-def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, stands: str, reports: str, code: str) -> CannotCarry | None:
-    """amsl_m: None is not compared, as is a take-off without a height."""
+def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, reason: str, off_place: str, off_height: str) -> CannotCarry | None:
+    """amsl_m: None is not compared, as is a take-off without a height. `off_place` and `off_height` are codes."""
     away_m = _apart_m(place, take_off.position)
     if away_m > settings.TAKE_OFF_DISTANCE_M:
-        words = f"The {stands} {away_m:.0f} m from the planned take-off; {settings.TAKE_OFF_DISTANCE_M:.0f} m are allowed."
-        return CannotCarry(f"{code}elsewhere", words)
+        return _cannot(off_place, f"{reason}_elsewhere", metres=round(away_m), allowed=round(settings.TAKE_OFF_DISTANCE_M))
     if take_off.altitude_amsl_m is None or amsl_m is None:
         return None
     above_m = amsl_m - take_off.altitude_amsl_m
     if abs(above_m) > settings.TAKE_OFF_HEIGHT_M:
         side = "above" if above_m > 0 else "below"
-        words = f"The {reports} {abs(above_m):.0f} m {side} the planned take-off; {settings.TAKE_OFF_HEIGHT_M:.0f} m are allowed."
-        return CannotCarry(f"{code or 'other-'}height", words)
+        return _cannot(off_height, f"{reason}_{side}", metres=round(abs(above_m)), allowed=round(settings.TAKE_OFF_HEIGHT_M))
     return None
 
 

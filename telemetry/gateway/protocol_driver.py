@@ -18,7 +18,9 @@ from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.upload import TransferState
 from mavlink.mission_sync.wire import onboard_list, onboard_sha256
 from mavlink.parameters import ParameterReading
+from mavlink.reasons import list_reason
 from mavlink.vehicle_plan import FlightLoad, MissionType
+from operation.reasons import Reason
 from telemetry.gateway.session import Session
 from workspace.live.timed_waits import wait_for_event
 
@@ -83,11 +85,11 @@ class ProtocolDriver:
 
 @dataclass(frozen=True)
 class OnboardReading:
-    """`code` and `words` say why it is not `is_onboard`."""
+    """`code` and `why` say why it is not `is_onboard`."""
 
     is_onboard: bool
     code: str = ""
-    words: str = ""
+    why: tuple[Reason, ...] = ()
 
 
 def _notify(on_item: Callable[[int], None], before: int, done: int) -> None:
@@ -141,13 +143,13 @@ async def _read(
     if outcome.code == "unsupported" and not load.of(kind):
         return OnboardReading(True)  # it has no such list
     if outcome.state is not TransferState.DONE:
-        return OnboardReading(False, outcome.code, f"Nothing was sent: the {name} on the vehicle could not be read.")
+        return OnboardReading(False, outcome.code, (Reason("list_not_read", {"list": list_reason(name)}),))
     autopilot_type = session.autopilot_type or AutopilotType.OTHER
     held = onboard_list(download.read, kind, autopilot_type)
     found = differences(load.of(kind), held, autopilot_type)
     if not found or (not load.of(kind) and beside.get(name) == onboard_sha256(held)):
         return OnboardReading(True)
-    more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-    return OnboardReading(
-        False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more})."
-    )
+    difference = Reason("item_is_otherwise", found[0].params)
+    if len(found) > 1:
+        difference = Reason("items_are_otherwise", {"first": difference, "more": len(found) - 1})
+    return OnboardReading(False, OTHER_LIST_READ, (Reason("list_not_approved", {"list": list_reason(name), "difference": difference}),))

@@ -1,12 +1,14 @@
 """What alerts say, in the reader's language: stored is a template in English, and what is put into it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
-from missions.outcome_messages import render_outcome
+from missions.models import UavCommand
+from operation.reasons import Reason, english
+from workspace.reason_texts import reasons_of_column, why_text
 
 # Detectors know no languages: what they may say is named here for the catalogues.
 TEMPLATES = (
@@ -115,8 +117,19 @@ ADVICES = (
     gettext_noop("The failsafe set on the autopilot (NAV_DLL_ACT, NAV_RCL_ACT) comes first."),
     gettext_noop("A failsafe set on the UAV comes first."),
 )
+WORDS_WHY = "words_why"
 TRANSLATED_VALUES = ("step", "state", "why", "own", "failsafe")
 STATES = (gettext_noop("low"), gettext_noop("critical"), gettext_noop("emergency"), gettext_noop("failed"), gettext_noop("unhealthy"))
+
+
+def why_values(why: Sequence[Reason]) -> dict[str, Any]:
+    """The values of an alert that quotes reasons: `words` in English, and the reasons."""
+    return {"words": english(why), WORDS_WHY: [reason.to_json() for reason in why]}
+
+
+def outcome_values(command: UavCommand) -> dict[str, Any]:
+    """The same of what became of a command."""
+    return {"words": command.outcome, WORDS_WHY: reasons_of_column(command.outcome_why, command.outcome)}
 
 
 def alert_words(message: str, values: Mapping[str, Any]) -> str:
@@ -124,7 +137,7 @@ def alert_words(message: str, values: Mapping[str, Any]) -> str:
     if not values:
         return message
     read = {
-        name: render_outcome(value) if name == "words" else _(value) if name in TRANSLATED_VALUES else value
+        name: why_text(values.get(WORDS_WHY, ()), value) if name == "words" else _(value) if name in TRANSLATED_VALUES else value
         for name, value in values.items()
     }
     try:

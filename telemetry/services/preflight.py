@@ -19,7 +19,6 @@ from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
 from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
-from missions.outcome_messages import render_outcome
 from missions.selectors.commands import upload_of
 from missions.selectors.fleet import performance_of
 from missions.selectors.missions import approval_in_force, mission_of_organisation
@@ -33,6 +32,7 @@ from telemetry.models import UavLink
 from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.alerts.approved_flights import approved_content
 from workspace.models import Organisation
+from workspace.reason_texts import column_text
 
 RECEIVED_WITHIN = timedelta(seconds=15)  # companions report every 10 s
 BATTERY_WITHIN = timedelta(seconds=60)
@@ -269,7 +269,7 @@ def _onboard_mission(uav: Uav, approval: Approval, link: UavLink) -> Check:
         return Check(
             "mission",
             CheckState.FAILED,
-            _("Not uploaded: %(why)s") % {"why": render_outcome(upload.outcome) or upload.get_state_display()},
+            _("Not uploaded: %(why)s") % {"why": column_text(upload.outcome_why, upload.outcome) or upload.get_state_display()},
         )
     if link.loaded_doubt:
         return Check("mission", CheckState.WARNING, _("Uploaded; it may hold something else by now, and is read back before it starts"))

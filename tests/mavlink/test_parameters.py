@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.commands.command import CommandEnd
 from mavlink.parameters import ParameterReading, ParameterSetting
 from mavlink.timeouts import TransferRules
+from operation.reasons import english
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ADDRESSING, known
 from tests.telemetry.vehicles.px4 import Px4
@@ -57,7 +58,7 @@ def test_a_parameter_is_set_over_a_bad_link_and_read_back(seed: int):
     setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ADDRESSING, RULES)
     outcome = Channel(setting, vehicle, Link(0.3, duplicates=0.1, reordered=0.1), seed, listeners=[state]).run()
     assert (outcome.state, vehicle.parameters["RTL_RETURN_ALT"]) == (CommandEnd.APPLIED, 85.0)
-    assert "read back" in outcome.words
+    assert "read back" in english(outcome.why)
 
 
 def test_a_parameter_that_the_vehicle_keeps_as_it_was_is_not_set():
@@ -67,7 +68,7 @@ def test_a_parameter_that_the_vehicle_keeps_as_it_was_is_not_set():
     setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ADDRESSING, RULES)
     outcome = Channel(setting, vehicle, Link(), 1, listeners=[state]).run()
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "denied")
-    assert "stays 60" in outcome.words
+    assert "stays 60" in english(outcome.why)
 
 
 def test_a_vehicle_that_does_not_answer_is_silent():

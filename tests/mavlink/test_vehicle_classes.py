@@ -10,6 +10,7 @@ from mavlink.mission_sync.outcome import SyncState
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_class import VehicleClass, class_of
+from operation.reasons import english
 from tests.mavlink.commands.orders_given import reported
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
@@ -63,7 +64,7 @@ def test_ardupilot_of_another_kind_is_commanded_nothing_and_told_why(vehicle_typ
     vehicle = ArduPilot(vehicle_type=vehicle_type, heartbeats=True, is_armed=True, is_in_air=True, custom_mode=10)
     outcome, channel = reported(vehicle, order)
     assert (outcome.state, outcome.code, channel.to_vehicle) == (CommandEnd.FAILED, "vehicle-class", [])
-    assert outcome.words == f"The vehicle is a {kind}: Spanwise plans for and commands multicopters only."
+    assert english(outcome.why) == f"The vehicle is a {kind}: Spanwise plans for and commands multicopters only."
     assert not known(vehicle).can_be_stopped, "not into the dark either"
 
 
@@ -82,4 +83,4 @@ def test_no_mission_is_sent_to_another_kind(autopilot_type, vehicle_type):
     channel = Channel(MissionSync(load(7), known(vehicle), ADDRESSING, TransferRules()), vehicle)
     outcome = channel.run()
     assert (outcome.state, outcome.code, channel.to_vehicle) == (SyncState.INTACT, "vehicle-class", [])
-    assert outcome.words.startswith("Nothing was sent. The vehicle is a ")
+    assert english(outcome.why).startswith("Nothing was sent. The vehicle is a ")

@@ -36,6 +36,7 @@ from missions.services.commands.call_signs import give_call_sign
 from missions.services.commands.outbox import end_commands, queue_command
 from missions.services.commands.refused import refuse, refuse_for
 from missions.services.missions import MissionChanged, note
+from operation.reasons import Reason
 from workspace.live.changes import publish_live
 from workspace.models import User
 
@@ -101,7 +102,7 @@ def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revi
             approval.revoke_requested_at, approval.revoked_by, approval.revoke_reason = timezone.now(), actor, reason
             approval.save(update_fields=["revoke_requested_at", "revoked_by", "revoke_reason"])
         never_left = Q(kind=CommandKind.UPLOAD_MISSION, attempts=0)
-        end_commands(approval.commands.filter(never_left | Q(kind__in=SETS_IN_MOTION)), code=REVOKED, words="The approval was revoked.")
+        end_commands(approval.commands.filter(never_left | Q(kind__in=SETS_IN_MOTION)), code=REVOKED, why=(Reason("revoked"),))
         for uav in uavs_that_may_hold(approval).order_by("pk"):
             if not _is_being_cleared(uav, approval):
                 queue_command(uav=uav, kind=CommandKind.CLEAR_MISSION, actor=actor, why=reason, mission=held, approval=approval)

@@ -30,6 +30,7 @@ from missions.services.commands.outbox import (
 )
 from missions.services.commands.route_swap import go_on_after
 from missions.services.commands.staggered_returns import return_after
+from operation.reasons import Why
 
 __all__ = [
     "CHANNEL",
@@ -50,7 +51,7 @@ __all__ = [
 ]
 
 
-def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: Why = (), warnings: Why = ()) -> bool:
     """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked.
 
     Of what hands a UAV over to another mission the next step is given, and after what it does before it returns, the return.

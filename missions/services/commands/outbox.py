@@ -4,7 +4,7 @@ All times are the database's, so that the clocks of those who carry do not matte
 once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from datetime import timedelta
 from functools import partial
 from typing import Any
@@ -31,10 +31,12 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.commands.refused import refuse
+from operation.reasons import Reason, Why, english, reason_from_json, text_reason
 from workspace.audit import record_change
 from workspace.leases import from_now, is_free, release, renew, take
 from workspace.live.changes import publish_live
 from workspace.models import User
+from workspace.reason_texts import reasons_of_column, text_and_column
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNACKNOWLEDGED = "superseded", "not-delivered", "unconfirmed", "unheard"
@@ -69,7 +71,7 @@ def queue_command(
         _end(
             overtaken,
             SUPERSEDED,
-            f"A later command took its place: {CommandKind(kind).label}.",
+            (Reason("superseded", {"command": str(kind)}),),
         )
         last = UavCommand.objects.filter(uav=uav).aggregate(last=Max("sequence"))["last"] or 0
         command = UavCommand.objects.create(
@@ -155,15 +157,15 @@ def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
-    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": "", "outcome": ""}
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": "", **_outcome(())}
     return _note(command_id, attempt, holder, CommandState.SENT, now, only=_wanted())
 
 
 def note_sent_unacknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
     """It goes out now and again, to a UAV of which nothing is heard. False also once nobody wants it any more."""
-    words = "Sent; nothing is heard from the UAV."
-    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNACKNOWLEDGED, "outcome": words}
-    return _note(command_id, attempt, holder, CommandState.SENT, now, words, only=_wanted())
+    why = (Reason("unacknowledged"),)
+    now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNACKNOWLEDGED, **_outcome(why)}
+    return _note(command_id, attempt, holder, CommandState.SENT, now, why, only=_wanted())
 
 
 def is_wanted(command_id: UUID, *, attempt: int, holder: str) -> bool:
@@ -201,22 +203,22 @@ def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, to
     return bool(held.update(progress={"done": done, "total": total}, expires_at=put_off))
 
 
-def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
+def note_applied(command_id: UUID, *, attempt: int, holder: str, note: Why = (), warnings: Why = ()) -> bool:
     """The vehicle was seen to do it. `warnings` are for whoever gave the command."""
-    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None, "outcome": warnings[:500]}
-    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, " ".join(filter(None, [note, warnings])))
+    ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None, **_outcome(warnings)}
+    return _note(command_id, attempt, holder, CommandState.APPLIED, ended, " ".join(filter(None, [english(note), english(warnings)])))
 
 
-def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder: str) -> bool:
-    """The vehicle refused it, or did not do it: why, in words."""
-    ended = {"finished_at": Now(), "lease_expires_at": None, "outcome_code": code[:50], "outcome": words[:500]}
-    return _note(command_id, attempt, holder, CommandState.FAILED, ended, words)
+def note_failed(command_id: UUID, code: str, why: Why, *, attempt: int, holder: str) -> bool:
+    """The vehicle refused it, or did not do it: why."""
+    ended = {"finished_at": Now(), "lease_expires_at": None, "outcome_code": code[:50], **_outcome(why)}
+    return _note(command_id, attempt, holder, CommandState.FAILED, ended, why)
 
 
-def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "", code: str = "") -> bool:
+def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: Why = (), code: str = "") -> bool:
     """Given back, for anybody to take after so many seconds. With a `code` the row keeps why it has to wait, which `note` tells."""
     back: dict[str, Any] = {"holder": "", "lease_expires_at": from_now(retry_in_s) if retry_in_s else None}
-    back |= {"outcome_code": code[:50], "outcome": note[:500]} if code else {}
+    back |= {"outcome_code": code[:50], **_outcome(note)} if code else {}
     return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
 
 
@@ -225,21 +227,21 @@ def expire_overdue() -> int:
     overdue = UavCommand.objects.filter(is_free(), expires_at__lte=Now())
     with transaction.atomic():
         unsent = overdue.filter(sent_at=None)
-        never = _end(unsent.filter(outcome_code=""), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)
+        never = _end(unsent.filter(outcome_code=""), NOT_DELIVERED, (Reason("not_delivered"),), skip_locked=True)
         waited = unsent.exclude(outcome_code="").order_by("outcome_code", "outcome")
-        for code, why in waited.values_list("outcome_code", "outcome").distinct():
-            words = f"It was not sent in time. {why}"[:500]
-            never += _end(waited.filter(outcome_code=code, outcome=why), code, words, skip_locked=True)
+        causes = {(code, stored): column for code, stored, column in waited.values_list("outcome_code", "outcome", "outcome_why")}
+        for (code, stored), column in causes.items():
+            never += _end(waited.filter(outcome_code=code, outcome=stored), code, _not_in_time(stored, column), skip_locked=True)
         sent = overdue.filter(sent_at__isnull=False)
-        unsure = _end(sent, UNCONFIRMED, "It was sent; whether it was done is not known.", skip_locked=True)
+        unsure = _end(sent, UNCONFIRMED, (Reason("unconfirmed"),), skip_locked=True)
     return never + unsure
 
 
-def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> int:
+def end_commands(commands: QuerySet[UavCommand], *, code: str, why: Sequence[Reason]) -> int:
     """No longer wanted, for another reason than a later command."""
     with transaction.atomic():
         ended = list(commands.filter(state__in=OPEN_COMMANDS).values_list("uav_id", flat=True))
-        number = _end(commands, code, words)
+        number = _end(commands, code, why)
         for uav_id in set(ended):
             _notify(uav_id)
     return number
@@ -253,6 +255,20 @@ def _refuse_to_overtake(uav: Uav, kind: CommandKind, commands: QuerySet[UavComma
         raise refuse("safety_first", words % {"uav": uav.name})
 
 
+def _outcome(why: Why) -> dict[str, Any]:
+    text, column = text_and_column(why, 500)
+    return {"outcome": text, "outcome_why": column}
+
+
+def _not_in_time(stored: str, column: dict[str, Any] | None) -> tuple[Reason, ...]:
+    """With the reason for which it had to wait."""
+    try:
+        waited_for = [reason_from_json(reason) for reason in reasons_of_column(column, stored)]
+    except (KeyError, TypeError):  # of another version
+        waited_for = []
+    return (Reason("not_sent_in_time"), *(waited_for or [text_reason(stored)]))
+
+
 def _wanted() -> Q:
     return Q(expires_at=None) | Q(expires_at__gt=Now())
 
@@ -262,12 +278,12 @@ def _held(command_id: UUID, attempt: int, holder: str) -> QuerySet[UavCommand]:
 
 
 def _note(
-    command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: str = "", *, only: Q | None = None
+    command_id: UUID, attempt: int, holder: str, state: CommandState, values: dict[str, Any], note: Why = (), *, only: Q | None = None
 ) -> bool:
     with transaction.atomic():
         if not _held(command_id, attempt, holder).filter(only or Q()).update(state=state, **values):
             return False
-        UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
+        UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=english(note)[:500])
         _notify_pages([_organisation_of(command_id)])
     return True
 
@@ -277,20 +293,23 @@ def withdraw(command_ids: Collection[UUID]) -> int:
     with transaction.atomic():
         unsent = UavCommand.objects.filter(pk__in=command_ids, sent_at=None)
         uavs = list(unsent.filter(state__in=OPEN_COMMANDS).values_list("uav", flat=True))
-        ended = _end(unsent, WITHDRAWN, "It was withdrawn before it was sent.")
+        ended = _end(unsent, WITHDRAWN, (Reason("withdrawn"),))
         for uav_id in uavs:
             _notify(uav_id)
     return ended
 
 
-def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: bool = False) -> int:
+def _end(commands: QuerySet[UavCommand], code: str, why: Sequence[Reason], *, skip_locked: bool = False) -> int:
     """The caller has begun a transaction."""
+    outcome = _outcome(why)
     found = list(commands.filter(state__in=OPEN_COMMANDS).select_for_update(skip_locked=skip_locked).order_by("pk"))
     UavCommand.objects.filter(pk__in=[command.pk for command in found]).update(
-        state=CommandState.EXPIRED, finished_at=Now(), lease_expires_at=None, outcome_code=code, outcome=words
+        state=CommandState.EXPIRED, finished_at=Now(), lease_expires_at=None, outcome_code=code, **outcome
     )
     UavCommandEvent.objects.bulk_create(
-        UavCommandEvent(command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=words)
+        UavCommandEvent(
+            command=command, state=CommandState.EXPIRED, attempt=command.attempts, holder=command.holder, note=outcome["outcome"]
+        )
         for command in found
     )
     _notify_pages({command.organisation_id for command in found})

@@ -8,9 +8,9 @@ from missions.models import Mission, Route
 from missions.services.manual_edits.checks import ManualEditContext, manual_edit_context
 from missions.services.manual_edits.edits import checked_manual_edit, place_of, settle_manual_edits, store_manual_edit
 from missions.services.manual_edits.legs import EditedLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
+from operation.reasons import Reason
 from planning.plan import PlannedRoute, PlanWarning
 from planning.plan_json import warning_to_json
-from planning.reasons import Reason
 from planning.request import InvalidRequest
 from planning.trajectory.waypoints import RoutePoints
 

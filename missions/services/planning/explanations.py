@@ -14,7 +14,6 @@ from inspection.network.build.obstacles import NO_ZONE
 from inspection.network.route_index import node_tree
 from inspection.network.zones.zone_index import widen
 from missions.models import UavState
-from missions.reason_texts import why_text
 from missions.selectors.fleet import uavs_of_organisation
 from missions.selectors.planning_context import planning_context, read_targets, stored_bases
 from missions.services.planning.planner import make_plan
@@ -30,6 +29,7 @@ from planning.request import EndAction, PlanRequest, TargetRequest, UavRequest
 from planning.solver.reach import needed_range_m
 from planning.trajectory.heights import is_above_limit
 from workspace.models import Organisation
+from workspace.reason_texts import why_text
 
 MAX_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
 MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight

@@ -9,7 +9,6 @@ from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.selectors.planning import planning_read
-from missions.reason_texts import reason_text
 from missions.selectors.planning_context import planning_context
 from planning.airspace import Airspace, airspace_on, column_m, zone_at, zone_choice
 from planning.assignment.refusals import groundings
@@ -19,6 +18,7 @@ from planning.reachability.reachability import Flight, reach
 from planning.reachability.reachable_assets import Reach, Reachability
 from planning.request import ROUTE_ENDS, BaseRequest, EndAction, PlanRequest, UavRequest
 from workspace.locale_negotiation import number_text
+from workspace.reason_texts import reason_text
 
 Box = tuple[float, float, float, float]
 CODES = {

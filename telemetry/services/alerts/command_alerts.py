@@ -10,6 +10,7 @@ from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.staggered_returns import stuck_returns
 from telemetry.alerting.finding import ACTS, RETURN, acts
 from telemetry.models import Alert, AlertLevel
+from telemetry.selectors.alert_words import outcome_values
 from telemetry.services.alerts.alerts import close_alert, open_alert
 
 HAND_OVER_FAILED, RETURN_NOT_BEGUN = "hand-over-failed", "return-not-begun"
@@ -40,7 +41,7 @@ def settle_command_alerts() -> None:
 def _open(command: UavCommand, code: str, message: str, values: dict[str, Any], details: dict[str, Any]) -> None:
     open_alert(
         uav=command.uav, level=AlertLevel.CRITICAL, code=code, message=message, mission=command.mission,
-        values={"uav": command.uav.name, "words": command.outcome, **values}, details={"command": str(command.pk), **details},
+        values={"uav": command.uav.name, **outcome_values(command), **values}, details={"command": str(command.pk), **details},
     )  # fmt: skip
 
 

@@ -1,7 +1,11 @@
 """A vehicle that holds something else than what was approved must not fly: reported at once, until it is over."""
 
+from collections.abc import Sequence
+
 from missions.models import UavCommand
+from operation.reasons import Reason
 from telemetry.models import AlertLevel
+from telemetry.selectors.alert_words import why_values
 from telemetry.selectors.alerts import MIXED, OTHER_LIST
 from telemetry.services.alerts.alerts import close_alert, open_alert
 
@@ -9,23 +13,23 @@ IS_MIXED = "%(uav)s holds a mix of missions. %(words)s"
 HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on board. %(words)s"
 
 
-def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, words: str) -> None:
+def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, why: Sequence[Reason]) -> None:
     """After a load was brought, or while it is."""
     if not is_mixed:
         close_alert(uav=command.uav, code=MIXED)
         return
     open_alert(
-        uav=command.uav, level=AlertLevel.CRITICAL, code=MIXED, message=IS_MIXED, values={"uav": command.uav.name, "words": words},
+        uav=command.uav, level=AlertLevel.CRITICAL, code=MIXED, message=IS_MIXED, values={"uav": command.uav.name, **why_values(why)},
         mission=command.mission, details={"command": str(command.pk)},
     )  # fmt: skip
 
 
-def raise_other_list(command: UavCommand, words: str = "") -> None:
-    """After the list on board was read before a start or resume. Without words it is the approved one, and the alert is over."""
-    if not words:
+def raise_other_list(command: UavCommand, why: Sequence[Reason] = ()) -> None:
+    """After the list on board was read before a start or resume. Without reasons it is the approved one, and the alert is over."""
+    if not why:
         close_alert(uav=command.uav, code=OTHER_LIST)
         return
     open_alert(
-        uav=command.uav, level=AlertLevel.CRITICAL, code=OTHER_LIST, message=HOLDS_OTHER, values={"uav": command.uav.name, "words": words},
-        mission=command.mission, details={"command": str(command.pk)},
+        uav=command.uav, level=AlertLevel.CRITICAL, code=OTHER_LIST, message=HOLDS_OTHER, mission=command.mission,
+        values={"uav": command.uav.name, **why_values(why)}, details={"command": str(command.pk)},
     )  # fmt: skip

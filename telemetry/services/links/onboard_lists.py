@@ -11,6 +11,7 @@ from django.db.models.functions import Now
 
 from missions.models import UavCommand
 from missions.services.commands.commands import note_applied, note_failed, note_sent
+from operation.reasons import Why
 from telemetry.models import UavLink
 
 
@@ -75,7 +76,7 @@ def begin_loading(carried: Carried) -> bool:
     return True
 
 
-def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: str = "", warnings: str = "") -> bool:
+def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: Why = (), warnings: Why = ()) -> bool:
     """The vehicle holds what it was to hold: `loaded`, or nothing."""
     with transaction.atomic():
         if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note, warnings=warnings):
@@ -84,10 +85,10 @@ def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: str = "",
     return True
 
 
-def fail_loading(carried: Carried, before: LoadedLists | None, code: str, words: str) -> bool:
+def fail_loading(carried: Carried, before: LoadedLists | None, code: str, why: Why) -> bool:
     """before: what it held and holds still; None where that is not known, or nothing that was approved."""
     with transaction.atomic():
-        if not note_failed(carried.command_id, code, words, attempt=carried.attempt, holder=carried.holder):
+        if not note_failed(carried.command_id, code, why, attempt=carried.attempt, holder=carried.holder):
             return False
         _write(carried.uav_id, before)
     return True

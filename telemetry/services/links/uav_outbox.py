@@ -13,6 +13,7 @@ from missions.selectors.given import Given, given_to
 from missions.services.commands.commands import claim_commands, note_acknowledged, note_applied, note_failed, note_sent
 from missions.services.commands.dispatch import ApprovedLoad, load_of
 from missions.services.commands.start_slots import START_SLOT, reasons_to_carry_later
+from operation.reasons import Reason, Why, english
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts.alerts import close_alert, open_alert
 
@@ -82,8 +83,9 @@ def _note(uav_id: int, reported: Acknowledgement) -> Noted:
     if reported.state == CommandState.ACKNOWLEDGED:
         noted = note_acknowledged(command.pk, **holding)
     elif reported.state == CommandState.FAILED:
-        words = reported.reason or "The UAV gave no reason."
-        noted = note_failed(command.pk, REFUSED, words, **holding)
+        why: Why = reported.reason or (Reason("no_reason_given"),)
+        words = english(why)
+        noted = note_failed(command.pk, REFUSED, why, **holding)
         _hold(command, None, is_known=False)
     elif command.kind == CommandKind.UPLOAD_MISSION:
         noted, words = _note_upload(command, reported, holding)
@@ -103,15 +105,15 @@ def _note_upload(command: UavCommand, reported: Acknowledgement, holding: dict[s
         if noted:
             _hold(command, load)
         return noted, ""
-    words = "The UAV holds something else than what was approved." if reported.content_sha256 else "The UAV does not say what it holds."
-    noted = note_failed(command.pk, OTHER_CONTENT, words, **holding)
+    why = Reason("uav_holds_other" if reported.content_sha256 else "uav_holds_unknown")
+    noted = note_failed(command.pk, OTHER_CONTENT, (why,), **holding)
     _hold(command, None)
     if noted:
         open_alert(
             uav=command.uav, level=AlertLevel.CRITICAL, code=HOLDS_OTHER, message=HOLDS if reported.content_sha256 else SAYS_NOTHING,
             values={"uav": command.uav.name}, mission=command.mission,
         )  # fmt: skip
-    return noted, words
+    return noted, str(why)
 
 
 def _hold(command: UavCommand, load: ApprovedLoad | None, *, is_known: bool = True) -> None:

@@ -10,6 +10,7 @@ from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
 from mavlink.commands.driver import CommandDriver
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import english
 from tests.mavlink.commands.orders_given import (
     APPLIED,
     ARM,
@@ -194,7 +195,7 @@ def test_refused_arming_is_told_in_the_vehicles_words(autopilot_type: str, resul
     vehicle.says = "Need Position Estimate"
     outcome, channel = reported(vehicle, Order.ARM)
     assert (outcome.state, outcome.code) == (CommandEnd.FAILED, code)
-    assert "Need Position Estimate" in outcome.words
+    assert "Need Position Estimate" in english(outcome.why)
     assert len(commands(channel)) == (1 + RULES.retries if code == "temporarily-rejected" else 1)
     assert not vehicle.is_armed
 

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import AutopilotType
-from mavlink.mission_sync.compare import ReadbackMatch, are_identical, differences, found, mix_message
+from mavlink.mission_sync.compare import ReadbackMatch, are_identical, differences, found, mix_of
 from mavlink.mission_sync.wire import OnboardItem, OnboardList, onboard_item
 from mavlink.vehicle_plan import MissionItem, MissionType
+from operation.reasons import Reason
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.loads import AUTOPILOT_TYPES, load, mission, polygon, rally, waypoint
 from tests.telemetry.vehicles.vehicle import item_of
@@ -143,7 +144,8 @@ def test_items_too_many_are_named(autopilot_type: AutopilotType):
 def test_item_at_which_the_vehicle_would_stop_is_a_difference():
     items = [waypoint(0)]
     held = (replace(through(PX4, items)[0], goes_on=False),)
-    assert str(differences(items, held, PX4)[0]) == "item 0: going on afterwards is no instead of yes"
+    difference = differences(items, held, PX4)[0]
+    assert str(Reason("item_is_otherwise", difference.params)) == "item 0: going on afterwards is no instead of yes"
 
 
 def test_lists_with_nan_are_identical_to_themselves():
@@ -185,7 +187,7 @@ def test_list_is_told_from_what_was_approved(autopilot_type: AutopilotType, held
 def test_mix_is_told_by_items():
     before = through(ARDUPILOT, OLD)
     held = (*through(ARDUPILOT, NEW[:3]), *before[3:5], *through(ARDUPILOT, load(7, east=9_000).mission[1:2]))
-    words = mix_message(held, NEW, before, ARDUPILOT)
-    assert words == "6 items where 9 are approved: 0-2 are new, 3-4 are of the list before, 5 is of neither list"
-    assert mix_message((), NEW, before, ARDUPILOT) == "no items"
-    assert "not approved" in mix_message(before, NEW, None, ARDUPILOT)
+    mix = mix_of(held, NEW, before, ARDUPILOT)
+    assert str(mix) == "6 items where 9 are approved: 0-2 are new, 3-4 are of the list before, 5 is of neither list"
+    assert str(mix_of((), NEW, before, ARDUPILOT)) == "no items"
+    assert "not approved" in str(mix_of(before, NEW, None, ARDUPILOT))

@@ -100,5 +100,5 @@ def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(autopilot_
         assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.INTACT, ReadbackMatch.KNOWN)
     else:
         assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (SyncState.CLEARED, ReadbackMatch.NOTHING)
-        assert "are new" in outcome.mixes[-1].words or "is new" in outcome.mixes[-1].words
+        assert "are new" in str(outcome.mixes[-1].what) or "is new" in str(outcome.mixes[-1].what)
     assert contents(vehicle, MissionType.FENCE) is ReadbackMatch.KNOWN

@@ -34,7 +34,7 @@ def legs(*east_m: float) -> FlightLoad:
 def test_legs_and_a_start_beyond_px4s_limits_are_told():
     warnings = leg_warnings(legs(0, 500, 3_500), {"MIS_DIST_1WP": 900.0, "MIS_DIST_WPS": 900.0}, LonLat(9.82, 55.4))
     assert [(warning.code, warning.item) for warning in warnings] == [("far-first-waypoint", 0), ("long-leg", 3)]
-    assert "2990 m" in warnings[1].words
+    assert "2990 m" in str(warnings[1].reason)
 
 
 def test_legs_are_measured_on_px4s_sphere():
@@ -46,7 +46,7 @@ def test_legs_are_measured_on_px4s_sphere():
     load = FlightLoad(tuple(items))
     assert leg_warnings(load, {"MIS_DIST_WPS": 111_196.0}, None) == ()
     (reported,) = leg_warnings(load, {"MIS_DIST_WPS": 110_700.0}, None)
-    assert "111195 m" in reported.words
+    assert "111195 m" in str(reported.reason)
     assert leg_warnings(with_points_between(load, 900.0), {"MIS_DIST_WPS": 900.0}, None) == ()
 
 
@@ -65,5 +65,5 @@ def test_list_that_is_too_long_for_its_flavour_is_told():
 
 def test_list_that_is_too_long_for_most_boards_is_warned_of():
     whole = load(501, fence=polygon(0, 65))
-    assert [warning.words.split()[1] for warning in count_warnings(whole, AutopilotType.PX4)] == ["mission", "fence"]
+    assert [str(warning.reason).split()[1] for warning in count_warnings(whole, AutopilotType.PX4)] == ["mission", "fence"]
     assert count_warnings(load(500, fence=polygon(0, 64)), AutopilotType.PX4) == ()

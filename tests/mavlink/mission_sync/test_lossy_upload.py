@@ -11,6 +11,7 @@ from mavlink.mission_sync.sync import MissionSync
 from mavlink.mission_sync.wire import onboard_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
+from operation.reasons import english
 from tests.cases import long
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, polygon, rally
@@ -82,7 +83,7 @@ def stated_what_is_there(outcome: SyncOutcome, vehicle: Vehicle, new: FlightLoad
     is_old = {kind: not differences(old.of(kind), held, state.autopilot_type) for kind, held in lists.items()}
     if outcome.state is SyncState.READY:
         return all(is_new.values()) and outcome.sha256 == new.content_sha256
-    assert outcome.sha256 == "" and outcome.code and outcome.words
+    assert outcome.sha256 == "" and outcome.code and english(outcome.why)
     if outcome.state is SyncState.INTACT:
         return all(is_old.values())
     if outcome.state is SyncState.CLEARED:

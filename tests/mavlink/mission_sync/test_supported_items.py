@@ -11,6 +11,7 @@ from mavlink.mission_sync.supported_items import version_of
 from mavlink.mission_sync.sync import MissionSync
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
+from operation.reasons import english
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ADDRESSING, PLACELESS, RELATIVE, known, load, polygon, waypoint
@@ -43,7 +44,7 @@ def bring(vehicle: Vehicle, new: FlightLoad, firmware: tuple[int, int, int] | No
 def test_a_look_is_sent_to_ardupilot_by_what_its_firmware_knows(firmware, reported, commands):
     vehicle = ArduPilot(firmware=firmware)
     outcome, _ = bring(vehicle, LOOKING, reported)
-    assert (outcome.state, outcome.sha256) == (SyncState.READY, LOOKING.content_sha256), outcome.words
+    assert (outcome.state, outcome.sha256) == (SyncState.READY, LOOKING.content_sha256), english(outcome.why)
     held = vehicle.lists[MissionType.MISSION][1:]
     assert [held[2].command, held[4].command] == commands
     assert (held[2].longitude_e7, held[2].latitude_e7) == (LOOK_AT.longitude_e7, LOOK_AT.latitude_e7)
@@ -69,16 +70,17 @@ def test_what_the_firmware_is_known_to_refuse_is_not_sent():
     vehicle = ArduPilot(firmware=(4, 3, 2))
     outcome, channel = bring(vehicle, FlightLoad((TAKE_OFF, waypoint(0), PHOTO, waypoint(1))), (4, 3, 2))
     assert (outcome.state, outcome.code, channel.to_vehicle) == (SyncState.INTACT, "unknown-command", [])
-    assert outcome.words == "Nothing was sent. Not known to ArduPilot 4.3.2: item 2, IMAGE_START_CAPTURE (2000)."
+    assert english(outcome.why) == "Nothing was sent. Not known to ArduPilot 4.3.2: item 2, IMAGE_START_CAPTURE (2000)."
 
 
 def test_a_refused_item_is_named_with_its_command_and_the_version():
     vehicle = ArduPilot(firmware=(4, 3, 2))
     outcome, _ = bring(vehicle, FlightLoad((TAKE_OFF, waypoint(0), PHOTO, waypoint(1))))
     assert (outcome.state, outcome.code) == (SyncState.INTACT, "unsupported")
-    assert "item 2 of the mission, IMAGE_START_CAPTURE (2000) (unsupported)" in outcome.words
+    assert "item 2 of the mission, IMAGE_START_CAPTURE (2000) (unsupported)" in english(outcome.why)
     vehicle = ArduPilot(refuses={3: mavlink.MAV_MISSION_INVALID_PARAM7})
-    assert bring(vehicle, load(7), (4, 6, 0))[0].words.startswith("Refused by ArduPilot 4.6.0: item 2 of the mission, NAV_WAYPOINT (16)")
+    refused = english(bring(vehicle, load(7), (4, 6, 0))[0].why)
+    assert refused.startswith("Refused by ArduPilot 4.6.0: item 2 of the mission, NAV_WAYPOINT (16)")
 
 
 class Skewed(ArduPilot):
@@ -93,7 +95,7 @@ class Skewed(ArduPilot):
 def test_what_comes_back_otherwise_is_named_by_item_field_and_both_values():
     outcome, _ = bring(Skewed(), load(7, fence=polygon(0)))
     assert outcome.code == "differs"
-    assert "Of the fence, item 0: latitude was sent as 55.4100000 and came back as 55.4100070." in outcome.words
+    assert "Of the fence, item 0: latitude was sent as 55.4100000 and came back as 55.4100070." in english(outcome.why)
 
 
 def test_a_version_is_read_from_its_words():

@@ -13,6 +13,7 @@ from mavlink.mission_sync.wire import onboard_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
+from operation.reasons import english
 from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ADDRESSING, AUTOPILOT_TYPES, known, load, mission, polygon, rally
@@ -161,7 +162,7 @@ def test_mix_that_cannot_be_taken_off_is_critical_and_named_by_items():
     vehicle.is_armed, vehicle.is_in_air, vehicle.custom_mode = True, True, AUTO
     outcome = Channel(keeper, vehicle).run()
     assert (outcome.state, outcome.code, outcome.is_critical, outcome.sha256) == (SyncState.MIXED, "invalid-param7", True, "")
-    assert "0-2 are new" in outcome.words and "3-8 are of the list before" in outcome.words
+    assert "0-2 are new" in english(outcome.why) and "3-8 are of the list before" in english(outcome.why)
     assert outcome.differences[0].item == 3
     assert [mix.kind for mix in outcome.mixes] == [MissionType.MISSION]
 
@@ -333,7 +334,7 @@ def test_vehicle_that_keeps_something_else_is_not_ready_and_loses_the_mission():
     vehicle.lists[MissionType.MISSION] += OLD.mission
     outcome, channel = bring(vehicle)
     assert (outcome.state, outcome.code, outcome.sha256) == (SyncState.CLEARED, "differs", "")
-    assert outcome.mixes[0].words == "12 items where 12 are approved: 0-2 are new, 3 is of neither list, 4-11 are new"
+    assert str(outcome.mixes[0].what) == "12 items where 12 are approved: 0-2 are new, 3 is of neither list, 4-11 are new"
     assert [message.mission_type for message in channel.to_vehicle if message.get_type() == "MISSION_COUNT"].count(MissionType.MISSION) == 3
     assert vehicle.lists[MissionType.MISSION] == []
 
@@ -396,7 +397,8 @@ def test_a_fence_and_rally_points_of_somebody_else_are_left(autopilot_type):
     outcome, _ = bring(vehicle, load(12))
     assert outcome.state is SyncState.READY and outcome.mixes == ()
     assert (len(vehicle.lists[MissionType.FENCE]), len(vehicle.lists[MissionType.RALLY])) == (4, 2)
-    assert "own fence 4 items" in outcome.left_alone and "own rally points 2 items" in outcome.left_alone
+    left = english(outcome.left_alone)
+    assert "own fence 4 items" in left and "own rally points 2 items" in left
 
 
 @pytest.mark.parametrize("autopilot_type", AUTOPILOT_TYPES)

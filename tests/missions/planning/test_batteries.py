@@ -10,12 +10,12 @@ from django.contrib.gis.gdal import GDALRaster
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
 from missions.services import TargetRequest, make_plan
+from operation.reasons import Reason
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.explain.energy_shortfall import least_missing
 from planning.plan import UnassignedTarget
 from planning.problem import Objective, Priority
-from planning.reasons import Reason
 from planning.request import EndAction, UavRequest
 from tests.inspection import ground
 from tests.missions.worlds import island, power_line, rebuild, request, uav, world

@@ -10,7 +10,6 @@ from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval.approval import approve_mission
 from missions.services.commands.dispatch import load_of
-from telemetry.gateway.delivery import UNTOLD
 from telemetry.models import UavLink
 from tests.accounts.users import a_user
 from tests.missions.flights import ground, planned
@@ -18,6 +17,8 @@ from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.commands.test_commands import dispatch, ended, flyer, holds
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.vehicles.px4 import Px4
+
+UNTOLD = "The UAV has not told how far apart waypoints may be."
 
 pytestmark = pytest.mark.django_db(transaction=True)
 ASIDE = LonLat(UAV_AT.lon + 0.001, UAV_AT.lat)  # some 60 m

@@ -1,0 +1,139 @@
+"""Reasons as a code and what fills its sentence. Sentences are English; `workspace/reason_texts.py` translates them."""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+
+def gettext_noop(sentence: str) -> str:
+    """Mark a sentence for translation."""
+    return sentence
+
+
+def ngettext_noop(singular: str, plural: str) -> tuple[str, str]:
+    """Mark a sentence that has a plural for translation."""
+    return singular, plural
+
+
+Sentences = Mapping[str, str | tuple[str, str]]  # by code; a pair is the singular and the plural, chosen by the parameter `count`
+SENTENCES: dict[str, str | tuple[str, str]] = {"text": "%(text)s"}  # of all packages; `text` is what a vehicle or a library says itself
+
+
+def register_sentences(sentences: Sentences) -> Sentences:
+    """Make codes known to all who read reasons. Raises ValueError for a code that has another sentence already."""
+    for code, sentence in sentences.items():
+        if SENTENCES.setdefault(code, sentence) != sentence:
+            raise ValueError(f"two sentences for the code {code}")
+    return sentences
+
+
+MINUTES = gettext_noop("%(sentence)s: %(minutes)s min of flight.")
+OR = gettext_noop("or")
+MAX_NAMED = 3  # UAVs that a reason names; of more it tells how many
+
+
+@dataclass(frozen=True)
+class Wording:
+    """How texts are written in one language: gettext, ngettext, and a number with so many decimals."""
+
+    gettext: Callable[[str], str]
+    ngettext: Callable[[str, str, int], str]
+    number: Callable[[float, int], str]
+
+
+ENGLISH = Wording(lambda text: text, lambda one, many, count: one if count == 1 else many, lambda value, decimals: f"{value:,.{decimals}f}")
+
+
+@dataclass(frozen=True)
+class Reason:
+    """code is a key of SENTENCES; params fill its sentence.
+
+    A param is a text, a number, a Reason, or a sequence of texts or Reasons; a number whose name ends in _m, _km or _wh is written with
+    its unit. `minutes` of flight, if given, are told behind the sentence.
+    """
+
+    code: str
+    params: Mapping[str, Any] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        return self.text(ENGLISH)
+
+    def text(self, wording: Wording) -> str:
+        """The sentence in the language of the wording."""
+        sentence = SENTENCES[self.code]
+        words = wording.gettext(sentence) if isinstance(sentence, str) else wording.ngettext(*sentence, self.params["count"])
+        words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
+        if "minutes" in self.params:
+            minutes = wording.number(self.params["minutes"], 1)
+            words = wording.gettext(MINUTES) % {"sentence": words.removesuffix("."), "minutes": minutes}
+        return words
+
+    def to_json(self) -> dict[str, Any]:
+        return {"code": self.code, "params": {name: _to_json(value) for name, value in self.params.items()}}
+
+
+def text_reason(text: str) -> Reason:
+    """What a vehicle, a companion or a library says itself: it is shown as it is."""
+    return Reason("text", {"text": text})
+
+
+# What is told of something: reasons, or a text that somebody else wrote.
+Why = Sequence[Reason] | str
+
+
+def english(why: Why) -> str:
+    """The sentences one behind the other."""
+    return why if isinstance(why, str) else " ".join(map(str, why))
+
+
+def reason_from_json(value: Mapping[str, Any]) -> Reason:
+    """The inverse of Reason.to_json. Raises KeyError for a code that is not known."""
+    SENTENCES[value["code"]]
+    return Reason(value["code"], {name: _from_json(param) for name, param in value["params"].items()})
+
+
+def _to_json(value: Any) -> Any:
+    if isinstance(value, Reason):
+        return value.to_json()
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [_to_json(one) for one in value]
+    return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _from_json(value: Any) -> Any:
+    if isinstance(value, dict):
+        return reason_from_json(value)
+    return [_from_json(one) for one in value] if isinstance(value, list) else value
+
+
+def _text(name: str, value: Any, wording: Wording) -> str:
+    if isinstance(value, Reason):
+        return value.text(wording)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Sequence):
+        return _list_text(name, [_text("", one, wording) for one in value], wording)
+    if name.endswith("_km"):
+        return f"{wording.number(value, 0 if value == round(value) else 1)} km"
+    if name.endswith("_m"):
+        return f"{wording.number(value, 0)} m" if value < 1_000 else f"{wording.number(value / 1_000, 1)} km"
+    if name.endswith("_wh"):
+        return f"{wording.number(value, 1)} Wh"
+    return _figure_text(value, wording) if isinstance(value, float) else str(value)
+
+
+def _figure_text(value: float, wording: Wording) -> str:
+    """Six digits at most, without zeros at the end."""
+    shown = f"{value:g}"
+    return wording.number(value, len(shown.partition(".")[2])) if "." in shown and "e" not in shown else shown
+
+
+def _list_text(name: str, words: Sequence[str], wording: Wording) -> str:
+    """`limits` and `parts` stand one behind the other, of `any_uav` one is meant, of other names the first few are told."""
+    if name in ("limits", "parts"):
+        return ("; " if name == "limits" else ", ").join(words)
+    if name == "any_uav":
+        return f" {wording.gettext(OR)} ".join(words)
+    more = len(words) - MAX_NAMED
+    return ", ".join(words[:MAX_NAMED]) + (f" +{more}" if more > 0 else "")

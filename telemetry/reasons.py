@@ -1,0 +1,46 @@
+"""The sentence of each code that tells why the gateway or a companion did not do a command."""
+
+from operation.reasons import gettext_noop, register_sentences
+
+SENTENCES = register_sentences({
+    "gateway_failed": gettext_noop("The gateway failed; the error is in its log."),
+    "fence_does_nothing": gettext_noop("The fence on the UAV does nothing: %(parameter)s."),
+    "return_height_unknown": gettext_noop("The vehicle has not told how high it returns."),
+    # of what is sent
+    "damaged_approval": gettext_noop("The approval is not the one that was given: its hash is another one."),
+    "no_such_flight": gettext_noop("The approval has no such flight of this UAV."),
+    "approved_for_companion": gettext_noop("It was approved for a UAV with a companion computer."),
+    "revoke_and_approve": gettext_noop("Revoke, and approve it again."),
+    "flight_not_loaded": gettext_noop("The UAV does not hold this flight of the approved mission: send it first."),
+    "no_flight_loaded": gettext_noop("The UAV does not hold a flight of the approved mission."),
+    "not_approved": gettext_noop("Only a mission that was approved can be flown."),
+    "approval_revoked": gettext_noop("The approval was taken back."),
+    "only_active_resumed": gettext_noop("Only a mission that is being flown can be resumed."),
+    "list_not_read": gettext_noop("Nothing was sent: the %(list)s on the vehicle could not be read."),
+    "list_not_approved": gettext_noop("Nothing was sent: the %(list)s on the vehicle is not the approved one (%(difference)s)."),
+    "uav_holds_other": gettext_noop("The UAV holds something else than what was approved."),
+    "uav_holds_unknown": gettext_noop("The UAV does not say what it holds."),
+    "no_reason_given": gettext_noop("The UAV gave no reason."),
+    # of where the UAV is
+    "mid_air_start_not_flying": gettext_noop("This route begins in the air, and the UAV does not fly."),
+    "stand_unknown": gettext_noop("The UAV does not tell where it stands."),
+    "position_unknown": gettext_noop("The UAV does not tell where it flies."),
+    "home_unknown": gettext_noop("The UAV does not tell where its home is, from which it counts its heights."),
+    "waypoint_unknown": gettext_noop("The UAV does not tell which waypoint it would fly to."),
+    "restart_unknown": gettext_noop("The UAV does not tell %(parameter)s: whether it would go on or begin anew."),
+    "would_restart": gettext_noop("The UAV would fly its route from the beginning: %(parameter)s is not 0."),
+    "would_fly_back": gettext_noop("The UAV would fly back to where its route begins: set %(parameter)s to 0."),
+    "list_not_sure": gettext_noop("The UAV does not surely hold its approved route: it cannot return along it."),
+    "no_clear_return": gettext_noop("From where the UAV is now no way along its route is clear."),
+    "off_first_leg": gettext_noop("The UAV is not on the way on which its route begins. Plan the rest again."),
+    "flown_to_end": gettext_noop("The UAV has flown its mission to the end: there is nothing to go on with."),
+    "beside_leg": gettext_noop("The UAV is %(metres)s m from the leg that it would fly on; %(allowed)s m are allowed."),
+    "above_leg": gettext_noop("The UAV is %(metres)s m above the leg that it would fly on; %(allowed)s m are allowed."),
+    "below_leg": gettext_noop("The UAV is %(metres)s m below the leg that it would fly on; %(allowed)s m are allowed."),
+    "stands_elsewhere": gettext_noop("The UAV stands %(metres)s m from the planned take-off; %(allowed)s m are allowed."),
+    "stands_above": gettext_noop("The UAV reports %(metres)s m above the planned take-off; %(allowed)s m are allowed."),
+    "stands_below": gettext_noop("The UAV reports %(metres)s m below the planned take-off; %(allowed)s m are allowed."),
+    "home_elsewhere": gettext_noop("The UAV's home is %(metres)s m from the planned take-off; %(allowed)s m are allowed."),
+    "home_above": gettext_noop("The UAV's home is %(metres)s m above the planned take-off; %(allowed)s m are allowed."),
+    "home_below": gettext_noop("The UAV's home is %(metres)s m below the planned take-off; %(allowed)s m are allowed."),
+})  # fmt: skip
