@@ -1,0 +1,1 @@
+from inspection import reasons as reasons

@@ -11,6 +11,7 @@ from django.db.models import Max
 from django.utils.module_loading import import_string
 
 from inspection.models import DataImport, NoFlyZone
+from operation.reasons import Why
 from workspace.models import AuditEntry
 
 _checks: list[str] = []
@@ -33,10 +34,10 @@ SELECT EXISTS (
 
 @dataclass(frozen=True)
 class AutoApplyRefusal:
-    """Why an import is not applied by itself. message is English; what it may say is listed in workspace/message_rendering.py."""
+    """Why an import is not applied by itself."""
 
     code: str
-    message: str
+    why: Why
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from inspection.services.imports import subscriptions
 from inspection.services.imports.uploads import forget_old_uploads as forget_uploads
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
+from operation.reasons import Reason
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
 from workspace.jobs.processor_time import ProcessorTimeExceeded, processor_limit
@@ -114,18 +115,18 @@ def _do(job: Job, do: Callable[..., None]) -> None:
     except pipeline.LostJob:
         return
     except SoftTimeLimitExceeded:
-        _fail(job, "took_too_long", f"Not done within {SOFT_LIMIT_S // 60} min. Cut the file into parts.")
+        _fail(job, "took_too_long", Reason("not_read_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except ProcessorTimeExceeded:
-        _fail(job, "took_too_long", "Reading the file takes more processor time than a file of its size may need.")
+        _fail(job, "took_too_long", Reason("too_much_processor_time"))
     except MemoryError:
-        _fail(job, "too_large", "The file needs more memory than there is. Cut it into parts.")
+        _fail(job, "too_large", Reason("too_much_memory"))
     except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
-        _fail(job, "internal", "Reading the file failed inside Spanwise; the error is in the log.")
+        _fail(job, "internal", Reason("reading_failed"))
         raise
 
 
-def _fail(job: Job, code: str, message: str) -> None:
+def _fail(job: Job, code: str, message: Reason) -> None:
     fail_job(job=job, code=code, message=message)
     pipeline.settle_proposal_of(job=job)

@@ -12,6 +12,7 @@ from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, replanning
 from missions.services.commands import commands
 from missions.services.commands.planned_starts import carry_on_planned_starts
+from operation.reasons import Reason
 from planning.progress import OnPlanProgress, PlanProgress
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.jobs.job_watch import JobWatch
@@ -22,9 +23,6 @@ from workspace.tasks import send_job
 SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
 SHARES_OF_A_SEARCH = 10  # that one way of several gets: somebody waits while UAVs fly
-
-STOPPED = "Stopped; the best plan until then is kept"
-NO_GRAPH = "There is no network yet: import infrastructure first, or wait until it has been linked."
 
 
 def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
@@ -38,23 +36,23 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     except JobCancelled:
         confirm_cancelled(job=job)
     except InvalidRequest as error:
-        fail_job(job=job, code="invalid", message=str(next(iter(error.faults.values()))))
+        fail_job(job=job, code="invalid", message=next(iter(error.faults.values())))
     except NoGraph:
-        fail_job(job=job, code="no_graph", message=NO_GRAPH)
-    except GraphOutdated as error:
-        fail_job(job=job, code="graph_outdated", message=str(error))
+        fail_job(job=job, code="no_graph", message=Reason("no_network"))
+    except GraphOutdated:
+        fail_job(job=job, code="graph_outdated", message=Reason("zones_changing"))
     except (MissionChanged, Mission.DoesNotExist):
-        fail_job(job=job, code="mission_changed", message="The mission was changed while its plan was being made. Plan it again.")
+        fail_job(job=job, code="mission_changed", message=Reason("mission_changed"))
     except MissionFrozen:
-        fail_job(job=job, code="mission_frozen", message="Only drafts and planned missions can be planned.")
+        fail_job(job=job, code="mission_frozen", message=Reason("mission_frozen"))
     except NothingToPlan:
-        fail_job(job=job, code="nothing_to_plan", message="A mission needs at least one UAV and one target.")
+        fail_job(job=job, code="nothing_to_plan", message=Reason("nothing_to_plan"))
     except SoftTimeLimitExceeded:
-        fail_job(job=job, code="took_too_long", message=f"No plan within {SOFT_LIMIT_S // 60} min. Split the mission.")
+        fail_job(job=job, code="took_too_long", message=Reason("no_plan_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
-        fail_job(job=job, code="internal", message="The planner failed; the error is in the log.")
+        fail_job(job=job, code="internal", message=Reason("planner_failed"))
         raise
 
 
@@ -63,6 +61,10 @@ def _noted_by(watch: JobWatch) -> OnPlanProgress:
         watch.note(progress.share, progress.message, progress.draw)
 
     return note
+
+
+def _end_message(watch: JobWatch) -> Reason:
+    return Reason("planning_stopped" if watch.is_cancelled else "planned")
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -76,7 +78,7 @@ def solve_plan(job_id: str) -> None:
             on_progress=_noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
         )
-        finish_job(job=job, result=plan, message=STOPPED if watch.is_cancelled else "Planned")
+        finish_job(job=job, result=plan, message=_end_message(watch))
 
     _work(job_id, do)
 
@@ -91,7 +93,7 @@ def plan_mission(job_id: str) -> None:
             stop=watch.stop,
             on_progress=_noted_by(watch),
             search_s=settings.ROUTING_RULES.large_plan_search_s,
-            message=lambda: STOPPED if watch.is_cancelled else "Planned",
+            message=lambda: _end_message(watch),
         )
 
     _work(job_id, do)

@@ -50,7 +50,7 @@ class Reason:
     """code is a key of SENTENCES; params fill its sentence.
 
     A param is a text, a number, a Reason, or a sequence of texts or Reasons; a number whose name ends in _m, _km or _wh is written with
-    its unit. `minutes` of flight, if given, are told behind the sentence.
+    its unit. `minutes` of flight, if given, are told behind a sentence that has no place for them.
     """
 
     code: str
@@ -64,7 +64,7 @@ class Reason:
         sentence = SENTENCES[self.code]
         words = wording.gettext(sentence) if isinstance(sentence, str) else wording.ngettext(*sentence, self.params["count"])
         words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
-        if "minutes" in self.params:
+        if "minutes" in self.params and "%(minutes)s" not in sentence:
             minutes = wording.number(self.params["minutes"], 1)
             words = wording.gettext(MINUTES) % {"sentence": words.removesuffix("."), "minutes": minutes}
         return words
@@ -79,12 +79,22 @@ def text_reason(text: str) -> Reason:
 
 
 # What is told of something: reasons, or a text that somebody else wrote.
-Why = Sequence[Reason] | str
+Why = Reason | Sequence[Reason] | str
 
 
-def english(why: Why) -> str:
+def reason_of(error: Exception) -> "Reason | str":
+    """The reason with which an exception was raised; its text, if with none."""
+    return error.args[0] if error.args and isinstance(error.args[0], Reason) else str(error)
+
+
+def reasons_of(why: Why) -> Sequence[Reason]:
+    """None of a text."""
+    return () if isinstance(why, str) else (why,) if isinstance(why, Reason) else why
+
+
+def english(why: Why, separator: str = " ") -> str:
     """The sentences one behind the other."""
-    return why if isinstance(why, str) else " ".join(map(str, why))
+    return why if isinstance(why, str) else separator.join(map(str, reasons_of(why)))
 
 
 def reason_from_json(value: Mapping[str, Any]) -> Reason:

@@ -110,7 +110,7 @@ def plan(
             usable_share=constraints.usable_share,
             kept_from=constraints.kept_from,
         )
-        on_progress(PlanProgress(0.95, "Working out heights and checking every leg"))
+        on_progress(PlanProgress(0.95, Reason("working_out_heights")))
         calls += found.solver_calls
         conflicts = conflicts_of(found, found.routes())
         may_go_on = calls + found.solver_calls <= MAX_SOLVER_CALLS

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from inspection.network.paths.along_paths import passed_on
+from operation.reasons import Reason
 from planning.assignment.routing_input import RoutingInput
 from planning.problem import End, Objective, Problem, Routes
 from planning.solver.search import Progress
@@ -21,7 +22,7 @@ class PlanProgress:
     """How far the making of a plan is; `draw` gives the best so far in the shape of `Job.best`."""
 
     share: float
-    message: str
+    message: Reason
     draw: Callable[[], dict[str, Any] | None] | None = None
 
 

@@ -87,6 +87,16 @@ SENTENCES = register_sentences(
         "edits_discarded": gettext_noop(
             "%(missed)s of %(legs)s manually edited legs of %(uav)s were discarded: their endpoints moved, or they are now obstructed."
         ),
+        # how far a search is
+        "looking_for_first_plan": gettext_noop("Looking for a first plan"),
+        "measuring_paths": gettext_noop("Measuring the ways between the targets"),
+        "working_out_locked": gettext_noop("Working out what the locked parts cost"),
+        "working_out_heights": gettext_noop("Working out heights and checking every leg"),
+        "longest_route": gettext_noop("longest route %(length_km)s"),
+        "length_in_total": gettext_noop("%(length_km)s in total"),
+        "minutes_in_total": gettext_noop("%(duration_min)s min in total"),
+        "energy_in_total": gettext_noop("%(energy_wh)s in total"),
+        "some_not_reached": gettext_noop("%(found)s, %(missed)s not reached"),
         # what stands in sentences
         "there": gettext_noop("there"),
         "there_and_back": gettext_noop("there and back"),

@@ -6,6 +6,7 @@ from celery.exceptions import SoftTimeLimitExceeded
 from inspection.selectors import NoGraph
 from missions.models import Mission
 from missions.services.commands.refused import Refused
+from operation.reasons import Reason
 from simulation.models import Rehearsal
 from simulation.services.demo_missions import NotThere, make_demo_missions, missions_made
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
@@ -16,8 +17,6 @@ from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, f
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900
 DEMO_INTERVAL_S = 1.0  # between two steps, at least: the sweep of the queue sends the next message
-CHANGED = "The mission was changed while it was being rehearsed. Rehearse it again."
-ON_OTHER_GROUND = "Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."
 
 
 @shared_task(name="simulation.tasks.make_demo_missions", soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -34,19 +33,19 @@ def fly_demo_missions(job_id: str) -> None:
             pause_job(job=job, progress=step.share, message=step.message, pause_s=DEMO_INTERVAL_S)
             return
         made = missions_made(organisation=job.organisation, since=since)
-        finish_job(job=job, result={"missions": [str(key) for key in made]}, message="Demo missions made")
+        finish_job(job=job, result={"missions": [str(key) for key in made]}, message=Reason("demo_made"))
     except JobCancelled:
         confirm_cancelled(job=job)
     except (NotThere, Mission.DoesNotExist):
-        fail_job(job=job, code="no_demo_region", message="The demo region was removed.")
+        fail_job(job=job, code="no_demo_region", message=Reason("demo_region_removed"))
     except Refused as refused:
-        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
+        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].why)
     except (TimeoutError, SoftTimeLimitExceeded):
-        fail_job(job=job, code="took_too_long", message="The demo missions were not flown in time.")
+        fail_job(job=job, code="took_too_long", message=Reason("demo_not_flown_in_time"))
     except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
-        fail_job(job=job, code="internal", message="The demo missions could not be made; the error is in the log.")
+        fail_job(job=job, code="internal", message=Reason("demo_failed"))
         raise
 
 
@@ -62,20 +61,17 @@ def rehearse_mission(job_id: str) -> None:
     except JobCancelled:
         confirm_cancelled(job=job)
     except (PlanChanged, Mission.DoesNotExist, Rehearsal.DoesNotExist):
-        fail_job(job=job, code="mission_changed", message=CHANGED)
+        fail_job(job=job, code="mission_changed", message=Reason("changed_while_rehearsed"))
     except GroundChanged:
-        fail_job(job=job, code="ground_changed", message=ON_OTHER_GROUND)
+        fail_job(job=job, code="ground_changed", message=Reason("ground_changed_while_rehearsed"))
     except Refused as refused:
-        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
+        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].why)
     except NoGraph:
-        fail_job(
-            job=job, code="no_graph", message="There is no network yet: import infrastructure first, or wait until it has been linked."
-        )
+        fail_job(job=job, code="no_graph", message=Reason("no_network"))
     except SoftTimeLimitExceeded:
-        message = f"Not flown within {SOFT_LIMIT_S // 60} min. Rehearse fewer conditions at once, or split the mission."
-        fail_job(job=job, code="took_too_long", message=message)
+        fail_job(job=job, code="took_too_long", message=Reason("not_flown_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except DATABASE_UNAVAILABLE:
         raise  # the lease runs out, and the job is taken up again
     except Exception:
-        fail_job(job=job, code="internal", message="The rehearsal failed inside Spanwise; the error is in the log.")
+        fail_job(job=job, code="internal", message=Reason("rehearsal_failed"))
         raise

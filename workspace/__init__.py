@@ -1,0 +1,1 @@
+from workspace import reasons as reasons

@@ -253,6 +253,7 @@ class Job(models.Model):
     parameters = models.JSONField(default=dict)
     progress = models.FloatField(default=0.0, help_text="0 to 1")
     message = models.CharField(max_length=300, blank=True)
+    message_why = models.JSONField(null=True, blank=True, help_text="the same as reasons; see reason_texts.py")
     best = models.JSONField(null=True, blank=True, help_text="the best found so far, while it runs")
     result = models.JSONField(null=True, blank=True)
     error = models.JSONField(null=True, blank=True)

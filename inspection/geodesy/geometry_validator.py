@@ -17,6 +17,7 @@ from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
+from operation.reasons import Reason
 
 MAX_POLYGON_VERTICES = 10_000
 MAX_TOTAL_VERTICES = 500_000
@@ -27,10 +28,11 @@ MAX_LINE_VERTICES = 10_000
 class GeometryFault(ValueError):
     """What is wrong, where in the document (such as features[3].geometry.coordinates[0][12]) and, if known, at which position."""
 
-    def __init__(self, place: str, message: str, position: LonLat | None = None) -> None:
+    def __init__(self, place: str, message: Reason | str, position: LonLat | None = None) -> None:
         super().__init__(place, message, position)
         self.place = place
-        self.message = message
+        self.why = message
+        self.message = str(message)
         self.position = position
 
     def __str__(self) -> str:

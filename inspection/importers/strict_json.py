@@ -4,6 +4,8 @@ import json
 from math import isfinite
 from typing import Any, NoReturn
 
+from operation.reasons import Reason
+
 MAX_DEPTH = 64
 
 
@@ -19,15 +21,15 @@ def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX
         text = data.decode("utf-8-sig") if isinstance(data, bytes) else data
         value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
     except UnicodeDecodeError as error:
-        raise JsonFault(f"The text is not UTF-8: byte {error.start} cannot be read.") from error
+        raise JsonFault(Reason("no_utf8", {"byte": error.start})) from error
     except RecursionError as error:
         raise JsonFault(f"The JSON is nested more than {max_depth} deep.") from error
     except JsonFault:
         raise
     except json.JSONDecodeError as error:
-        raise JsonFault(f"This is no JSON: {error.msg} at line {error.lineno}, column {error.colno}.") from error
+        raise JsonFault(Reason("no_json", {"error": f"{error.msg} at line {error.lineno}, column {error.colno}."})) from error
     except ValueError as error:
-        raise JsonFault(f"This is no JSON: {error}") from error
+        raise JsonFault(Reason("no_json", {"error": str(error)})) from error
     _check_depth(value, max_depth)
     return value
 

@@ -16,8 +16,9 @@ from inspection.services.imports.uploads import PART_BYTES, UploadTooLarge, chec
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import KINDS
 from inspection.tasks import send_job_of
+from operation.reasons import Reason
 
-Progress = Callable[[str, float], None]
+Progress = Callable[[Reason | str, float], None]
 LOOK_INTERVAL_S = 0.5
 OPEN_STATES = (ProposalState.READING, ProposalState.APPLYING)
 
@@ -106,7 +107,7 @@ class ImportCommand(BaseCommand, ABC):
         listed = "".join(f"\n  {reason}" for reason in reasons)
         raise CommandError(f"{path.name} is not applied, it is {proposal.get_state_display().lower()} (/imports/{proposal.pk}):{listed}")
 
-    def _show(self, stage: str, share: float) -> None:
+    def _show(self, stage: Reason | str, share: float) -> None:
         self.stderr.write(f"\r\033[K{share:4.0%} {stage}", style_func=str, ending="")
 
 

@@ -1,6 +1,7 @@
 """What comes in: uploads, proposals, and the lines of their differences."""
 
 import json
+from itertools import zip_longest
 from typing import Any
 
 from django.utils.translation import gettext as _
@@ -13,9 +14,10 @@ from inspection.services.proposals.reading import KINDS
 from workspace.admin_pages.author_names import AUTHOR_HELP, author_name
 from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
+from workspace.api.reasons import WhySerializer
 from workspace.jobs.serializers import Declared
-from workspace.message_rendering import render_message
-from workspace.models import JobState, User
+from workspace.models import Job, JobState, User
+from workspace.reason_texts import column_text, why_text, with_message
 
 
 class UploadInputSerializer(serializers.Serializer):
@@ -66,6 +68,7 @@ class ParametersSerializer(serializers.Serializer):
 class ProposalFaultSerializer(serializers.Serializer):
     place = serializers.CharField()
     message = serializers.CharField()
+    why = WhySerializer(many=True, help_text="the message for programs; empty where only a text is known")
     position = serializers.ListField(child=serializers.FloatField(), allow_null=True, help_text="lon, lat")
 
 
@@ -79,6 +82,7 @@ class ProposalJobSerializer(serializers.Serializer):
 class HeldBackSerializer(serializers.Serializer):
     code = serializers.ChoiceField(choices=["needs_mapping", "not_read", "removed", "flown_missions", "not_applied"])
     message: Declared = serializers.CharField()
+    why = WhySerializer(many=True, help_text="the message for programs; empty where only a text is known")
 
 
 class ProposalSerializer(serializers.Serializer):
@@ -146,15 +150,21 @@ def upload_json(upload: Upload) -> dict[str, Any]:
     }
 
 
+def _job_json(job: Job) -> dict[str, Any]:
+    message = column_text(job.message_why, job.message)
+    return {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": message}
+
+
 def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = False) -> dict[str, Any]:
     """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
     whole = proposal.summary if reader.organisation_id == proposal.organisation_id else _without_external_ids(proposal.summary)
     summary = {name: value for name, value in whole.items() if not (is_brief and isinstance(value, dict | list))}
     if "notes" in summary:
-        summary["notes"] = [render_message(note) for note in summary["notes"]]
+        notes = zip_longest(summary["notes"], summary.pop("notes_why", ()))
+        summary["notes"] = [why_text([why] if why else [], note) for note, why in notes]
     if "not_read" in summary:
-        summary["not_read"] = [record | {"message": render_message(record["message"])} for record in summary["not_read"]]
+        summary["not_read"] = [with_message(record) for record in summary["not_read"]]
     return {
         "id": str(proposal.pk),
         "kind": proposal.kind,
@@ -164,13 +174,13 @@ def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = Fa
         "size_bytes": proposal.upload and proposal.upload.size_bytes,
         "parameters": proposal.parameters,
         "provenance": proposal.provenance,
-        "faults": [fault | {"message": render_message(fault["message"])} for fault in proposal.faults],
+        "faults": [{"why": [], **with_message(fault)} for fault in proposal.faults],
         "summary": summary,
         "difference": proposal.difference,
         "auto_apply": proposal.auto_apply,
         "max_removed_percent": proposal.max_removed_percent,
-        "held_back": [reason | {"message": render_message(reason["message"])} for reason in proposal.held_back],
-        "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": render_message(job.message)},
+        "held_back": [{"why": [], **with_message(reason)} for reason in proposal.held_back],
+        "job": job and _job_json(job),
         "created_by": author_name(proposal.created_by, reader),
         "created_at": proposal.created_at,
         "decided_by": author_name(proposal.decided_by, reader),

@@ -207,6 +207,7 @@ class InspectionTarget(models.Model):
     state = models.CharField(max_length=20, choices=TargetState.choices, default=TargetState.PENDING)
     state_at = models.DateTimeField(null=True, blank=True, help_text="since when, while the mission flies")
     state_reason = models.CharField(max_length=300, blank=True, default="", db_default="", help_text="why it was skipped or failed")
+    state_why = models.JSONField(null=True, blank=True, help_text="the same as reasons, if it was no person; see workspace/reason_texts.py")
     reached_at = models.DateTimeField(null=True, blank=True, help_text="by the log; empty: not known, or it was not reached")
     held_s = models.FloatField(null=True, blank=True, help_text="the longest that its UAV can have stayed; empty: not known")
     visit_stored_at = models.DateTimeField(null=True, blank=True, help_text="when reached_at and held_s were stored or changed")

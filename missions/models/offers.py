@@ -42,7 +42,8 @@ class ReplanOffer(models.Model):
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     decided_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     decided_at = models.DateTimeField(null=True, blank=True)
-    outcome = models.CharField(max_length=500, blank=True, help_text="why it is outdated or impossible, in words")
+    outcome = models.CharField(max_length=500, blank=True, help_text="why it is outdated or impossible, in English")
+    outcome_why = models.JSONField(null=True, blank=True, help_text="the same as reasons; see workspace/reason_texts.py")
 
     class Meta:
         ordering = ["-created_at"]

@@ -9,6 +9,7 @@ from inspection.auto_apply_hooks import AutoApplyRefusal, WrittenGround
 from missions.hooks.in_air import uavs_in_the_air
 from missions.models import ENDED_STATES, InspectionTarget, MissionState, Route, Waypoint
 from missions.selectors.flights import STILL_FLOWN
+from operation.reasons import Reason
 
 ON_UAVS = (MissionState.DISPATCHED, MissionState.ACTIVE)
 TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and from what stands tall
@@ -24,8 +25,7 @@ def flown_missions_touched(written: WrittenGround) -> list[AutoApplyRefusal]:
     touched = {route.mission_id for route in _routes() if _touches(written, route)}
     if not touched:
         return []
-    message = f"Missions that are flown or were sent to UAVs and whose targets or routes it touches: {len(touched)}."
-    return [AutoApplyRefusal("flown_missions", message)]
+    return [AutoApplyRefusal("flown_missions", Reason("touches_flown_missions", {"number": len(touched)}))]
 
 
 def _routes() -> list[Route]:

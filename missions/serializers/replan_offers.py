@@ -6,8 +6,8 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.models import OfferState, ReplanOffer
-from workspace.message_rendering import render_message
-from workspace.reason_texts import why_text
+from workspace.api.reasons import WhySerializer
+from workspace.reason_texts import column_text, reasons_of_column, why_text
 
 REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
 DECIDED = 3
@@ -30,6 +30,7 @@ class ReplanOfferSerializer(serializers.Serializer):
     decided_by = serializers.CharField(allow_null=True)
     decided_at = serializers.DateTimeField(allow_null=True)
     outcome = serializers.CharField(help_text="why it is outdated or impossible")
+    outcome_why = WhySerializer(many=True, help_text="the same for programs; empty where only a text is known")
 
 
 class ReplanOfferPageSerializer(serializers.Serializer):
@@ -45,12 +46,18 @@ class ReplanAskedSerializer(serializers.Serializer):
 def render_difference(difference: Mapping[str, Any]) -> dict[str, Any]:
     """As services/replanning/difference.py has it, in the reader's language, and without what the offer was reckoned on."""
     shown = {name: value for name, value in difference.items() if name != "basis"}
-    for part, reported in (("uavs", "why"), ("targets", "message")):
-        if part in shown:
-            shown[part] = [{**entry, reported: render_message(entry[reported])} for entry in shown[part]]
+    if "uavs" in shown:
+        shown["uavs"] = [{**entry, "why": why_text(entry.get("reasons", ()), entry["why"], "\n")} for entry in shown["uavs"]]
     if "targets" in shown:
-        shown["targets"] = [{**entry, "message": why_text(entry.get("why", ()), entry["message"])} for entry in shown["targets"]]
+        shown["targets"] = [{**entry, "message": why_text(entry.get("why", ()), entry["message"], "\n")} for entry in shown["targets"]]
     return shown
+
+
+def offer_outcome(offer: ReplanOffer) -> dict[str, Any]:
+    return {
+        "outcome": column_text(offer.outcome_why, offer.outcome, "\n"),
+        "outcome_why": reasons_of_column(offer.outcome_why, offer.outcome),
+    }
 
 
 def offer_json(offer: ReplanOffer) -> dict[str, Any]:
@@ -66,5 +73,5 @@ def offer_json(offer: ReplanOffer) -> dict[str, Any]:
         "created_at": offer.created_at,
         "decided_by": offer.decided_by.username if offer.decided_by else None,
         "decided_at": offer.decided_at,
-        "outcome": str(render_message(offer.outcome)),
+        **offer_outcome(offer),
     }

@@ -14,6 +14,7 @@ from missions.selectors.planning_context import with_bases
 from missions.services.manual_edits.preserved import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission
 from missions.services.planning.planner import make_plan
+from operation.reasons import Reason
 from planning.assignment.options import has_sensor
 from planning.plan_json import NO_SHORTFALL
 from planning.progress import OnPlanProgress
@@ -91,7 +92,7 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
     return replace(with_bases(request, mission.organisation), organisation=mission.organisation_id, mission=str(mission.pk))
 
 
-def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], str]) -> None:
+def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], Reason]) -> None:
     """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
 
     Once the user stops it, the best plan found until then is stored; `message` says at the end how it went. Raises JobCancelled if

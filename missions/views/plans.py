@@ -17,6 +17,7 @@ from missions.serializers.reachability import ReachabilityInputSerializer, Reach
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
 from missions.services.planning.reachability import reachability
 from missions.views.problems import api_problems
+from operation.reasons import Reason
 from workspace.api.errors import ApiProblem
 from workspace.api.idempotency import idempotent
 from workspace.api.renderers import FastJSONRenderer
@@ -24,8 +25,8 @@ from workspace.api.signed_in import SignedInRequest
 from workspace.api.throttling import ScopedRate
 from workspace.api.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 from workspace.jobs.services import TooManyJobs, create_job_within, refuse_jobs_beyond
-from workspace.message_rendering import render_message
 from workspace.models import Job, JobState, Role, User
+from workspace.reason_texts import with_message
 from workspace.tasks import send_job_on_commit
 
 SOLVE_PLAN = "missions.tasks.solve_plan"
@@ -124,7 +125,7 @@ def planning_job(user: User, task: str, parameters: dict[str, Any], targets: int
             created_by=user,
             task=task,
             parameters=parameters,
-            message=f"Planning {targets} targets",
+            message=Reason("planning_targets", {"count": targets}),
         )
     except TooManyJobs as error:  # two requests at the same moment
         raise _too_many(error) from error
@@ -148,7 +149,7 @@ def _awaited(response: Response, wait_s: int) -> Response:
         return response
     if job is not None and job.state == JobState.FAILED:
         error = job.error or {}
-        code, message = str(error.get("code", "")), render_message(str(error.get("message", "")))
+        code, message = str(error.get("code", "")), with_message(error)["message"]
         status = STATUS_OF_FAILURE.get(code, 500)
         raise ApiProblem(status, code, message, retry_after_s=JOBS_RETRY_AFTER_S if status == 503 else None)
     headers = {name: response[name] for name in ("Location", "Idempotency-Replayed") if name in response}

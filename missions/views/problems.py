@@ -26,8 +26,10 @@ from missions.services import (
     UavExternalIdTaken,
 )
 from missions.services.commands.refused import Refused
+from operation.reasons import Reason
 from workspace.api.errors import ApiProblem
 from workspace.api.preconditions import PRECONDITION_ANSWERS
+from workspace.reason_texts import reason_text
 
 TAKEN = {409: OpenApiResponse(description="The name, the external id or the MAVLink system id is taken.")}
 CHANGE_ANSWERS = {**TAKEN, **PRECONDITION_ANSWERS}
@@ -100,7 +102,7 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
         message = "There is no network to plan on yet: import infrastructure first, or wait until it has been linked."
         raise ApiProblem(503, "no_graph", message, retry_after_s=RETRY_AFTER_S) from error
     except GraphOutdated as error:
-        raise ApiProblem(503, "graph_outdated", str(error), retry_after_s=RETRY_AFTER_S) from error
+        raise ApiProblem(503, "graph_outdated", reason_text(Reason("zones_changing")), retry_after_s=RETRY_AFTER_S) from error
     except MissionChanged as error:
         message = "The mission was changed in the meantime. Load it again."
         raise ApiProblem(412 if has_precondition else 409, "mission_changed", message) from error

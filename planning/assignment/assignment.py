@@ -196,9 +196,7 @@ def solve_assignment(
         on_progress(replace(reported, share=reported.share / 2.0))
 
     def second_half(reported: Progress) -> None:
-        on_progress(
-            Progress(0.5 + reported.share / 2.0, "Working out what the locked parts cost")
-        )  # what is drawn stays the plan with the locks
+        on_progress(Progress(0.5 + reported.share / 2.0, Reason("working_out_locked")))  # what is drawn stays the plan with the locks
 
     solution = solve(asked.problem, stop=stop, on_progress=first_half, seed=seed, search_s=half_s)
     free = solve(asked.free, stop=stop, on_progress=second_half, seed=seed, search_s=half_s)

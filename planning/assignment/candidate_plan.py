@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from operation.reasons import Reason
 from planning.airspace import Airspace, ZoneName, zone_at
 from planning.assignment.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from planning.assignment.refusals import Grounding, deleted_target, groundings, refused_target, target_height_m
@@ -94,7 +95,7 @@ def candidate_plan(
     uavs = [number for number in range(len(request.uavs)) if number not in grounded]
     bases = [base for base in request.bases if zone_at(base.position, airspace) is None]
 
-    on_progress(PlanProgress(0.05, "Measuring the ways between the targets"))
+    on_progress(PlanProgress(0.05, Reason("measuring_paths")))
     agl_m = [inspection_agl_m(target_height_m(target, airspace), airspace.flight) for target in targets]
     with_costs = needs_flight_costs(request)
     takes_s = None

@@ -7,6 +7,7 @@ from threading import Event, Timer
 
 import numpy as np
 
+from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Problem, Routes, merit
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.plan_state import Workspace, routes_of, values, workspace
@@ -31,7 +32,7 @@ class Progress:
     """How far a search is. `best_routes` are the best so far, visits by UAV; `bound` is in the unit of the problem's objective."""
 
     share: float
-    message: str
+    message: Reason
     best_routes: Routes | None = None
     bound: float | None = None
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 
+from operation.reasons import Reason
 from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
 from planning.solver import exact
 from planning.solver.locks import reduced
@@ -80,7 +81,7 @@ def searched_plan(
     problem: Problem, usable: BoolArray, needed_m: FloatArray, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
 ) -> Found:
     """The best plan of the search; usable (u, v) says which UAV can fly which visit at all, needed_m (u, v) with what range."""
-    on_progress(Progress(0.0, "Looking for a first plan"))
+    on_progress(Progress(0.0, Reason("looking_for_first_plan")))
 
     def on_look(share: float, found: Found) -> None:
         on_progress(Progress(min(share, 0.99), progress_message(problem, found.routes), found.routes, found.bound))
@@ -129,14 +130,18 @@ def _lengths_m(rows: Problem, routes: Routes) -> list[float]:
     return [sum(lengths_m[row] for row, owner in enumerate(rows.owner) if owner == uav) for uav in dict.fromkeys(rows.owner)]
 
 
-def progress_message(problem: Problem, routes: Routes) -> str:
+def progress_message(problem: Problem, routes: Routes) -> Reason:
     missed = problem.target_count - sum(len(route) for route in routes)
-    left_out = f", {missed} not reached" if missed else ""
+    found = _value_reason(problem, routes)
+    return Reason("some_not_reached", {"found": found, "missed": missed}) if missed else found
+
+
+def _value_reason(problem: Problem, routes: Routes) -> Reason:
     lengths_m = _lengths_m(problem, routes)
     if problem.objective is Objective.MAKESPAN:
-        return f"longest route {max(lengths_m, default=0.0) / 1_000:,.1f} km{left_out}"
+        return Reason("longest_route", {"length_km": round(max(lengths_m, default=0.0) / 1_000, 1)})
     if problem.objective is Objective.TIME:
-        return f"{problem.value(routes) / 60:,.1f} min in total{left_out}"
+        return Reason("minutes_in_total", {"duration_min": round(problem.value(routes) / 60, 1)})
     if problem.objective is Objective.ENERGY:
-        return f"{problem.value(routes):,.0f} Wh in total{left_out}"
-    return f"{sum(lengths_m) / 1_000:,.1f} km in total{left_out}"
+        return Reason("energy_in_total", {"energy_wh": round(problem.value(routes))})
+    return Reason("length_in_total", {"length_km": round(sum(lengths_m) / 1_000, 1)})

@@ -5,7 +5,6 @@ from datetime import datetime, timedelta
 from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
-from django.utils.translation import gettext as _
 
 from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.selectors.missions import mission_of_organisation
@@ -14,6 +13,7 @@ from missions.services.commands.dispatch import dispatch_mission
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.refused import refuse
 from missions.services.commands.steering import command_uav
+from operation.reasons import Reason
 from planning.energy.conditions import Conditions
 from simulation.models import Simulation, SimulationState
 from simulation.rehearsing.weather_scenario import Named, named_scenario
@@ -25,66 +25,66 @@ STEP_TIMEOUT = timedelta(minutes=5)  # for a UAV to stand ready, to be loaded, t
 FLIGHT_TIMEOUT = timedelta(minutes=30)  # of one that is flown faster than real time
 
 
-def fly_demo_mission(*, mission: Mission, actor: User, speed: float, since: datetime) -> str:
+def fly_demo_mission(*, mission: Mission, actor: User, speed: float, since: datetime) -> Reason | None:
     """Take the next step: approve it and have simulated UAVs take its UAVs' places, load them, start them, see the end of a fast flight.
 
-    Returns what is waited for; "" where nothing is left to do, or where users have approved it or ended its simulation themselves.
+    Returns what is waited for; None where nothing is left to do, or where users have approved it or ended its simulation themselves.
     since: simulations that are older are not this job's. Raises Refused; TimeoutError with what was waited for.
     """
     simulation = Simulation.objects.filter(mission=mission, created_at__gte=since).order_by("created_at").first()
     if simulation is None:
-        return _begin(mission, actor, speed) if mission.state == MissionState.PLANNED else ""
+        return _begin(mission, actor, speed) if mission.state == MissionState.PLANNED else None
     if simulation.state == SimulationState.FAILED:
-        raise refuse("simulation_failed", _("The simulation of the demo mission failed."))
+        raise refuse("simulation_failed", Reason("demo_simulation_failed"))
     if simulation.state not in PRESENT or mission.state not in (MissionState.APPROVED, *ON_ITS_WAY):
-        return ""
+        return None
     if simulation.vehicles.exclude(state=SimulationState.FLYING).exists():
-        return _within(STEP_TIMEOUT, simulation.created_at, f"Starting the simulated UAVs of “{mission.name}”")
+        return _within(STEP_TIMEOUT, simulation.created_at, Reason("demo_starting_uavs", {"mission": mission.name}))
     if mission.state == MissionState.APPROVED:
         dispatch_mission(mission=mission, actor=actor)
     return _carried_out(mission, actor, simulation.created_at) or _flown(mission, speed)
 
 
-def _begin(mission: Mission, actor: User, speed: float) -> str:
+def _begin(mission: Mission, actor: User, speed: float) -> Reason:
     with transaction.atomic():
         approve_mission(mission=mission, actor=actor)
         loaded = mission_of_organisation(mission.organisation, mission.pk)
         start_simulated_flights(mission=loaded, actor=actor, scenario=named_scenario(Named.CALM, Conditions()), speed=speed)
-    return f"Starting the simulated UAVs of “{mission.name}”"
+    return Reason("demo_starting_uavs", {"mission": mission.name})
 
 
-def _carried_out(mission: Mission, actor: User, since: datetime) -> str:
-    """What is waited for until each UAV is loaded and started; "" once they are."""
+def _carried_out(mission: Mission, actor: User, since: datetime) -> Reason | None:
+    """What is waited for until each UAV is loaded and started; None once they are."""
     commands = UavCommand.objects.filter(mission=mission, created_at__gte=since).select_related("uav")
     loads = commands.filter(kind=CommandKind.UPLOAD_MISSION)
     if not _are_applied(loads):
-        return _within(STEP_TIMEOUT, loads.latest("created_at").created_at, f"Loading “{mission.name}”")
+        return _within(STEP_TIMEOUT, loads.latest("created_at").created_at, Reason("demo_loading", {"mission": mission.name}))
     starts = commands.filter(kind=CommandKind.START)
     for load in loads.exclude(uav__in=starts.values("uav")):
         command_uav(uav=load.uav, kind=CommandKind.START, actor=actor)
     if not _are_applied(starts.all()):
-        return _within(STEP_TIMEOUT, starts.latest("created_at").created_at, f"Starting “{mission.name}”")
-    return ""
+        return _within(STEP_TIMEOUT, starts.latest("created_at").created_at, Reason("demo_starting", {"mission": mission.name}))
+    return None
 
 
-def _flown(mission: Mission, speed: float) -> str:
+def _flown(mission: Mission, speed: float) -> Reason | None:
     """What is waited for until a fast flight is over; one in real time is left to itself once it is started."""
     if speed <= 1.0:
-        return ""
+        return None
     started_at = UavCommand.objects.filter(mission=mission, kind=CommandKind.START).latest("created_at").created_at
-    return _within(FLIGHT_TIMEOUT, started_at, f"Flying “{mission.name}”")
+    return _within(FLIGHT_TIMEOUT, started_at, Reason("demo_flying", {"mission": mission.name}))
 
 
 def _are_applied(commands: QuerySet[UavCommand]) -> bool:
     """Raises Refused where one of them has failed or expired."""
     for command in commands:
         if command.state in (CommandState.FAILED, CommandState.EXPIRED):
-            raise refuse("command_failed", _("%(uav)s did not take a command.") % {"uav": command.uav.name})
+            raise refuse("command_failed", Reason("command_not_taken", {"uav": command.uav.name}))
     return all(command.state == CommandState.APPLIED for command in commands)
 
 
-def _within(limit: timedelta, begun_at: datetime, message: str) -> str:
+def _within(limit: timedelta, begun_at: datetime, message: Reason) -> Reason:
     """Raises TimeoutError with the message where it has taken longer."""
     if timezone.now() - begun_at > limit:
-        raise TimeoutError(message)
+        raise TimeoutError(str(message))
     return message

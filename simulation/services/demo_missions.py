@@ -22,6 +22,7 @@ from missions.services import PlanRequest, TargetRequest, UavRequest, create_mis
 from missions.services.commands.flight_progress import ON_ITS_WAY
 from missions.services.commands.refused import refuse
 from missions.services.fleet.demo_uavs import create_demo_uavs
+from operation.reasons import Reason, Why
 from planning.energy.conditions import Conditions, WindLayer
 from planning.problem import Objective, Task, TaskKind
 from planning.request import EndAction
@@ -41,7 +42,7 @@ FROZEN_IN_FLIGHT = (MissionState.APPROVED, *ON_ITS_WAY)
 class OnProgress(Protocol):
     """Told what is being done, and which share is done."""
 
-    def __call__(self, message: str, share: float) -> None: ...
+    def __call__(self, message: Why, share: float) -> None: ...
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ DEMO_MISSIONS = (
 class Step:
     """What is being done, or waited for, and which share is done."""
 
-    message: str
+    message: Reason
     share: float
 
 
@@ -101,7 +102,7 @@ def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
     with transaction.atomic():
         Organisation.objects.select_for_update(no_key=True).get(pk=organisation.pk)
         return open_demo_job(organisation) or create_job(
-            organisation=organisation, created_by=actor, task=MAKE_DEMO_MISSIONS, parameters={}, message="Waiting for a worker"
+            organisation=organisation, created_by=actor, task=MAKE_DEMO_MISSIONS, parameters={}, message=Reason("waiting_for_worker")
         )
 
 
@@ -118,7 +119,7 @@ def make_demo_missions(*, organisation: Organisation, actor: User, since: dateti
     of_demo = Mission.objects.filter(organisation=organisation, is_demo=True)
     for number, demo in enumerate(DEMO_MISSIONS):
         if not of_demo.filter(Q(deleted_at=None) | Q(created_at__gte=since), name=demo.name).exists():
-            step = Step(f"Planning “{demo.name}”", 0.5 * number / len(DEMO_MISSIONS))
+            step = Step(Reason("demo_planning", {"mission": demo.name}), 0.5 * number / len(DEMO_MISSIONS))
             progress(step.message, step.share)
             _plan(demo, organisation, actor)
             return step

@@ -18,6 +18,7 @@ from missions.models import Mission
 from missions.selectors.missions import mission_of_organisation
 from missions.services.commands.refused import RefusalReason, Refused
 from missions.services.missions import note
+from operation.reasons import Reason, Why
 from simulation.assessment.flown import AssessedRoute
 from simulation.assessment.judging import Assessment, judge, wind_finding
 from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Level, limits_to_json, worst
@@ -43,7 +44,7 @@ from workspace.models import Job, Organisation, User
 REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
 REHEARSE = "simulation.tasks.rehearse_mission"
 KEPT = 20  # rehearsals of one mission; older ones go
-OnProgress = Callable[[str, float], None]
+OnProgress = Callable[[Why, float], None]
 
 
 class RehearsedUav:
@@ -157,7 +158,7 @@ def start_rehearsal(
             created_by=actor,
             task=REHEARSE,
             parameters={"mission": str(mission.pk), "afresh": afresh},
-            message="Waiting for a worker",
+            message=Reason("waiting_for_worker"),
         )
         rehearsal = Rehearsal.objects.create(
             organisation=mission.organisation,
@@ -235,7 +236,7 @@ def limits_of_settings() -> AssessmentLimits:
 
 def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:
     def reported(share: float) -> None:
-        progress(f"Flying {number + 1} of {runs}", (number + share) / runs)
+        progress(Reason("flying_run", {"number": number + 1, "all": runs}), (number + share) / runs)
 
     return reported
 
@@ -282,7 +283,7 @@ def _finish(rehearsal_id: UUID, job: Job) -> None:
         levels = [Level(level) for level in RehearsalRun.objects.filter(rehearsal=rehearsal_id).values_list("level", flat=True)]
         level = worst(levels)
         result: dict[str, Any] = {"rehearsal": str(rehearsal_id), "level": str(level)}
-        if finish_job(job=job, result=result, message="Rehearsed"):
+        if finish_job(job=job, result=result, message=Reason("rehearsed")):
             Rehearsal.objects.filter(pk=rehearsal_id).update(level=str(level))
 
 

@@ -2065,6 +2065,8 @@ export interface components {
         HeldBack: {
             code: components["schemas"]["HeldBackCodeEnum"];
             message: string;
+            /** @description the message for programs; empty where only a text is known */
+            why: components["schemas"]["Why"][];
         };
         /**
          * @description * `needs_mapping` - needs_mapping
@@ -2198,6 +2200,8 @@ export interface components {
              */
             readonly progress: number;
             readonly message: string;
+            /** @description the message for programs; empty where only a text is known */
+            readonly why: components["schemas"]["Why"][];
             /** @description the best found so far, while it runs */
             readonly best: unknown;
             readonly result: unknown;
@@ -2214,6 +2218,8 @@ export interface components {
             code: string;
             /** @description for people: one sentence */
             message: string;
+            /** @description the message for programs; empty where only a text is known */
+            why: components["schemas"]["Why"][];
         };
         JobLink: {
             /**
@@ -2492,6 +2498,8 @@ export interface components {
              */
             readonly progress: number;
             readonly message: string;
+            /** @description the message for programs; empty where only a text is known */
+            readonly why: components["schemas"]["Why"][];
             readonly error: components["schemas"]["JobError"] | null;
             /** Format: date-time */
             readonly created_at: string;
@@ -2577,6 +2585,8 @@ export interface components {
             /** Format: date-time */
             decided_at: string | null;
             outcome: string;
+            /** @description the same for programs; empty where only a text is known */
+            outcome_why: components["schemas"]["Why"][];
         };
         LiveTarget: {
             /** @description in the mission's list, from 0 */
@@ -4265,6 +4275,8 @@ export interface components {
         ProposalFault: {
             place: string;
             message: string;
+            /** @description the message for programs; empty where only a text is known */
+            why: components["schemas"]["Why"][];
             /** @description lon, lat */
             position: number[] | null;
         };
@@ -5119,6 +5131,8 @@ export interface components {
             decided_at: string | null;
             /** @description why it is outdated or impossible */
             outcome: string;
+            /** @description the same for programs; empty where only a text is known */
+            outcome_why: components["schemas"]["Why"][];
         };
         ReplanOfferPage: {
             results: components["schemas"]["ReplanOffer"][];

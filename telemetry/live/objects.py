@@ -11,12 +11,11 @@ from django.utils import translation
 
 from missions.models import InspectionTarget, Mission, MissionUav, ReplanOffer, TargetState, UavCommand, Waypoint, WaypointKind
 from missions.serializers.commands import command_json
-from missions.serializers.replan_offers import render_difference, revision_of_offer
+from missions.serializers.replan_offers import offer_outcome, render_difference, revision_of_offer
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
-from workspace.message_rendering import render_message
 
 SAME_IN_ALL = ""  # the language of what has no words
 
@@ -109,7 +108,7 @@ def _offers(ids: list[str]) -> list[dict[str, Any]]:
             "created_at": offer.created_at,
             "decided_by": None if offer.decided_by is None else offer.decided_by.username,
             "decided_at": offer.decided_at,
-            "outcome": render_message(offer.outcome),
+            **offer_outcome(offer),
         }
         for offer in ReplanOffer.objects.filter(pk__in=ids).select_related("decided_by")
     ]

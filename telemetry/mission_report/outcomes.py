@@ -70,6 +70,7 @@ class TargetFacts:
     state: str
     state_reason: str = ""
     unassigned: str = ""
+    why: Sequence[Mapping[str, Any]] = ()
     reached_s: float | None = None
     reported: tuple[str, str] | None = None
 
@@ -129,7 +130,7 @@ def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[In
         values = {"uav": flight.name if flight else "", "outcome": outcome, "note": note}
         return OutcomeReason("reported-note" if note else "reported", values)
     if flight is None:
-        return _stated(target.state_reason or target.unassigned) or OutcomeReason("not-planned")
+        return _stated(target.state_reason or target.unassigned, target.why) or OutcomeReason("not-planned")
     visit = flight.visit
     if target.state_reason == "not-reached":
         metres = None if visit is None or visit.closest_m is None else round(visit.closest_m)
@@ -142,7 +143,7 @@ def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[In
         held = {"held": math.floor(visit.held_s), "planned": round(visit.planned_hold_s)}
         return OutcomeReason("not-held", {"uav": flight.name, **held})
     if target.state_reason not in ("", "flight-failed", "not-held"):
-        return _stated(target.state_reason)
+        return _stated(target.state_reason, target.why)
     if flight.is_continued:
         return OutcomeReason("continued")
     found = _decisive(flight, incidents)
@@ -153,8 +154,8 @@ def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[In
     return None if flight.has_reports else OutcomeReason("not-flown", {"uav": flight.name})
 
 
-def _stated(words: str) -> OutcomeReason | None:
-    return OutcomeReason("stated", {"words": words}) if words else None
+def _stated(words: str, why: Sequence[Mapping[str, Any]]) -> OutcomeReason | None:
+    return OutcomeReason("stated", {"words": words, "why": why}) if words else None
 
 
 def _decisive(flight: FlightFacts, incidents: Sequence[Incident]) -> Incident | None:

@@ -22,6 +22,7 @@ from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.selectors.incidents import incidents_of
 from telemetry.selectors.report_words import reason_words
 from workspace.models import Organisation
+from workspace.reason_texts import reasons_of_column
 
 _FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
 HASTE = 1.5  # so much faster than it was told may a UAV be: down the wind, or flown by hand
@@ -304,6 +305,11 @@ def at(seconds: float | None) -> datetime | None:
     return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
 
 
+def _reasons_of(target: InspectionTarget) -> list[dict[str, Any]]:
+    """Why it was not done, as far as no person wrote it."""
+    return reasons_of_column(target.state_why, target.state_reason) if target.state_reason else target.unassigned_why
+
+
 def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incidents: Sequence[Incident]) -> list[TargetOnRecord]:
     on_route = {point.target: (route, point) for route in routes for point in route.route.waypoints if point.target is not None}
     visits = {visit.target: visit for route in routes for visit in route.visits}
@@ -321,7 +327,7 @@ def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incide
                 route.place, route.name, visit, bool(route.in_air), last_visits[route.place], is_continued=route.place in continued
             )
         facts = TargetFacts(
-            target.state, target.state_reason, target.unassigned_message,
+            target.state, target.state_reason, target.unassigned_message, _reasons_of(target),
             None if target.reached_at is None else target.reached_at.timestamp(), reported.get(target.sequence),
         )  # fmt: skip
         outcome = outcome_of(facts, flight, incidents, is_over=mission.state in ENDED_STATES)

@@ -4,7 +4,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
 from telemetry.mission_report.outcomes import OutcomeReason
-from workspace.message_rendering import render_message
+from workspace.reason_texts import why_text
 
 WORDS = {
     "crashed": gettext_noop("%(uav)s crashed"),
@@ -48,7 +48,7 @@ def reason_words(reason: OutcomeReason) -> str:
     """Return part of a sentence, without the time at which it happened."""
     values = dict(reason.values)
     if reason.code == "stated":
-        return str(render_message(str(values["words"]))).rstrip(".")  # a planner's sentence, which becomes part of one
+        return why_text(values.get("why", ()), str(values["words"])).rstrip(".")  # a planner's sentence, which becomes part of one
     if values.get("cause"):
         values["cause"] = _(CAUSES[values["cause"]])
     if values.get("outcome") in OUTCOMES:

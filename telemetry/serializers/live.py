@@ -7,6 +7,7 @@ from missions.fields import ColoursField, PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
 from telemetry.serializers.alerts import AlertSerializer
+from workspace.api.reasons import WhySerializer
 from workspace.jobs.serializers import Declared
 
 
@@ -210,6 +211,7 @@ class LiveOfferSerializer(serializers.Serializer):
     decided_by = serializers.CharField(allow_null=True)
     decided_at = serializers.DateTimeField(allow_null=True)
     outcome = serializers.CharField(allow_blank=True)
+    outcome_why = WhySerializer(many=True, help_text="the same for programs; empty where only a text is known")
 
 
 class LiveSerializer(serializers.Serializer):

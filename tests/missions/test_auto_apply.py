@@ -285,7 +285,8 @@ def test_one_whose_job_was_cancelled_waits_and_says_so(client: Client) -> None:
     client.post(f"/api/v1/jobs/{applying['job']['id']}/cancel")
     settle_proposals()
     held = client.get(f"/api/v1/imports/{proposal['id']}").json()
-    assert (held["state"], held["held_back"]) == ("ready", [{"code": "not_applied", "message": "Cancelled"}])
+    cancelled = [{"code": "job_cancelled", "params": {}}]
+    assert (held["state"], held["held_back"]) == ("ready", [{"code": "not_applied", "message": "Cancelled", "why": cancelled}])
 
 
 def test_a_refused_file_stays_refused(client: Client) -> None:

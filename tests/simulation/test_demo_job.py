@@ -112,7 +112,8 @@ def test_a_command_that_fails_ends_the_job_with_the_reason(job: Job) -> None:
     work_until(job, UavCommand.objects.exists)
     UavCommand.objects.update(state=CommandState.FAILED)
     assert work(job).state == JobState.FAILED
-    assert job.error == {"code": "command_failed", "message": "Osprey 1 did not take a command."}
+    why = [{"code": "command_not_taken", "params": {"uav": "Osprey 1"}}]
+    assert job.error == {"code": "command_failed", "message": "Osprey 1 did not take a command.", "why": why}
 
 
 @pytest.mark.long

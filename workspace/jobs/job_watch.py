@@ -14,7 +14,8 @@ from typing import Any
 
 from django.db import DatabaseError, connection, connections
 
-from workspace.jobs.services import JobCancelled, JobLost, release_job, report_progress
+from operation.reasons import Why
+from workspace.jobs.services import JobCancelled, JobLost, message_of, release_job, report_progress
 from workspace.models import Job
 
 logger = logging.getLogger(__name__)
@@ -33,7 +34,7 @@ class JobWatch:
     def __init__(self, job: Job, *, interval_s: float = INTERVAL_S) -> None:
         self.job = job
         self._interval_s = interval_s
-        self._share, self._message = job.progress, job.message
+        self._share, self._message = job.progress, message_of(job)
         self._draw: Draw | None = None
         self._stopped = threading.Event()
         self._is_cancelled = threading.Event()
@@ -66,7 +67,7 @@ class JobWatch:
     def is_cancelled(self) -> bool:
         return self._is_cancelled.is_set()
 
-    def progress(self, message: str, share: float) -> None:
+    def progress(self, message: Why, share: float) -> None:
         self._message, self._share = message, share
         self.check()
 
@@ -74,7 +75,7 @@ class JobWatch:
         if self.is_cancelled:
             raise JobCancelled
 
-    def note(self, share: float, message: str, draw: Draw | None = None) -> None:
+    def note(self, share: float, message: Why, draw: Draw | None = None) -> None:
         """How far it is, and how to draw the best found so far: drawn once a report, however often there is a better one."""
         self._share, self._message = share, message
         if draw is not None:

@@ -5,9 +5,10 @@ from typing import Any, TypeAlias
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
+from workspace.api.reasons import WhySerializer
 from workspace.jobs.result_texts import result_with_texts
-from workspace.message_rendering import render_message
 from workspace.models import Job, JobState
+from workspace.reason_texts import column_text, reasons_of_column, with_message
 
 # A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared
 # fields out of the class, so neither overrides anything.
@@ -34,6 +35,7 @@ class ErrorSerializer(serializers.Serializer):
 class JobErrorSerializer(serializers.Serializer):
     code = serializers.CharField(help_text="for programs: stays the same")
     message = serializers.CharField(help_text="for people: one sentence")
+    why = WhySerializer(many=True, help_text="the message for programs; empty where only a text is known")
 
 
 @extend_schema_field(JobErrorSerializer(allow_null=True))
@@ -49,20 +51,25 @@ class JobSerializer(serializers.ModelSerializer):
     """
 
     state = serializers.ChoiceField(choices=JobState.choices)
+    why = serializers.SerializerMethodField(help_text="the message for programs; empty where only a text is known")
     error = JobErrorField(allow_null=True, read_only=True)
 
     class Meta:
         model = Job
-        fields = ["id", "task", "state", "progress", "message", "best", "result", "error", "created_at", "started_at", "finished_at"]
+        fields = ["id", "task", "state", "progress", "message", "why", "best", "result", "error", "created_at", "started_at", "finished_at"]
         read_only_fields = fields
+
+    @extend_schema_field(WhySerializer(many=True))
+    def get_why(self, instance: Job) -> list[dict[str, Any]]:
+        return reasons_of_column(instance.message_why, instance.message)
 
     def to_representation(self, instance: Job) -> dict[str, Any]:
         shown = super().to_representation(instance)
-        shown["message"] = render_message(instance.message)
+        shown["message"] = column_text(instance.message_why, instance.message)
         if shown.get("result"):
             shown["result"] = result_with_texts(instance.task, instance.result)
         if instance.error:
-            shown["error"] = instance.error | {"message": render_message(str(instance.error.get("message", "")))}
+            shown["error"] = with_message({"why": [], **instance.error})
         return shown
 
 

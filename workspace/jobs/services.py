@@ -13,6 +13,7 @@ from django.db.models.functions import Now
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from operation.reasons import Reason, Why
 from workspace.leases import from_now, is_free, lock_until_end, release
 from workspace.live.changes import publish_job
 from workspace.models import (
@@ -23,6 +24,7 @@ from workspace.models import (
     Organisation,
     User,
 )
+from workspace.reason_texts import message_json, text_and_column, why_of_column
 
 LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
 QUEUE_TIMEOUT_S = 30  # a queued job that nobody took for so long is sent again
@@ -46,12 +48,14 @@ class TooManyJobs(Exception):
         super().__init__(_("%(limit)s of your jobs are waiting or running already. Wait for one, or stop it.") % {"limit": limit})
 
 
-def create_job(*, organisation: Organisation, created_by: User | None, task: str, parameters: dict[str, Any], message: str = "") -> Job:
-    return Job.objects.create(organisation=organisation, created_by=created_by, task=task, parameters=parameters, message=message)
+def create_job(*, organisation: Organisation, created_by: User | None, task: str, parameters: dict[str, Any], message: Why = "") -> Job:
+    return Job.objects.create(
+        organisation=organisation, created_by=created_by, task=task, parameters=parameters, **message_columns(message)
+    )
 
 
 def create_job_within(
-    limit: int, *, organisation: Organisation, created_by: User, task: str, parameters: dict[str, Any], message: str = ""
+    limit: int, *, organisation: Organisation, created_by: User, task: str, parameters: dict[str, Any], message: Why = ""
 ) -> Job:
     """As create_job, for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs; of two at once the second waits."""
     with transaction.atomic():
@@ -88,7 +92,7 @@ def start_job(*, job_id: UUID | str) -> Job | None:
     return job
 
 
-def report_progress(*, job: Job, progress: float, message: str = "", best: Any = None) -> None:
+def report_progress(*, job: Job, progress: float, message: Why = "", best: Any = None) -> None:
     """Store how far the job is, the best found so far if there is something new, and renew its lease.
 
     Raises JobCancelled when the user has asked to stop (the lease is renewed all the same: what was found is still to be kept), and
@@ -96,7 +100,7 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
     """
     held = _held(job)
     values: dict[str, Any] = {"lease_expires_at": from_now(LEASE_S)}
-    reported = values | {"progress": min(max(progress, 0.0), 1.0), "message": message[:300]} | ({} if best is None else {"best": best})
+    reported = values | {"progress": min(max(progress, 0.0), 1.0), **message_columns(message)} | ({} if best is None else {"best": best})
     if not held.filter(cancel_requested_at=None).update(**reported):
         raise JobCancelled if held.update(**values) else JobLost
     publish_job(job.pk)
@@ -107,13 +111,13 @@ def release_job(*, job: Job) -> bool:
     return bool(release(_held(job), after_s=LEASE_S, state=JobState.QUEUED))
 
 
-def pause_job(*, job: Job, progress: float, message: str, pause_s: float) -> None:
+def pause_job(*, job: Job, progress: float, message: Why, pause_s: float) -> None:
     """Leave the worker to others, as the job waits for something: after `pause_s` the sweep sends it again.
 
     Attempts until now count no longer as lost. A job that is to be cancelled ends. Nothing happens if another worker has taken it over.
     """
     parameters = job.parameters | {_ATTEMPTS_BEFORE: job.attempts}
-    reported = {"progress": progress, "message": message[:300], "parameters": parameters}
+    reported = {"progress": progress, **message_columns(message), "parameters": parameters}
     if release(_held(job).filter(cancel_requested_at=None), after_s=pause_s, state=JobState.QUEUED, **reported):
         publish_job(job.pk)
     else:
@@ -129,13 +133,23 @@ def cancel_is_requested(*, job: Job) -> bool:
     return not _held(job).filter(cancel_requested_at=None).exists()
 
 
-def finish_job(*, job: Job, result: Any = None, message: str = "") -> bool:
+def finish_job(*, job: Job, result: Any = None, message: Why = "") -> bool:
     """Store the result once. False if another worker finished the job, or the user cancelled it, in the meantime."""
-    return _end(job, state=JobState.DONE, progress=1.0, result=result, message=message[:300])
+    return _end(job, state=JobState.DONE, progress=1.0, result=result, **message_columns(message))
 
 
-def fail_job(*, job: Job, code: str, message: str) -> None:
-    _end(job, state=JobState.FAILED, error={"code": code, "message": message}, message=message[:300])
+def fail_job(*, job: Job, code: str, message: Why) -> None:
+    _end(job, state=JobState.FAILED, error={"code": code, **message_json(message)}, **message_columns(message))
+
+
+def message_of(job: Job) -> Why:
+    """What a job says last, to be stored elsewhere."""
+    return why_of_column(job.message_why, job.message)
+
+
+def message_columns(message: Why) -> dict[str, Any]:
+    text, column = text_and_column(message, 300)
+    return {"message": text, "message_why": column}
 
 
 def _end(job: Job, **values: Any) -> bool:
@@ -162,14 +176,14 @@ def _has_used_its_time(job: Job) -> bool:
 
 def _give_up(job: Job) -> None:
     if _has_used_its_time(job):
-        fail_job(job=job, code="took_too_long", message="Not done within the time limit; it is not tried again.")
+        fail_job(job=job, code="took_too_long", message=Reason("job_time_limit"))
         return
-    fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
+    fail_job(job=job, code="worker_lost", message=Reason("worker_lost", {"times": MAX_ATTEMPTS}))
 
 
 def confirm_cancelled(*, job: Job) -> None:
     """A worker has seen the request to stop and has stopped. Nothing happens if another worker has taken the job over since."""
-    _end(job, state=JobState.CANCELLED, message="Cancelled")
+    _end(job, state=JobState.CANCELLED, **message_columns(Reason("job_cancelled")))
 
 
 def cancel_job(*, job: Job) -> Job:
@@ -181,7 +195,7 @@ def cancel_job(*, job: Job) -> Job:
             locked.cancel_requested_at = locked.cancel_requested_at or now
             if locked.state == JobState.QUEUED:
                 locked.state = JobState.CANCELLED
-                locked.message = "Cancelled"
+                locked.message, locked.message_why = text_and_column(Reason("job_cancelled"), 300)
                 locked.finished_at = now
                 locked.lease_expires_at = None
             locked.save()

@@ -9,6 +9,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import BinaryIO
 
+from operation.reasons import Reason
+
 MAX_BLOB_HEADER_BYTES = 64 * 1024  # OSM wiki, PBF format: "should be less than 32 KiB and must be less than 64 KiB"
 MAX_BLOB_BYTES = 32 * 1024 * 1024  # same page, for the uncompressed size
 MAX_BLOB_FIELDS = 100  # a Blob and its header have a handful
@@ -21,7 +23,7 @@ BOMB = f"The file unpacks to more than {MAX_RATIO} times its size; refused as a 
 _CHUNK = 1024 * 1024
 _BLOB_TYPES = {b"OSMHeader", b"OSMData"}
 
-Progress = Callable[[str, float], None]
+Progress = Callable[[Reason, float], None]
 
 
 class OsmFileError(ValueError):
@@ -57,7 +59,7 @@ def examine(path: Path, progress: Progress | None = None) -> OsmFormat:
         else:
             _examine_stream(path, file_format, progress)
     except (OSError, EOFError, zlib.error) as error:
-        raise OsmFileError(f"The file cannot be read: {error}") from error
+        raise OsmFileError(Reason("file_unreadable", {"error": str(error)})) from error
     return file_format
 
 
@@ -65,7 +67,7 @@ def _format_of(path: Path) -> OsmFormat:
     with path.open("rb") as file:
         start = file.read(16)
     if not start:
-        raise OsmFileError("The file is empty.")
+        raise OsmFileError(Reason("file_empty"))
     if start[:2] == b"\x1f\x8b":
         return _format_inside(path, OsmFormat.XML_GZIP, OsmFormat.JSON_GZIP)
     if start[:3] == b"BZh":
@@ -82,7 +84,7 @@ def _format_inside(path: Path, xml: OsmFormat, json: OsmFormat) -> OsmFormat:
         return xml
     if text.startswith(b"{"):
         return json
-    raise OsmFileError("This is neither OSM XML, OSM PBF nor Overpass JSON.")
+    raise OsmFileError(Reason("no_osm_format"))
 
 
 def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | None) -> None:
@@ -103,7 +105,7 @@ def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | Non
             if is_xml and len(chunk) == _CHUNK and b">" not in chunk:
                 raise OsmFileError("The XML has a tag of more than 1 MiB.")
             if progress is not None and unpacked % (64 * _CHUNK) < _CHUNK:
-                progress(f"looking the file over, {unpacked // 1024**2} MiB", 0.0)
+                progress(Reason("looking_file_over", {"size": unpacked // 1024**2}), 0.0)
 
 
 def _examine_pbf(path: Path) -> None:
@@ -116,7 +118,7 @@ def _examine_pbf(path: Path) -> None:
             prefix = file.read(4)
             header_bytes = int.from_bytes(prefix, "big")
             if len(prefix) < 4 or header_bytes == 0:
-                raise OsmFileError(f"The PBF is cut off or damaged at byte {offset}.")
+                raise OsmFileError(Reason("pbf_damaged", {"byte": offset}))
             if header_bytes > MAX_BLOB_HEADER_BYTES:
                 raise OsmFileError(f"The PBF has a blob header of {header_bytes} bytes at byte {offset}; the format allows 64 KiB.")
             blob_type, blob_bytes = _blob_header(file.read(header_bytes), offset)

@@ -20,6 +20,7 @@ from inspection.importers.osm.bridges import BridgeArea, BridgeWay, BrokenArea, 
 from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, Progress, examine
 from inspection.importers.osm.overpass import rewrite_as_pbf
 from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
+from operation.reasons import Reason
 
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
 MAX_NODES_PER_WAY = 10_000  # OSM itself stops at 2,000
@@ -132,18 +133,18 @@ class _Reader:
 
     def content(self, timestamp: str | None) -> OsmContent:
         header = osmium.FileProcessor(self.file, osmium.osm.NOTHING).header
-        self.progress("relations", 0.05)
+        self.progress(Reason("reading_relations"), 0.05)
         relations = self._read_relations()
-        self.progress("ways", 0.15)
+        self.progress(Reason("reading_ways"), 0.15)
         ways = self._read_ways()
         members = self._read_members(relations, ways)
-        self.progress("way nodes", 0.4)
+        self.progress(Reason("reading_way_nodes"), 0.4)
         self._read_positions([way.refs for way in (*ways.values(), *members.values())])
-        self.progress("towers and poles", 0.7)
+        self.progress(Reason("reading_towers"), 0.7)
         self._supports()
-        self.progress("geometry", 0.8)
+        self.progress(Reason("making_geometry"), 0.8)
         self._ways_and_bridges(ways, relations, members)
-        self.progress("read", 1.0)
+        self.progress(Reason("osm_read"), 1.0)
         batch = self.batch
         batch.give()
         stated = header.get("osmosis_replication_timestamp") or header.get("timestamp") or None

@@ -11,6 +11,7 @@ from pyproj import CRS
 from pyproj.exceptions import CRSError
 
 from inspection.terrain.heights import BLOCK_SIZE, MAX_HEIGHT_M, MIN_HEIGHT_M, HeightGrid
+from operation.reasons import Reason
 
 
 class Kind(IntEnum):
@@ -150,14 +151,14 @@ class Survey:
             "lowest_m": round(self.lowest_m, 2), "highest_m": round(self.highest_m, 2), "extent": self._extent,
         }  # fmt: skip
 
-    def void_sentence(self) -> str:
-        """Empty where there is none."""
+    def notes(self) -> list[Reason]:
+        """What people should know of its voids."""
         if not self.voids:
-            return ""
-        words = f"{self.voids} of {self.posts} posts are void ({100 * self.voids / self.posts:.2g} %)"
+            return []
+        figures = {"voids": self.voids, "posts": self.posts, "percent": float(f"{100 * self.voids / self.posts:.2g}")}
         if self.undeclared_voids:
-            words += f", {self.undeclared_voids} of them without being declared"
-        return f"{words}. An older model fills them where it reaches; elsewhere the ground stays unknown. Nothing is made up."
+            return [Reason("undeclared_voids", figures | {"undeclared": self.undeclared_voids})]
+        return [Reason("voids", figures)]
 
 
 MAX_NAME_LENGTH = 50

@@ -15,9 +15,10 @@ import numpy as np
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.rows import AssetFileError
 from inspection.importers.terrain.geotiff import GeoTiff
-from inspection.importers.terrain.raster import Raster, TerrainFileError, Window, datum_named, window_of
+from inspection.importers.terrain.raster import DatumFault, Raster, TerrainFileError, Window, datum_named, window_of
 from inspection.importers.terrain.resampling import DEGREE_M, placed
 from inspection.importers.terrain.tiff import TIFF_STARTS
+from operation.reasons import Reason
 
 VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
 VOID = -32768
@@ -97,7 +98,7 @@ def datum_of(file: TerrainFile, stated: str) -> str:
     if file.vertical_datum is not None:
         return file.vertical_datum
     if not named:
-        raise TerrainFileError(NEEDS_DATUM)
+        raise DatumFault(NEEDS_DATUM)
     return named
 
 
@@ -110,7 +111,7 @@ def _one(file: IO[bytes], name: str) -> TerrainFile:
         return TerrainFile("GeoTIFF", [raster], tiff.vertical_datum, [tiff.system.name], notes)
     if name.lower().removesuffix(".gz").endswith(_HGT_ENDING):
         return TerrainFile("HGT", [HgtRaster(file, name)], VERTICAL_DATUM, ["WGS 84"])
-    raise TerrainFileError("This is neither a GeoTIFF nor an HGT file, zipped or not.")
+    raise TerrainFileError(Reason("no_terrain_format"))
 
 
 def _several(stack: ExitStack, path: Path) -> TerrainFile:

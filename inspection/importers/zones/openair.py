@@ -39,6 +39,7 @@ from inspection.importers.zones.records import (
     checked_radius_m,
     checked_text,
 )
+from operation.reasons import Reason
 
 NAUTICAL_MILE_M = 1_852.0
 FLIGHT_LEVEL_M = 100 * FOOT_M
@@ -240,7 +241,7 @@ class _Record:
     has_only_a_pen: bool = True
 
 
-def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str]]:
+def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str | Reason]]:
     """The zones, and what people should know of how the file was read; records with a fault are added to unread."""
     reader = _Reader(faults)
     for number, line in enumerate(text.splitlines(), start=1):
@@ -248,12 +249,12 @@ def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -
             reader.take(number, line)
     with faults.gathering():
         reader.finish()
-    notes = [f"{reader.pens} records only set pen and brush; they draw nothing."] if reader.pens else []
+    notes: list[str | Reason] = [f"{reader.pens} records only set pen and brush; they draw nothing."] if reader.pens else []
     if names := reader.crossing_names:
         notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:MAX_LISTED])}.")
     if carried := reader.carried_over:
         more = f" and {len(carried) - MAX_LISTED} more" if len(carried) > MAX_LISTED else ""
-        notes.append(f"Minutes or seconds of 60 were read as the next degree or minute: {', '.join(carried[:MAX_LISTED])}{more}.")
+        notes.append(Reason("minutes_of_60", {"places": f"{', '.join(carried[:MAX_LISTED])}{more}"}))
     unread += reader.unread
     return reader.zones, notes
 

@@ -15,6 +15,7 @@ from inspection.importers.zones.ed318 import is_ed318, stated_validity, text_of,
 from inspection.importers.zones.geojson import zones_of_geojson
 from inspection.importers.zones.openair import looks_like_openair, zones_of_openair
 from inspection.importers.zones.records import MAX_IDENTIFIER, MAX_NAME, UnreadRecord, ZoneRecord
+from operation.reasons import Reason, reason_of
 
 MAX_LOOKED_AT = 20_000  # parts of one zone
 _PLACE = re.compile(r"(features|UASZoneList)\[(\d+)\]")
@@ -87,7 +88,7 @@ class ZoneFile:
     provider: str = ""
     valid_from: str | None = None  # as stated, RFC 3339, UTC
     valid_until: str | None = None
-    notes: tuple[str, ...] = ()  # what people should know of how it was read
+    notes: tuple[str | Reason, ...] = ()  # what people should know of how it was read
     unread: tuple[UnreadRecord, ...] = ()
 
 
@@ -97,7 +98,7 @@ class _Read:
     records: list[ZoneRecord]
     provider: str = ""
     validity: tuple[str | None, str | None] = (None, None)
-    notes: list[str] = field(default_factory=list)
+    notes: list[str | Reason] = field(default_factory=list)
     unread: list[UnreadRecord] = field(default_factory=list)
 
 
@@ -111,7 +112,7 @@ def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
     try:
         read = _read_openair(data, found) if looks_like_openair(data) and data.lstrip()[:1] not in {b"{", b"["} else _read_json(data, found)
     except JsonFault as fault:
-        raise ZoneFileError([GeometryFault("", str(fault))]) from fault
+        raise ZoneFileError([GeometryFault("", reason_of(fault))]) from fault
     except TooManyFaults as many:
         raise ZoneFileError(found.faults) from many
     except GeometryFault as fault:
@@ -155,7 +156,7 @@ def _are_all_of_records(faults: Sequence[GeometryFault], unread: Sequence[Unread
 def _read_openair(data: bytes, faults: FaultList) -> _Read:
     if len(data) > MAX_FILE_BYTES:
         raise GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")
-    notes = []
+    notes: list[str | Reason] = []
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -181,12 +182,12 @@ def _read_document(document: Any, faults: FaultList) -> _Read:
         with faults.gathering():
             provider = text_of(metadata.get("provider"), "metadata.provider", MAX_NAME) if isinstance(metadata, dict) else ""
         notes: list[str] = []
-        return _Read("ED-318", zones_of_ed318(document, faults, notes), provider, validity, notes)
+        return _Read("ED-318", zones_of_ed318(document, faults, notes), provider, validity, [*notes])
     if is_ed269(document):
         return _Read("ED-269", zones_of_ed269(document, faults))
     if isinstance(document, dict) and isinstance(document.get("type"), str) and document["type"] in _GEOJSON:
         notes = []
-        return _Read("GeoJSON", zones_of_geojson(document, faults, notes), notes=notes)
+        return _Read("GeoJSON", zones_of_geojson(document, faults, notes), notes=[*notes])
     raise GeometryFault("", "this is neither GeoJSON nor an ED-269, ED-318 or OpenAir file")
 
 

@@ -19,6 +19,7 @@ from inspection.services.ground import hold_ground, mark_ground_changed, number_
 from inspection.services.imports.asset_merge import Merge, Source, staging
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Progress, Provenance
+from operation.reasons import Reason
 from workspace.models import DEFAULT_ORGANISATION_ID, User
 
 MAX_REPORTED = 50
@@ -123,7 +124,7 @@ def import_assets(
     parameters = with_what_is_known(parameters, AssetSet.objects.filter(name=name).first())
     with path.open("rb") as data:
         sha256 = hashlib.file_digest(data, "sha256").hexdigest()
-    notify("reading the rows", 0.1)
+    notify(Reason("reading_rows"), 0.1)
     with opened(path, parameters) as file, transaction.atomic():
         hold_ground()
         asset_set, _ = AssetSet.objects.select_related("data_import").get_or_create(name=name)
@@ -132,7 +133,7 @@ def import_assets(
         with staged(
             file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, progress=progress
         ) as found:  # fmt: skip
-            notify("writing the assets", 0.6)
+            notify(Reason("writing_assets"), 0.6)
             owner = organisation_of(provenance, imported_by)
             ids = count_of_ids(asset_set.pk, owner)
             counts: dict[str, Any] = found.numbers | counts_of(file, tally, faults, ids)
@@ -210,7 +211,7 @@ def staged(
         raise UnfinishedMapping(fault)
     with staging() as (cursor, copying):
         with copying() as copy:
-            for record in records_of(reported(rows, progress, "comparing", 0.4), mapping, faults, tally):
+            for record in records_of(reported(rows, progress, "comparing_rows", 0.4), mapping, faults, tally):
                 copy.write_row(_row(record))
         faults.refuse_if_any()
         if tally.unknown_kinds:
@@ -218,11 +219,11 @@ def staged(
         yield Merge(cursor, ASSET_SET, replace_edited=replace_edited, asset_set=asset_set.pk if asset_set else None)
 
 
-def reported(rows: Iterable[Row], progress: Progress | None, stage: str, share: float) -> Iterator[Row]:
+def reported(rows: Iterable[Row], progress: Progress | None, code: str, share: float) -> Iterator[Row]:
     """The rows, with a word to whoever watches every few thousand; that is where a cancelled job ends."""
     for number, row in enumerate(rows, start=1):
         if progress is not None and number % ROWS_BETWEEN_WORDS == 0:
-            progress(f"{stage}, row {number:,}", share)
+            progress(Reason(code, {"row": number}), share)
         yield row
 
 

@@ -15,7 +15,6 @@ from django.db import transaction
 from django.db.backends.utils import CursorWrapper
 from django.db.models import Count
 from django.utils.dateparse import parse_datetime
-from django.utils.translation import gettext as _
 
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
@@ -24,6 +23,7 @@ from inspection.models import ROW_ACTIONS, Asset, ChangeAction, DataImport, Impo
 from inspection.services.ground import hold_ground, mark_ground_changed, number_supports
 from inspection.services.imports.asset_merge import UNCHANGED, Merge, Sample, Source, staging
 from inspection.services.proposals.reading import Provenance
+from operation.reasons import Reason
 from workspace.models import User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
@@ -33,7 +33,7 @@ HANDFUL = 10  # of one subtype; so few can really all be gone, more of them miss
 
 _IS_NEWER = "EXISTS (SELECT FROM inspection_dataimport i WHERE i.id = a.data_import_id AND i.data_timestamp > %(timestamp)s)"
 
-Progress = Callable[[str, float], None]
+Progress = Callable[[Reason, float], None]
 
 
 # Files of different regions, even neighbours that overlap, say nothing about each other: only rows written by an import whose extent is
@@ -88,7 +88,7 @@ def import_osm(
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
-            _notify(progress, "writing", 0.0)
+            _notify(progress, Reason("writing"), 0.0)
             hold_ground()
             data_import = DataImport.objects.create(
                 kind=ImportKind.OSM, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
@@ -98,8 +98,8 @@ def import_osm(
             values = _values(content, path, is_synthetic, replace_region, but=data_import)
             merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
             numbers = _numbers(merge)
-            _notify(progress, "writing", 0.2)
-            merge.write(data_import.pk, imported_by, lambda share: _notify(progress, "writing", 0.2 + 0.8 * share))
+            _notify(progress, Reason("writing"), 0.2)
+            merge.write(data_import.pk, imported_by, lambda share: _notify(progress, Reason("writing"), 0.2 + 0.8 * share))
         counts = content.counts | numbers | {"extent": content.extent}
         if number_supports() or merge.changes_something:
             mark_ground_changed()
@@ -119,10 +119,10 @@ def difference_of_osm(
     """What import_osm would do with the file; nothing is written. Raises OsmFileError."""
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
-            _notify(progress, "comparing", 0.0)
+            _notify(progress, Reason("comparing"), 0.0)
             values = _values(content, path, False, replace_region)
             merge = Merge(cursor, OPENSTREETMAP, replace_edited=replace_edited, **values)
-            _notify(progress, "comparing", 0.6)
+            _notify(progress, Reason("comparing"), 0.6)
             samples = {action: merge.samples(action, most) for action in ROW_ACTIONS}
         transaction.set_rollback(True)
     return OsmDifference(content.counts | {"extent": content.extent, "data_timestamp": content.data_timestamp}, _numbers(merge), samples)
@@ -140,7 +140,7 @@ def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapp
 
             content = read_osm(path, progress, take)
             if not content.kinds:
-                raise OsmFileError(_("The file has no power lines, towers, railways or bridges."))
+                raise OsmFileError(Reason("no_infrastructure"))
         if content.is_unsorted:
             cursor.execute(_KEEP_THE_LAST)
         yield cursor, content
@@ -178,7 +178,7 @@ def _values(content: OsmContent, path: Path, is_synthetic: bool, replace_region:
     }  # fmt: skip
 
 
-def _notify(progress: Progress | None, stage: str, share: float) -> None:
+def _notify(progress: Progress | None, stage: Reason, share: float) -> None:
     if progress is not None:
         progress(stage, share)
 

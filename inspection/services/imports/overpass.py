@@ -8,13 +8,13 @@ from urllib.parse import urlencode
 
 from django.conf import settings
 from django.utils import timezone
-from django.utils.translation import gettext as _
 
 from inspection.importers.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
 from inspection.importers.osm.records import Extent
 from inspection.models import ImportKind, Upload
 from inspection.services.imports.uploads import private_folder, store_upload
 from inspection.services.proposals.reading import Fault, FileRefused, Progress
+from operation.reasons import Reason, reason_of
 from workspace.http_client import OutgoingError, OutgoingFailed, fetch
 from workspace.models import User
 
@@ -37,7 +37,7 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
     try:
         box = area_of(parameters)
     except WrongArea as error:
-        raise FileRefused([Fault("overpass_bbox", str(error))]) from error
+        raise FileRefused([Fault("overpass_bbox", reason_of(error))]) from error
     with private_folder() as folder:
         answer = folder / "overpass.json"
         try:
@@ -45,7 +45,7 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
         except OutgoingError as error:
             raise FileRefused([Fault("", f"Overpass: {error}")]) from error
         if fault := complaint(_tail(answer)):
-            raise FileRefused([Fault("", _("Overpass did not give all of it: %(fault)s. Take a smaller area.") % {"fault": fault})])
+            raise FileRefused([Fault("", Reason("overpass_incomplete", {"fault": fault}))])
         upload = store_upload(file_name="overpass.json", chunks=_blocks(answer), created_by=created_by)
     now = timezone.now().isoformat()
     return upload, {"source_address": settings.OVERPASS_ADDRESS, "attribution": ATTRIBUTION, "licence": "ODbL 1.0", "fetched_at": now}
@@ -53,13 +53,13 @@ def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress:
 
 def _ask(text: str, to: Path, progress: Progress) -> None:
     for attempt in range(1, TRIES + 1):
-        progress("asking Overpass", 0.02)
+        progress(Reason("asking_overpass"), 0.02)
         try:
             fetch(
                 settings.OVERPASS_ADDRESS, to=to, max_bytes=settings.MAX_UPLOAD_BYTES[ImportKind.OSM], timeout_s=QUERY_TIMEOUT_S + 20,
                 total_s=2 * QUERY_TIMEOUT_S, method="POST", data=urlencode({"data": text}).encode(),
                 headers={"Content-Type": "application/x-www-form-urlencoded"},
-                progress=lambda size: progress(f"{size / 2**20:.1f} MiB from Overpass", 0.05),
+                progress=lambda size: progress(Reason("size_from_overpass", {"size": round(size / 2**20, 1)}), 0.05),
             )  # fmt: skip
             return
         except OutgoingFailed as error:
@@ -72,7 +72,7 @@ def _wait(pause_s: float, progress: Progress) -> None:
     """With an ear for whoever wants to stop."""
     end_s = time.monotonic() + pause_s
     while (left_s := end_s - time.monotonic()) > 0:
-        progress(f"Overpass is busy; next try in {left_s:.0f} s", 0.02)
+        progress(Reason("overpass_busy", {"seconds": round(left_s)}), 0.02)
         time.sleep(min(left_s, 0.5))
 
 

@@ -19,6 +19,7 @@ from inspection.services.imports.zone_sets import difference_of
 from inspection.services.imports.zones import read_zone_file, stated_validity
 from inspection.services.proposals.pipeline import LostJob, WrongState, discard_proposal, start_proposal
 from inspection.services.proposals.reading import Progress
+from operation.reasons import Reason
 from workspace.audit import record_change
 from workspace.http_client import Fetched, OutgoingError, OutgoingFailed, fetch
 from workspace.jobs.services import create_job, fail_job, finish_job
@@ -114,23 +115,23 @@ def fetch_subscription(*, job: Job, progress: Progress) -> ImportProposal | None
     """
     subscription = ZoneSubscription.objects.select_related("zone_set", "proposal").filter(pk=job.parameters["subscription"]).first()
     if subscription is None:
-        finish_job(job=job, message="The subscription is no longer there.")
+        finish_job(job=job, message=Reason("subscription_gone"))
         return None
     is_asked_for = job.created_by_id is not None
     most_bytes = min(MAX_FILE_BYTES, settings.MAX_UPLOAD_BYTES[ImportKind.ZONES])
     with tempfile.TemporaryDirectory(prefix=_FOLDER_PREFIX, dir=upload_folder()) as folder:
         path = Path(folder) / _file_name(subscription)
-        progress("Fetching", 0.0)
+        progress(Reason("fetching"), 0.0)
         try:
             fetched = fetch(
                 subscription.address, to=path, max_bytes=most_bytes, timeout_s=SILENCE_S, total_s=TOTAL_S,
                 headers={} if is_asked_for else _conditions(subscription),
-                progress=lambda size: progress("Fetching", 0.9 * size / most_bytes),
+                progress=lambda size: progress(Reason("fetching"), 0.9 * size / most_bytes),
             )  # fmt: skip
         except OutgoingError as error:
             _note_failure(subscription, job, error)
             return None
-        progress("Comparing", 0.9)
+        progress(Reason("comparing_answer"), 0.9)
         is_news = _is_news(subscription, fetched, path, is_asked_for=is_asked_for)
         return _note_answer(subscription, job, fetched, path if is_news else None)
 
@@ -171,7 +172,7 @@ def _note_answer(subscription: ZoneSubscription, job: Job, fetched: Fetched, pat
                 held.etag, held.last_modified, held.sha256 = fetched.etag, fetched.last_modified, fetched.sha256
             held.next_fetch_at = max(held.next_fetch_at, _next_regular(held))
             held.save()
-        message = "A new file is proposed." if proposal else "Nothing new." if held else "The subscription was changed meanwhile."
+        message = Reason("new_file_proposed" if proposal else "nothing_new" if held else "subscription_changed")
         result = {"proposal": str(proposal.pk) if proposal else None, "is_new": proposal is not None}
         if not finish_job(job=job, result=result, message=message):
             raise LostJob
@@ -246,7 +247,9 @@ def _next_regular(subscription: ZoneSubscription) -> datetime:
 def _fetch_job(subscription: ZoneSubscription, actor: User | None) -> Job:
     organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
     parameters = {"subscription": subscription.pk}
-    return create_job(organisation=organisation, created_by=actor, task=FETCH_TASK, parameters=parameters, message="Waiting to be fetched")
+    return create_job(
+        organisation=organisation, created_by=actor, task=FETCH_TASK, parameters=parameters, message=Reason("waiting_to_be_fetched")
+    )
 
 
 def _file_name(subscription: ZoneSubscription) -> str:

@@ -11,17 +11,19 @@ from django.db import transaction
 from inspection.importers.terrain.raster import Survey, TerrainFileError, blocks_of
 from inspection.importers.terrain.terrain_file import TerrainFile, datum_of, opened_terrain
 from inspection.models import DataImport, ImportKind, TerrainTile
+from inspection.reasons import notes_json
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Provenance
 from inspection.terrain.heights import HeightGrid, packed
+from operation.reasons import Reason
 from workspace.audit import record_change
 from workspace.models import User
 
 ONLY_VOIDS = "The file has no heights, only voids."
 _BATCH = 64
 
-Progress = Callable[[str, float], None]
+Progress = Callable[[Reason, float], None]
 
 
 def import_terrain(
@@ -95,7 +97,7 @@ def facts_of(file: TerrainFile, survey: Survey, datum: str) -> dict[str, Any]:
         "resolution_m": round(file.resolution_m, 2),
         "vertical_datum": datum,
         "datum_is_stated": file.vertical_datum is not None,
-        "notes": [note for note in (*file.notes, survey.void_sentence()) if note],
+        **notes_json([*file.notes, *survey.notes()]),
     }
 
 
@@ -106,7 +108,7 @@ def _write(data_import: DataImport, file: TerrainFile, datum: str, progress: Pro
         for block in blocks_of(raster):
             survey.add(block)
             if progress is not None:
-                progress("writing the heights", (number + block.share) / len(file.rasters))
+                progress(Reason("writing_heights"), (number + block.share) / len(file.rasters))
             if block.grid is not None:
                 tiles.append(_tile(data_import, block.grid, datum))
             if len(tiles) == _BATCH:

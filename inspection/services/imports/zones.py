@@ -15,11 +15,13 @@ from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.zones.records import UnreadRecord
 from inspection.importers.zones.zone_file import MAX_FILE_BYTES, ZoneFile, ZoneFileError, read_zones
 from inspection.models import DataImport, ImportKind, ZoneSet
+from inspection.reasons import notes_json
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.imports.osm import SYNTHETIC_ATTRIBUTION
 from inspection.services.imports.zone_sets import ZoneDifference, difference_of, keep_what_was, store_version, write_difference
 from inspection.services.proposals.reading import Provenance
 from workspace.models import User
+from workspace.reason_texts import message_json
 
 FORMAT_NAMES = {"ed269": "ED-269", "ed318": "ED-318", "openair": "OpenAir", "geojson": "GeoJSON"}
 
@@ -132,14 +134,14 @@ def zone_counts(content: ZoneFile) -> dict[str, Any]:
         "restrictions": dict(sorted(Counter(zone.restriction or "not stated" for zone in content.zones).items())),
         "extent": list(extent_of(content)), "provider": content.provider,
         "valid_from": content.valid_from, "valid_until": content.valid_until,
-        "notes": list(content.notes),
+        **notes_json(content.notes),
     } | ({"not_read": [_unread_json(record) for record in content.unread]} if content.unread else {})  # fmt: skip
 
 
 def _unread_json(record: UnreadRecord) -> dict[str, Any]:
     position = record.fault.position
     return {
-        "place": record.fault.place, "message": record.fault.message, "position": list(position) if position else None,
+        "place": record.fault.place, **message_json(record.fault.why), "position": list(position) if position else None,
         "name": record.name, "bbox": list(record.bbox) if record.bbox else None,
     }  # fmt: skip
 

@@ -31,6 +31,7 @@ from inspection.services.imports.assets import (
     with_what_is_known,
 )
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from operation.reasons import Reason, reason_of
 from workspace.models import User
 
 MAX_CHANGES = 2_000  # of each action
@@ -44,15 +45,15 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         name = set_name_of(file_path, parameters.get("set_name"))
         asset_set = AssetSet.objects.filter(name=name).first()
         stated = with_what_is_known(parameters, asset_set)
-        progress("reading the rows", 0.1)
+        progress(Reason("reading_rows"), 0.1)
         with opened(file_path, stated) as file:
             faults = row_faults(stated)
-            survey = survey_of(reported(file.rows(faults), progress, "reading the rows", 0.1), file.source.columns)
+            survey = survey_of(reported(file.rows(faults), progress, "reading_rows_row", 0.1), file.source.columns)
             faults.refuse_if_any()
             summary = _summary(file, survey, name, stated, file_path)
             if words := _nothing_to_read(file, survey):
                 return Reading(summary | {"needs_mapping": True, "words": words}, dict(NOTHING))
-            progress("comparing", 0.5)
+            progress(Reason("comparing"), 0.5)
             return _compared(
                 file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True, progress=progress,
                 organisation=organisation_of(provenance, None),
@@ -92,7 +93,7 @@ def _compared(
             changes = tuple(_changes(found))
             ids = count_of_ids(asset_set.pk if asset_set else None, organisation)
     except UnfinishedMapping as error:
-        return Reading(summary | {"needs_mapping": True, "words": str(error)}, dict(NOTHING))
+        return Reading(summary | {"needs_mapping": True, "words": reason_of(error)}, dict(NOTHING))
     return Reading(summary | counts_of(file, tally, faults, ids), found.numbers, changes)
 
 
@@ -147,7 +148,7 @@ def _shown(text: str | None) -> dict[str, Any] | None:
 
 def _file(path: Path | None) -> Path:
     if path is None:
-        raise FileRefused([Fault("", "There is no file.")])
+        raise FileRefused([Fault("", Reason("no_file"))])
     return path
 
 
@@ -157,8 +158,7 @@ def _faults_as_refusal() -> Iterator[None]:
         yield
     except AssetFileError as error:
         raise FileRefused(
-            Fault(fault.place, fault.message, (fault.position.lon, fault.position.lat) if fault.position else None)
-            for fault in error.faults
+            Fault(fault.place, fault.why, (fault.position.lon, fault.position.lat) if fault.position else None) for fault in error.faults
         ) from error
     except UnfinishedMapping as error:
-        raise FileRefused([Fault("kind", str(error))]) from error
+        raise FileRefused([Fault("kind", reason_of(error))]) from error

@@ -12,6 +12,7 @@ from inspection.models import ChangeAction, DataImport
 from inspection.services.facts import differing
 from inspection.services.imports.osm import OsmDifference, difference_of_osm, import_osm
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from operation.reasons import Reason, reason_of
 from workspace.models import User
 
 STAYING = (ChangeAction.KEPT, ChangeAction.VANISHED)  # drawn where they are, not where the file has them
@@ -23,7 +24,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
     try:
         found = difference_of_osm(path=_file(path), progress=progress, **_options(parameters))
     except OsmFileError as error:
-        raise FileRefused([Fault("", str(error))]) from error
+        raise FileRefused([Fault("", reason_of(error))]) from error
     return Reading(found.counts, found.numbers, tuple(_changes(found)))
 
 
@@ -34,12 +35,12 @@ def apply(
     try:
         return import_osm(path=_file(path), imported_by=applied_by, progress=progress, provenance=provenance, **_options(parameters))
     except OsmFileError as error:
-        raise FileRefused([Fault("", str(error))]) from error
+        raise FileRefused([Fault("", reason_of(error))]) from error
 
 
 def _file(path: Path | None) -> Path:
     if path is None:
-        raise FileRefused([Fault("", "There is no file.")])
+        raise FileRefused([Fault("", Reason("no_file"))])
     return path
 
 

@@ -31,14 +31,17 @@ from inspection.services.imports.overpass import fetch_area
 from inspection.services.imports.uploads import UploadRefused, upload_as_file
 from inspection.services.proposals import assets, osm, terrain, zones
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading, reasons_against
-from workspace.jobs.services import cancel_job, create_job, finish_job
+from operation.reasons import Reason, english, reason_of, reasons_of
+from workspace.jobs.services import cancel_job, create_job, finish_job, message_of
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
+from workspace.reason_texts import message_json
 
 FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets, ImportKind.TERRAIN: terrain}
 READ_TASK = "inspection.tasks.read_proposal"
 APPLY_TASK = "inspection.tasks.apply_proposal"
 MAX_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
 MAX_FAULTS_KEPT = 50
+READ = Reason("file_read")
 DECISIONS = {"replace_edited", "seen"}  # parameters of the one who applies: the difference is the same with them
 _BATCH = 500
 
@@ -88,7 +91,7 @@ def start_proposal(
             auto_apply=auto_apply,
             max_removed_percent=max_removed_percent,
         )
-        _give_job(proposal, READ_TASK, created_by, "Waiting to be read")
+        _give_job(proposal, READ_TASK, created_by, Reason("waiting_to_be_read"))
     return proposal
 
 
@@ -99,7 +102,7 @@ def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: U
         held.state = ProposalState.READING
         held.faults, held.summary, held.difference, held.held_back = [], {}, {}, []
         held.changes.all().delete()
-        _give_job(held, READ_TASK, actor, "Waiting to be read")
+        _give_job(held, READ_TASK, actor, Reason("waiting_to_be_read"))
     return held
 
 
@@ -121,7 +124,7 @@ def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor:
         held.parameters = held.parameters | parameters
         held.state = ProposalState.APPLYING
         held.decided_by, held.decided_at = actor, timezone.now()
-        _give_job(held, APPLY_TASK, actor, "Waiting to be applied")
+        _give_job(held, APPLY_TASK, actor, Reason("waiting_to_be_applied"))
     return held
 
 
@@ -177,14 +180,14 @@ def _go_on_by_itself(proposal: ImportProposal, job: Job) -> Job | None:
         return None
     held.state = ProposalState.APPLYING
     held.decided_by, held.decided_at = job.created_by, timezone.now()
-    _give_job(held, APPLY_TASK, job.created_by, "Waiting to be applied", by_itself=True)
+    _give_job(held, APPLY_TASK, job.created_by, Reason("waiting_to_be_applied"), by_itself=True)
     return held.job
 
 
 def _hold_back(proposal: ImportProposal, reasons: list[AutoApplyRefusal]) -> None:
     ImportProposal.objects.filter(pk=proposal.pk, state__in=(ProposalState.READY, ProposalState.APPLYING)).update(
         state=ProposalState.READY, decided_by=None, decided_at=None,
-        held_back=[{"code": reason.code, "message": reason.message} for reason in reasons],
+        held_back=[{"code": reason.code, **message_json(reason.why)} for reason in reasons],
     )  # fmt: skip
 
 
@@ -226,11 +229,11 @@ def apply_proposal(*, job: Job, progress: Progress) -> None:
 def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job: Job | None = None) -> None:
     """The file has faults, or could not be read: nothing of it counts."""
     listed = [
-        {"place": fault.place, "message": fault.message, "position": list(fault.position) if fault.position else None}
+        {"place": fault.place, **message_json(fault.message), "position": list(fault.position) if fault.position else None}
         for fault in faults[:MAX_FAULTS_KEPT]
     ]
     with transaction.atomic():
-        if job is not None and not finish_job(job=job, message="Refused"):
+        if job is not None and not finish_job(job=job, message=Reason("file_refused")):
             raise LostJob
         open_states = (ProposalState.READING, ProposalState.APPLYING)
         ImportProposal.objects.filter(pk=proposal.pk, state__in=open_states).update(state=ProposalState.REFUSED, faults=listed)
@@ -244,16 +247,20 @@ def settle_proposal_of(*, job: Job) -> None:
     job.refresh_from_db()
     if proposal.state == ProposalState.APPLYING:
         if job.parameters.get("by_itself"):
-            message = (job.error or {}).get("message") or job.message
-            _hold_back(proposal, [AutoApplyRefusal("not_applied", message)])
+            _hold_back(proposal, [AutoApplyRefusal("not_applied", message_of(job))])
             return
         ImportProposal.objects.filter(pk=proposal.pk, state=ProposalState.APPLYING).update(
             state=ProposalState.READY, decided_by=None, decided_at=None
         )
     elif proposal.state == ProposalState.READING and job.state == "failed":
-        refuse_proposal(proposal=proposal, faults=(Fault("", (job.error or {}).get("message", "The file could not be read.")),))
+        refuse_proposal(proposal=proposal, faults=(Fault("", _failure_of(job)),))
     elif proposal.state == ProposalState.READING and job.state == "cancelled":
         ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.DISCARDED, decided_at=timezone.now())
+
+
+def _failure_of(job: Job) -> Reason | str:
+    why = message_of(job) if job.error else Reason("file_not_read")
+    return next(iter(reasons_of(why)), english(why))
 
 
 def unsettled_proposals() -> list[ImportProposal]:
@@ -280,7 +287,7 @@ def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: P
         data_import: DataImport = _module(proposal).apply(
             path=path, parameters=proposal.parameters, provenance=provenance, applied_by=proposal.decided_by, progress=progress
         )
-        if not finish_job(job=job, result={"data_import": data_import.pk}, message="Applied"):
+        if not finish_job(job=job, result={"data_import": data_import.pk}, message=Reason("file_applied")):
             raise LostJob
         ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
 
@@ -308,12 +315,12 @@ def _apply_by_itself(proposal: ImportProposal, job: Job, progress: Progress, pat
                 reasons += further_reasons(mark, data_import)
             if reasons:
                 raise _TakenBack(reasons)
-            if not finish_job(job=job, result={"data_import": data_import.pk}, message="Applied"):
+            if not finish_job(job=job, result={"data_import": data_import.pk}, message=Reason("file_applied")):
                 raise LostJob
             ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
     except _TakenBack as taken_back:
         with transaction.atomic():
-            if not finish_job(job=job, result={"proposal": str(proposal.pk)}, message="Held back: look at the difference."):
+            if not finish_job(job=job, result={"proposal": str(proposal.pk)}, message=Reason("file_held_back")):
                 raise LostJob from taken_back
             _hold_back(proposal, taken_back.reasons)
 
@@ -326,7 +333,7 @@ def _differs_now(proposal: ImportProposal, job: Job, revision: int, progress: Pr
     reading.changes = tuple(reading.changes)
     if reading.numbers == proposal.difference and _fingerprints(reading.changes) == _stored_fingerprints(proposal):
         return False
-    _store_reading(proposal, job, reading, revision, message="The ground has changed since: look at the difference again.")
+    _store_reading(proposal, job, reading, revision, message=Reason("ground_has_changed"))
     return True
 
 
@@ -343,7 +350,7 @@ def _fingerprint(row: ProposedChange) -> tuple[Any, ...]:
     return (row.action, row.subject, row.subject_id or 0, row.label, *facts)
 
 
-def _store_reading(proposal: ImportProposal, job: Job, reading: Reading, revision: int, message: str = "Read") -> None:
+def _store_reading(proposal: ImportProposal, job: Job, reading: Reading, revision: int, message: Reason = READ) -> None:
     with transaction.atomic():
         proposal.changes.all().delete()
         rows = [_row(proposal, change) for change in _first_of_each(tuple(reading.changes))]
@@ -372,13 +379,13 @@ def _with_file(proposal: ImportProposal, do: Callable[[Path | None, Provenance],
     provenance = _provenance(proposal)
     if proposal.upload is None:
         if proposal.origin != ProposalOrigin.ROLL_BACK:
-            raise FileRefused([Fault("", "The file is no longer kept. Send it again.")])
+            raise FileRefused([Fault("", Reason("file_not_kept"))])
         return do(None, provenance)
     try:
         with upload_as_file(proposal.upload) as path:
             return do(path, replace(provenance, file_name=proposal.file_name))
     except UploadRefused as error:
-        raise FileRefused([Fault("", str(error))]) from error
+        raise FileRefused([Fault("", reason_of(error))]) from error
 
 
 def _provenance(proposal: ImportProposal) -> Provenance:
@@ -395,7 +402,7 @@ def _module(proposal: ImportProposal) -> FileKind:
     return FILE_KINDS[proposal.kind]
 
 
-def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: str, *, by_itself: bool = False) -> None:
+def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: Reason, *, by_itself: bool = False) -> None:
     organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
     parameters: dict[str, Any] = {"proposal": str(proposal.pk)} | ({"by_itself": True} if by_itself else {})
     proposal.job = create_job(organisation=organisation, created_by=actor, task=task, parameters=parameters, message=message)

@@ -10,10 +10,11 @@ from django.contrib.gis.geos import GEOSGeometry
 
 from inspection.auto_apply_hooks import AutoApplyRefusal
 from inspection.models import ChangeAction, DataImport, ImportKind
+from operation.reasons import Reason
 from workspace.models import User
 
-Progress = Callable[[str, float], None]
-"""Told the stage in a word or two and the share of the whole, 0 to 1. May raise JobCancelled: then nothing is written."""
+Progress = Callable[[Reason, float], None]
+"""Told the stage and the share of the whole, 0 to 1. May raise JobCancelled: then nothing is written."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Fault:
     """Why a file is refused, and where. position is lon, lat [deg]."""
 
     place: str
-    message: str
+    message: Reason | str
     position: tuple[float, float] | None = None
 
 
@@ -43,7 +44,7 @@ class FileRefused(ValueError):
 
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)
-        super().__init__("; ".join(f"{fault.place}: {fault.message}" if fault.place else fault.message for fault in self.faults))
+        super().__init__("; ".join(f"{fault.place}: {fault.message}" if fault.place else str(fault.message) for fault in self.faults))
 
 
 @dataclass(frozen=True)
@@ -98,15 +99,15 @@ def reasons_against(numbers: Mapping[str, int], content: Mapping[str, Any], max_
     """
     reasons = []
     if content.get("needs_mapping"):
-        reasons.append(AutoApplyRefusal("needs_mapping", "The columns of the file are not explained yet."))
+        reasons.append(AutoApplyRefusal("needs_mapping", Reason("columns_not_explained")))
     not_read = len(content.get("not_read", ())) + content.get("faulty_rows_left_out", 0)
     if not_read:
-        reasons.append(AutoApplyRefusal("not_read", f"Records of the file that have a fault and are left out: {not_read}."))
+        reasons.append(AutoApplyRefusal("not_read", Reason("records_left_out", {"number": not_read})))
     if unread_values := sum(content.get("unread_values", {}).values()):
-        reasons.append(AutoApplyRefusal("not_read", f"Values of the file that cannot be read and would be empty: {unread_values}."))
+        reasons.append(AutoApplyRefusal("not_read", Reason("values_unread", {"number": unread_values})))
     removed, known = numbers.get("vanished", 0), sum(numbers.get(action, 0) for action in _KNOWN)
     if removed * 100.0 > max_removed_percent * known:
-        percent = f"{removed * 100.0 / known:.3g}"
-        message = f"It removes {removed} of {known} rows of its source, {percent} %; at most {max_removed_percent:g} % may be removed."
-        reasons.append(AutoApplyRefusal("removed", message))
+        percent = float(f"{removed * 100.0 / known:.3g}")
+        figures = {"removed": removed, "known": known, "percent": percent, "limit": max_removed_percent}
+        reasons.append(AutoApplyRefusal("removed", Reason("removes_too_many", figures)))
     return reasons

@@ -9,12 +9,13 @@ import shapely
 from django.contrib.gis.geos import MultiPolygon, Polygon
 
 from inspection.importers.terrain.raster import DatumFault, Survey, TerrainFileError, blocks_of
-from inspection.importers.terrain.terrain_file import NEEDS_DATUM, datum_of, opened_terrain
+from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
 from inspection.models import ROW_ACTIONS, ChangeAction, DataImport, TerrainTile
 from inspection.selectors.terrain import ground_truth
 from inspection.services.imports.terrain import facts_of, import_terrain, imports_of_name, same_import, sha256_of
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from inspection.terrain.heights import HeightGrid
+from operation.reasons import Reason, reason_of
 from workspace.models import User
 
 SUBJECT = "terrain"
@@ -32,7 +33,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
             survey, comparison = Survey(), _Comparison(provenance.file_name, datum)
             for number, raster in enumerate(file.rasters):
                 for block in blocks_of(raster):
-                    progress("reading the heights", (number + block.share) / len(file.rasters))
+                    progress(Reason("reading_heights"), (number + block.share) / len(file.rasters))
                     survey.add(block)
                     if block.grid is not None:
                         comparison.add(block.grid)
@@ -161,7 +162,7 @@ def _label(extent: tuple[float, float, float, float]) -> str:
 
 def _file(path: Path | None) -> Path:
     if path is None:
-        raise FileRefused([Fault("", "There is no file.")])
+        raise FileRefused([Fault("", Reason("no_file"))])
     return path
 
 
@@ -173,5 +174,5 @@ def _stated_datum(parameters: dict[str, Any]) -> str:
 
 
 def _refusal(error: TerrainFileError) -> FileRefused:
-    place = "vertical_datum" if isinstance(error, DatumFault) or str(error) == NEEDS_DATUM else ""
-    return FileRefused([Fault(place, str(error))])
+    place = "vertical_datum" if isinstance(error, DatumFault) else ""
+    return FileRefused([Fault(place, reason_of(error))])

@@ -22,6 +22,7 @@ from inspection.services.imports.zones import (
     zone_counts,
 )
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
+from operation.reasons import Reason
 from workspace.models import User
 
 MIN_DEG = 0.0005
@@ -37,14 +38,14 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         found = difference_of(version.zone_set, records, replace_edited=True)
         summary = {"set": version.zone_set.name, "version": version.number, "layers": len(records)}
         return Reading(summary, found.numbers, tuple(_changes(found)))
-    progress("reading the zones", 0.1)
+    progress(Reason("reading_zones"), 0.1)
     with _faults_as_refusal():
         content, _ = read_zone_file(path, source_format=_source_format(parameters), leave_out_faulty=_leaves_out(parameters))
         name = set_name_of(path, _set_name(parameters))
         zone_set = ZoneSet.objects.filter(name=name).first()
         if not parameters.get("replace_all"):
             refuse_if_elsewhere(zone_set, content, ALL_ELSEWHERE)
-    progress("comparing", 0.6)
+    progress(Reason("comparing"), 0.6)
     found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread)
     numbers = found.numbers | ({ChangeAction.NOT_READ.value: len(content.unread)} if content.unread else {})
     summary = zone_counts(content) | {"set": name, "is_new_set": zone_set is None or not zone_set.zones.exists()}
@@ -55,7 +56,7 @@ def apply(
     *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
 ) -> DataImport:
     """Make the set what the file or the version says. Raises FileRefused."""
-    progress("writing the zones", 0.5)
+    progress(Reason("writing_zones"), 0.5)
     if path is None:
         return _roll_back(_version(parameters), applied_by)
     with _faults_as_refusal():
@@ -123,8 +124,7 @@ def _faults_as_refusal() -> Iterator[None]:
         yield
     except ZoneFileError as error:
         raise FileRefused(
-            Fault(fault.place, fault.message, (fault.position.lon, fault.position.lat) if fault.position else None)
-            for fault in error.faults
+            Fault(fault.place, fault.why, (fault.position.lon, fault.position.lat) if fault.position else None) for fault in error.faults
         ) from error
 
 

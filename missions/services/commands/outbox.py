@@ -31,12 +31,12 @@ from missions.models import (
     UavCommandEvent,
 )
 from missions.services.commands.refused import refuse
-from operation.reasons import Reason, Why, english, reason_from_json, text_reason
+from operation.reasons import Reason, Why, english, reasons_of, text_reason
 from workspace.audit import record_change
 from workspace.leases import from_now, is_free, release, renew, take
 from workspace.live.changes import publish_live
 from workspace.models import User
-from workspace.reason_texts import reasons_of_column, text_and_column
+from workspace.reason_texts import text_and_column, why_of_column
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNACKNOWLEDGED = "superseded", "not-delivered", "unconfirmed", "unheard"
@@ -262,11 +262,8 @@ def _outcome(why: Why) -> dict[str, Any]:
 
 def _not_in_time(stored: str, column: dict[str, Any] | None) -> tuple[Reason, ...]:
     """With the reason for which it had to wait."""
-    try:
-        waited_for = [reason_from_json(reason) for reason in reasons_of_column(column, stored)]
-    except (KeyError, TypeError):  # of another version
-        waited_for = []
-    return (Reason("not_sent_in_time"), *(waited_for or [text_reason(stored)]))
+    waited_for = why_of_column(column, stored)
+    return (Reason("not_sent_in_time"), *(reasons_of(waited_for) or [text_reason(stored)]))
 
 
 def _wanted() -> Q:

@@ -12,6 +12,7 @@ from django.conf import settings
 from inspection.selectors.planning import current_dataset_version, planning_read, terrain_at
 from missions.selectors.planning_context import planning_context, read_targets
 from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
+from operation.reasons import Reason
 from planning.checks.constraints import ZoneNotAvoided
 from planning.context import PlanningContext
 from planning.context_file import write_context
@@ -36,7 +37,7 @@ class GraphOutdated(Exception):
     """The zones change faster than a plan can be made."""
 
     def __init__(self) -> None:
-        super().__init__("The no-fly zones are being changed just now. Plan again in a moment.")
+        super().__init__(str(Reason("zones_changing")))
 
 
 def size_of(targets: int) -> str:
@@ -97,7 +98,7 @@ def make_plan(
 
     Raises InvalidRequest, NoGraph or GraphOutdated.
     """
-    on_progress(PlanProgress(0.0, "Looking up the targets"))
+    on_progress(PlanProgress(0.0, Reason("looking_up_targets")))
     ground, targets, deleted = read_targets(request)
     for _ in range(MAX_CONTEXTS):
         context = planning_context(request, ground, targets, deleted)

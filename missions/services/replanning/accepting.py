@@ -32,7 +32,9 @@ from missions.services.commands.refused import refuse
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.rest import COMING_BACK
 from missions.services.replanning.staleness import why_outdated
+from operation.reasons import Reason
 from workspace.models import User
+from workspace.reason_texts import reason_text, text_and_column
 
 GIVEN_UP = ("changed", "recalled", "out")
 
@@ -45,16 +47,16 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
             return held
         if held.state != OfferState.OPEN or held.continuation is None:
             raise refuse("decided", _("This offer is no longer open."))
-        words = why_outdated(held, timezone.now())
-        if words:
-            raise refuse("outdated", words + " " + _("Plan the rest again."))
+        stale = why_outdated(held, timezone.now())
+        if stale is not None:
+            raise refuse("outdated", reason_text(stale) + " " + _("Plan the rest again."))
         mission, uavs = locked_mission(held.mission_id, None), held.difference["uavs"]
         given_up = [uav["place"] for uav in uavs if uav["change"] in GIVEN_UP]
         mission.routes.filter(mission_uav__sequence__in=given_up).update(continued_by=held.continuation)
         approval = approve_mission(mission=held.continuation, actor=actor, is_under_way=True)
         continuation = locked_mission(held.continuation.pk, None)
         _hand_over_targets(mission, continuation, held.difference)
-        why = f"Continues {mission.name}."
+        why = str(Reason("continues", {"mission": mission.name}))
         reported = []
         for uav in sorted(uavs, key=lambda one: one["uav"] or 0):
             row = Uav.objects.filter(pk=uav["uav"]).first()
@@ -78,7 +80,7 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
             {"approval": str(approval.pk), "commands": commands, "continues": str(mission.pk)},
         )
         end_if_over(mission)
-        end_offer(held, OfferState.ACCEPTED, "", actor=actor)
+        end_offer(held, OfferState.ACCEPTED, actor=actor)
     return held
 
 
@@ -96,22 +98,24 @@ def _hand_over_targets(mission: Mission, continuation: Mission, difference: Mapp
     now = timezone.now()
     rows = {target.sequence: target for target in mission.targets.all()}
     taken = sorted(target for uav in difference["uavs"] if uav["change"] == "changed" for target in uav["order"])
-    over = f"Taken over by {continuation.name}."
+    over = text_and_column(Reason("taken_over", {"mission": continuation.name}), 300)
     done = []
     for place, target in enumerate(taken):
         row = rows[target]
         if row.state == TargetState.COMPLETE:  # on the way to where its UAV leaves its route
             done.append(place)
             continue
-        row.state, row.state_at, row.state_reason = TargetState.SKIPPED, now, over[:300]
+        row.state, row.state_at = TargetState.SKIPPED, now
+        row.state_reason, row.state_why = over
     for entry in difference["targets"]:
         if entry["to"] is None:
             row = rows[entry["target"]]
             row.state, row.state_at, row.state_reason = TargetState.SKIPPED, now, entry["message"][:300]
+            row.state_why = {"text": row.state_reason, "reasons": entry["why"]} if entry.get("why") else None
     given_up = [uav["place"] for uav in difference["uavs"] if uav["change"] in GIVEN_UP]
     own = InspectionTarget.objects.filter(mission=mission, waypoints__route__mission_uav__sequence__in=given_up)
     for key in own.values_list("sequence", flat=True).distinct():
         if rows[key].state == TargetState.IN_PROGRESS:  # its UAV had left it
             rows[key].state, rows[key].state_at = TargetState.COMPLETE, now
-    InspectionTarget.objects.bulk_update(rows.values(), ["state", "state_at", "state_reason"])
+    InspectionTarget.objects.bulk_update(rows.values(), ["state", "state_at", "state_reason", "state_why"])
     continuation.targets.filter(sequence__in=done).update(state=TargetState.COMPLETE, state_at=now)

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
-from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.services.replanning.leaving import CannotLeave, Leaving
+from operation.reasons import Reason
 from planning.energy.conditions import Conditions
 from planning.energy.power import NoHeadway
 from planning.plan import PlannedRoute
@@ -44,7 +44,7 @@ def continued_route(leaving: Leaving, planned: Mapping[str, Any], order: tuple[i
         amsl_m = np.array([*leaving.amsl_m, *heights], dtype=np.float64)
         waypoints = Waypoints(points, amsl_m, amsl_m - home_m)
     if (waypoints.relative_m <= 0.0).any():
-        raise CannotLeave(_("%(uav)s would fly below the place where it took off.") % {"uav": leaving.rest.name})
+        raise CannotLeave(Reason("below_take_off", {"uav": leaving.rest.name}))
     clock = _clock(leaving, waypoints, EndAction(planned["end_action"]), conditions)
     route = PlannedRoute(
         targets=order,
@@ -78,7 +78,7 @@ def _clock(leaving: Leaving, waypoints: Waypoints, action: EndAction, conditions
             rules=settings.FLIGHT_RULES,
         )
     except NoHeadway as error:
-        raise CannotLeave(_("The wind is too strong for %(uav)s on its route.") % {"uav": leaving.rest.name}) from error
+        raise CannotLeave(Reason("wind_too_strong_on_route", {"uav": leaving.rest.name})) from error
     climb_s = float(clock.arrival_s[0])
     clock = replace(clock, arrival_s=clock.arrival_s - climb_s, total_s=clock.total_s - climb_s)
     if clock.used_wh is None or clock.total_wh is None or performance.battery_wh is None:
@@ -87,7 +87,7 @@ def _clock(leaving: Leaving, waypoints: Waypoints, action: EndAction, conditions
     used_wh, total_wh = clock.used_wh - climb_wh, clock.total_wh - climb_wh
     usable_wh = performance.usable_wh
     if usable_wh is not None and total_wh > usable_wh:
-        raise CannotLeave(_("The battery of %(uav)s does not last for it.") % {"uav": leaving.rest.name})
+        raise CannotLeave(Reason("battery_does_not_last", {"uav": leaving.rest.name}))
     now_percent = leaving.rest.battery_percent or 0.0
     left = now_percent - 100.0 * used_wh / performance.battery_wh
     end_percent = now_percent - 100.0 * total_wh / performance.battery_wh

@@ -9,6 +9,7 @@
           "change": "untouched" (flies on as approved) | "changed" (is held, gets another route, goes on) |
                     "recalled" (is told to return: nothing is left for it, or it cannot go on) | "out" (dropped out before),
           "why":    words: why it is out, must change, or can only go on as it does; may be empty,
+          "reasons": the same as codes and params,
           "kept", "lost", "gained":   targets by their places in the flying mission,
           "order":  targets that it flies to from now on, in their order,
           "before": {"length_m", "duration_s", "ends_at", "battery_percent"} or null: from here on, as approved,
@@ -35,6 +36,7 @@ from typing import Any
 
 from missions.services.replanning.proposals import Proposal
 from missions.services.replanning.rest import Rest, distance_apart_m
+from operation.reasons import english
 from planning.request import moment_to_json
 
 
@@ -64,6 +66,7 @@ def _uav(proposal: Proposal, rest: Rest, now: datetime) -> dict[str, Any]:
     field, place = proposal.field, rest.place
     continued = proposal.continued.get(place)
     change = "out" if rest.is_out else "recalled" if place in proposal.recalled else "untouched" if continued is None else "changed"
+    why = [rest.trouble] if rest.is_out and rest.trouble else field.why(place)
     order = continued.order if continued is not None else rest.ahead if change == "untouched" else ()
     before = _before(rest, now)
     if continued is not None:
@@ -77,7 +80,8 @@ def _uav(proposal: Proposal, rest: Rest, now: datetime) -> dict[str, Any]:
         "place": place,
         "name": rest.name,
         "change": change,
-        "why": rest.trouble if rest.is_out else field.why(place),
+        "why": english(why, "\n"),
+        "reasons": [reason.to_json() for reason in why],
         "kept": [target for target in order if target in rest.ahead],
         "lost": [target for target in rest.ahead if target not in order],
         "gained": [target for target in order if target not in rest.ahead],

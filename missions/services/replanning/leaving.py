@@ -5,10 +5,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from django.conf import settings
-from django.utils.translation import gettext as _
 
 from inspection.geodesy import path_length_m
 from missions.services.replanning.rest import Rest
+from operation.reasons import Reason, text_reason
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, hold_taken, speeds, table_of
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
@@ -22,7 +22,11 @@ MAX_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
 
 
 class CannotLeave(Exception):
-    """In words."""
+    """Why it cannot."""
+
+    def __init__(self, reason: Reason) -> None:
+        super().__init__(str(reason))
+        self.reason = reason
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +46,9 @@ class Leaving:
 
 
 def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None) -> Leaving:
-    """before: the waypoint that it must not fly to any more. Raises CannotLeave, in words for whoever decides."""
+    """before: the waypoint that it must not fly to any more. Raises CannotLeave."""
     if rest.here is None or rest.uav is None or rest.trouble:
-        raise CannotLeave(rest.trouble or _("Nobody knows where %(uav)s is.") % {"uav": rest.name})
+        raise CannotLeave(rest.trouble or Reason("nobody_knows_where", {"uav": rest.name}))
     prefix, amsl_m = _prefix(rest, before)
     done = tuple(dict.fromkeys(point.target for point in prefix if point.target is not None))
     mission_uav = rest.route.mission_uav
@@ -53,7 +57,7 @@ def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None)
     waiting = _with_less(rest, performance, 100.0 - (rest.battery_percent or 0.0) + _waiting_percent(rest, performance, conditions, prefix))
     range_m = None if mission_uav.max_range_m is None else mission_uav.max_range_m - rest.flown_m
     if range_m is not None and range_m - prefix_m <= 0.0:
-        raise CannotLeave(_("%(uav)s has no range left.") % {"uav": rest.name})
+        raise CannotLeave(Reason("no_range_left", {"uav": rest.name}))
     stored = UavRequest(
         name=mission_uav.name,
         position=prefix[0].position,
@@ -90,8 +94,7 @@ def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tup
         lead_s = 0.0 if rest.is_held else LEAD_S
         leave = where_to_leave(points, here, lead_s=lead_s, transit_agl_m=transit_m, before=before)
         if leave is None:
-            words = _("%(uav)s comes to it too soon, or has too little of its route left. Hold it, and plan the rest again.")
-            raise CannotLeave(words % {"uav": rest.name})
+            raise CannotLeave(Reason("too_little_route_left", {"uav": rest.name}))
     first = here.ahead
     if not rest.is_held and last.kind == WaypointKind.TARGET and points[here.ahead - 1].target in rest.ahead:
         first -= 1  # it is still at work there
@@ -116,7 +119,7 @@ def _performance(stored: dict[str, object]) -> Performance:
     try:
         return performance_from_json(stored)
     except InvalidPerformance as error:
-        raise CannotLeave(str(error)) from error
+        raise CannotLeave(text_reason(str(error))) from error
 
 
 def _with_less(rest: Rest, performance: Performance, percent: float) -> Performance:
@@ -125,7 +128,7 @@ def _with_less(rest: Rest, performance: Performance, percent: float) -> Performa
         return performance
     reserve_percent = performance.reserve_percent + percent
     if reserve_percent > MAX_RESERVE_PERCENT:
-        raise CannotLeave(_("%(uav)s has too little battery left.") % {"uav": rest.name})
+        raise CannotLeave(Reason("too_little_battery_left", {"uav": rest.name}))
     return replace(performance, reserve_percent=max(reserve_percent, 0.0))
 
 
@@ -157,5 +160,5 @@ def _most_targets(rest: Rest, more: int) -> int | None:
     own = {point.target for point in rest.points if point.target is not None}
     left = most - (len(own) - len(rest.ahead)) - more
     if left <= 0:
-        raise CannotLeave(_("%(uav)s does as many targets as it may.") % {"uav": rest.name})
+        raise CannotLeave(Reason("does_as_many_as_it_may", {"uav": rest.name}))
     return left

@@ -13,9 +13,11 @@ from missions.models import Mission, MissionState, OfferState, ReplanOffer, Uav
 from missions.services.commands.refused import refuse
 from missions.services.missions import note
 from missions.services.replanning.staleness import why_outdated
+from operation.reasons import Reason, Why
 from workspace.jobs.services import create_job
 from workspace.live.changes import publish_live
 from workspace.models import Job, User
+from workspace.reason_texts import text_and_column
 
 REPLAN = "missions.tasks.replan_mission"
 ASKED_FOR = "asked-for"
@@ -30,7 +32,7 @@ def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.state != MissionState.ACTIVE:
             raise refuse("not_flying", _("Only what is left of a mission that flies can be planned again."))
-        _set_aside(held, "It was asked for again.")
+        _set_aside(held, Reason("asked_for_again"))
         return _begin(held, ASKED_FOR, {"code": ASKED_FOR}, actor)
 
 
@@ -48,7 +50,7 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
         of_cause = held.replan_offers.filter(code=code, cause__contains=named)
         if of_cause.exclude(state=OfferState.OUTDATED).exists() or of_cause.count() >= MAX_OFFERS_OF_CAUSE:
             return None
-        _set_aside(held, "Something else has happened since.")
+        _set_aside(held, Reason("something_else_happened"))
         offer, _job = _begin(held, code, {**cause, **named}, None)
     return offer
 
@@ -67,7 +69,7 @@ def withdraw(*, mission_id: UUID, code: str, uav_id: int) -> bool:
         if offer is None:
             return False
         name = Uav.objects.values_list("name", flat=True).get(pk=uav_id)
-        end_offer(offer, OfferState.OUTDATED, f"Its reason has ended: {name} continues its mission.")
+        end_offer(offer, OfferState.OUTDATED, Reason("reason_has_ended", {"uav": name}))
     return True
 
 
@@ -79,7 +81,7 @@ def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
             return held
         if held.state not in UNDECIDED:
             raise refuse("decided", _("This offer is no longer open."))
-        end_offer(held, OfferState.DECLINED, "", actor=actor)
+        end_offer(held, OfferState.DECLINED, actor=actor)
     return held
 
 
@@ -95,13 +97,13 @@ def settle_offers(*, now: datetime | None = None) -> int:
             offer = ReplanOffer.objects.select_related("mission").get(pk=key)
             held = held_offer(offer)
             if held.state == OfferState.OPEN:
-                words = why_outdated(held, moment)
+                why = why_outdated(held, moment)
             elif held.state == OfferState.COMPUTING and held.created_at + WORKED_OUT_WITHIN < moment:
-                words = "It was not worked out in time."
+                why = Reason("not_worked_out_in_time")
             else:
                 continue
-            if words:
-                end_offer(held, OfferState.OUTDATED, words)
+            if why is not None:
+                end_offer(held, OfferState.OUTDATED, why)
                 _compute_again(held)
                 found += 1
     return found
@@ -122,27 +124,28 @@ def held_offer(offer: ReplanOffer) -> ReplanOffer:
     return ReplanOffer.objects.select_for_update(of=("self",)).select_related("mission", "continuation").get(pk=offer.pk)
 
 
-def end_offer(offer: ReplanOffer, state: OfferState, words: str, *, actor: User | None = None) -> None:
+def end_offer(offer: ReplanOffer, state: OfferState, why: Why = (), *, actor: User | None = None) -> None:
     """The caller holds the rows. The mission that was offered is put away unless it is taken."""
-    offer.state, offer.outcome = state, words[:500]
+    offer.state = state
+    offer.outcome, offer.outcome_why = text_and_column(why, 500, "\n")
     if actor is not None:
         offer.decided_by, offer.decided_at = actor, timezone.now()
-    offer.save(update_fields=["state", "outcome", "decided_by", "decided_at"])
+    offer.save(update_fields=["state", "outcome", "outcome_why", "decided_by", "decided_at"])
     if state != OfferState.ACCEPTED and offer.continuation_id is not None:
         Mission.objects.filter(pk=offer.continuation_id, state=MissionState.PLANNED).update(deleted_at=timezone.now())
     transaction.on_commit(partial(publish_live, offer.mission.organisation_id))
-    note(offer.mission, actor, f"replan-{state}", before=None, after={"offer": str(offer.pk), "code": offer.code, "why": words[:500]})
+    note(offer.mission, actor, f"replan-{state}", before=None, after={"offer": str(offer.pk), "code": offer.code, "why": offer.outcome})
 
 
-def _set_aside(mission: Mission, words: str) -> None:
+def _set_aside(mission: Mission, why: Reason) -> None:
     for offer in mission.replan_offers.select_for_update(of=("self",)).select_related("mission").filter(state__in=UNDECIDED):
-        end_offer(offer, OfferState.OUTDATED, words)
+        end_offer(offer, OfferState.OUTDATED, why)
 
 
 def _begin(mission: Mission, code: str, cause: dict[str, Any], actor: User | None) -> tuple[ReplanOffer, Job]:
     offer = ReplanOffer.objects.create(mission=mission, code=code, cause=cause)
-    words = "Working out what is left"
-    job = create_job(organisation=mission.organisation, created_by=actor, task=REPLAN, parameters={"offer": str(offer.pk)}, message=words)
+    about = {"offer": str(offer.pk)}
+    job = create_job(organisation=mission.organisation, created_by=actor, task=REPLAN, parameters=about, message=Reason("working_out_rest"))
     transaction.on_commit(partial(publish_live, mission.organisation_id))
     note(mission, actor, "replan", before=None, after={"offer": str(offer.pk), "code": code, "cause": cause})
     return offer, job

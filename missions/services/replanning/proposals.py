@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
-from django.utils.translation import gettext as _
-
 from missions.models import Mission
 from missions.selectors.planning_context import with_bases
 from missions.services.missions import request_of_mission
@@ -16,6 +14,7 @@ from missions.services.replanning.composing import Continued, continued_route
 from missions.services.replanning.leaving import LEAD_S, CannotLeave, Leaving, leaving_of
 from missions.services.replanning.rest import Cause, Rest
 from missions.services.replanning.zones_ahead import zone_ahead
+from operation.reasons import Reason, english
 from planning.energy.conditions import conditions_from_json
 from planning.problem import Objective, Priority
 from planning.request import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
@@ -38,7 +37,7 @@ class Field:
     forced: frozenset[int]
     recalled: frozenset[int]
     zones: Mapping[int, str]
-    troubles: Mapping[int, str]
+    troubles: Mapping[int, Reason]
     targets: Mapping[int, TargetRequest]
     departs_at: datetime
     search_s: float = 0.0
@@ -47,12 +46,11 @@ class Field:
     def rest(self, place: int) -> Rest:
         return next(rest for rest in self.rests if rest.place == place)
 
-    def why(self, place: int) -> str:
+    def why(self, place: int) -> list[Reason]:
         """Why a UAV cannot go on as it does, or can do nothing else; empty where neither is so."""
         zone = self.zones.get(place)
-        words = _("%(zone)s lies across its route.") % {"zone": zone} if zone else ""
-        words = words or (_("Its battery does not last for its route.") if place in self.forced else "")
-        return "\n".join(filter(None, [words, self.troubles.get(place, "")]))
+        forced = Reason("zone_across_route", {"zone": zone}) if zone else Reason("battery_short_for_route")
+        return [*([forced] if zone or place in self.forced else []), *([self.troubles[place]] if place in self.troubles else [])]
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +101,7 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
         try:
             leavings[rest.place] = leaving_of(rest, conditions, before=None if zone is None else zone.breach.leg + 1)
         except CannotLeave as error:
-            troubles.setdefault(rest.place, str(error))
+            troubles.setdefault(rest.place, error.reason)
     return Field(
         mission,
         rests,
@@ -149,8 +147,8 @@ def _proposal(field: Field, way: _Assignable, recalled: frozenset[int]) -> Propo
     )
     if not flying:
         reasons = [field.troubles[rest.place] for rest in field.rests if not rest.is_out and rest.place in field.troubles]
-        words = "\n".join(reasons) or "No other UAV of the mission is in the air."
-        return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("nobody_left", words, [])))
+        why = reasons or [Reason("nobody_else_in_air")]
+        return Proposal(field, {}, recalled, dict.fromkeys(wanted, _unreached("nobody_left", why)))
     if not wanted:
         return Proposal(field, {}, recalled, {})
     plan = make_plan(request=_request(field, way, flying, wanted), stop=field.stop, search_s=field.search_s)
@@ -168,8 +166,12 @@ def _proposal(field: Field, way: _Assignable, recalled: frozenset[int]) -> Propo
         try:
             continued[place] = continued_route(leaving, _with_places(route, wanted), whole, conditions_from_json(field.mission.conditions))
         except CannotLeave as error:  # others may have been given what it would keep: the whole proposal falls
-            return Proposal(field, {}, recalled, dict.fromkeys(wanted, ("beyond_energy", str(error), [])))
+            return Proposal(field, {}, recalled, dict.fromkeys(wanted, _unreached("beyond_energy", [error.reason])))
     return Proposal(field, continued, recalled | more, unreached, plan)
+
+
+def _unreached(code: str, why: Sequence[Reason]) -> tuple[str, str, list[dict[str, Any]]]:
+    return code, english(why, "\n"), [reason.to_json() for reason in why]
 
 
 def _comes_home(field: Field, place: int) -> bool:

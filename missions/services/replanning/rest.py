@@ -6,8 +6,6 @@ from datetime import datetime
 from itertools import pairwise
 from typing import Any
 
-from django.utils.translation import gettext as _
-
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
 from missions.models import (
@@ -27,6 +25,7 @@ from missions.models import (
 from missions.selectors.ahead import OFF_ROUTE_M, RECEIVED_WITHIN_S, first_ahead, passed_point
 from missions.selectors.missions import approval_in_force
 from missions.services.commands.flight_progress import FLIGHT_FAILED
+from operation.reasons import Reason
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done
@@ -48,7 +47,7 @@ class Cause:
 class Rest:
     """Of one UAV. Its targets are told by their places in the mission, in the order in which it would do them.
 
-    `trouble`: why it can only go on as it does, or not at all; empty where it can be given another route. `is_out`: it does not go on.
+    `trouble`: why it can only go on as it does, or not at all; None where it can be given another route. `is_out`: it does not go on.
     `here` is None where its place is not known. `ahead` are the targets whose point of the route is still before it.
     """
 
@@ -60,7 +59,7 @@ class Rest:
     ahead: tuple[int, ...]
     is_out: bool
     is_held: bool
-    trouble: str
+    trouble: Reason | None
     take_off: LonLat
     take_off_amsl_m: float | None
     battery_percent: float | None
@@ -109,7 +108,7 @@ def _rest(
     if uav is not None and len(points) > 1:
         here = place_on_route(points, LonLat(*uav.location.coords[:2]), first=first)
         if here.away_m > OFF_ROUTE_M:
-            trouble = trouble or _("%(uav)s is %(metres)s m off its route.") % {"uav": uav.name, "metres": f"{here.away_m:.0f}"}
+            trouble = trouble or Reason("off_route", {"uav": uav.name, "metres": round(here.away_m)})
             here = None
     take_off = approved["flights"][0]["take_off"]
     return Rest(
@@ -138,32 +137,32 @@ def _orders(uav: Uav | None, approval: Approval) -> list[UavCommand]:
     return [] if start is None else list(done.filter(sequence__gte=start.sequence).order_by("-sequence"))
 
 
-def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cause) -> str:
-    """Why it does not go on; empty where it does."""
+def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cause) -> Reason | None:
+    """Why it does not go on; None where it does."""
     values = {"uav": route.mission_uav.name}
     if route.has_failed:
-        return _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values
+        return Reason("flight_failed", values)
     if uav is not None and cause.code == "uav-out" and cause.uav == uav.pk:
-        return _("%(uav)s has dropped out.") % values
+        return Reason("dropped_out", values)
     if orders and orders[0].kind in COMING_BACK:
-        return _("%(uav)s was told to come down.") % values
-    return ""
+        return Reason("coming_down", values)
+    return None
 
 
-def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: Sequence[UavCommand], now: datetime) -> str:
-    """Why it can only go on as it does; empty where it can be given another route in the air."""
+def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: Sequence[UavCommand], now: datetime) -> Reason | None:
+    """Why it can only go on as it does; None where it can be given another route in the air."""
     values = {"uav": route.mission_uav.name}
     if uav is None:
-        return _("%(uav)s is not a UAV of the fleet: it cannot be sent anything.") % values
+        return Reason("not_of_fleet", values)
     if uav.link != LinkKind.MAVLINK:
-        return _("%(uav)s is flown by a companion computer, which is not given another mission in the air.") % values
+        return Reason("flown_by_companion", values)
     if not orders:
-        return _("%(uav)s has not taken off.") % values
+        return Reason("not_taken_off", values)
     if len(approved["flights"]) > 1:
-        return _("%(uav)s flies its route in several flights, and lands in between.") % values
+        return Reason("several_flights", values)
     if uav.located_at is None or (now - uav.located_at).total_seconds() > RECEIVED_WITHIN_S:
-        return _("%(uav)s: no recent telemetry, position unknown.") % values
-    return ""
+        return Reason("place_unknown", values)
+    return None
 
 
 def _left(

@@ -5,12 +5,12 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from django.utils.dateparse import parse_datetime
-from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
 from missions.selectors.ahead import RECEIVED_WITHIN_S
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
+from operation.reasons import Reason
 from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
 VALID_FOR = timedelta(seconds=120)
@@ -39,31 +39,31 @@ def valid_until(continuation: Mission, now: datetime) -> datetime:
     return min([now + VALID_FOR, *(now + timedelta(seconds=left) for left in left_s)])
 
 
-def why_outdated(offer: ReplanOffer, now: datetime) -> str:
-    """In words; empty where it can still be taken."""
+def why_outdated(offer: ReplanOffer, now: datetime) -> Reason | None:
+    """None where it can still be taken."""
     mission, continuation, difference = offer.mission, offer.continuation, offer.difference
     if mission.state != MissionState.ACTIVE:
-        return _("The mission does not fly any more.")
+        return Reason("mission_not_flying")
     valid_until = parse_datetime(difference.get("valid_until") or "")
     if continuation is None or valid_until is None or valid_until < now:
-        return _("It was worked out too long ago.")
+        return Reason("worked_out_too_long_ago")
     return (
         _other_orders(difference)
         or _targets_reached(mission, continuation, difference)
-        or next(filter(None, (_elsewhere(route, now) for route in _routes(continuation))), "")
+        or next(filter(None, (_elsewhere(route, now) for route in _routes(continuation))), None)
     )
 
 
-def _other_orders(difference: Mapping[str, Any]) -> str:
+def _other_orders(difference: Mapping[str, Any]) -> Reason | None:
     orders = (difference.get("basis") or {}).get("orders") or {}
     for uav in difference["uavs"]:
         key = str(uav["uav"])
         if key in orders and last_order(uav["uav"]) != orders[key]:
-            return _("%(uav)s was given another command since.") % {"uav": uav["name"]}
-    return ""
+            return Reason("other_command_since", {"uav": uav["name"]})
+    return None
 
 
-def _targets_reached(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> str:
+def _targets_reached(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> Reason | None:
     """Of those that change hands none may be done by now; what a UAV does on its way to where it leaves its route is its own."""
     states = {target.sequence: target for target in mission.targets.all()}
     on_the_way = _done_on_the_way(continuation)
@@ -75,8 +75,8 @@ def _targets_reached(mission: Mission, continuation: Mission, difference: Mappin
             if target in uav["kept"] and row.label in on_the_way:
                 continue
             if row.state not in LEFT and row.state != TargetState.FAILED:
-                return _("%(target)s was done meanwhile.") % {"target": row.label}
-    return ""
+                return Reason("target_done_meanwhile", {"target": row.label})
+    return None
 
 
 def _done_on_the_way(continuation: Mission) -> set[str]:
@@ -93,19 +93,19 @@ def _routes(continuation: Mission) -> list[Route]:
     return list(routes)
 
 
-def _elsewhere(route: Route, now: datetime) -> str:
+def _elsewhere(route: Route, now: datetime) -> Reason | None:
     """Whether the UAV is no longer on the way that the offer keeps, or too near to its end."""
     uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
     if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > RECEIVED_WITHIN_S:
-        return _("%(uav)s: no recent telemetry, position unknown.") % values
+        return Reason("place_unknown", values)
     at, points = LonLat(*uav.location.coords[:2]), _kept_points(route)
     away_m = distance_apart_m(points[0].position, at) if len(points) == 1 else place_on_route(points, at).away_m
     if away_m > NEAR_M:
-        return _moved(values)
+        return Reason("not_as_reckoned", values)
     left_s = _left_s(route, uav.located_at)
     if left_s is not None and left_s < 0:
-        return _("%(uav)s has passed the diversion point.") % values
-    return ""
+        return Reason("passed_diversion", values)
+    return None
 
 
 def _kept_points(route: Route) -> list[PassedPoint]:
@@ -124,7 +124,3 @@ def _left_s(route: Route, now: datetime) -> float | None:
 
 def _point(row: Waypoint) -> PassedPoint:
     return PassedPoint(LonLat(*row.position.coords[:2]), row.altitude_agl_m, row.arrival_s or 0.0, (row.task or {}).get("hold_s", 0.0))
-
-
-def _moved(values: Mapping[str, str]) -> str:
-    return _("%(uav)s is not where it was reckoned to be.") % values

@@ -1,12 +1,12 @@
 """An offer worked out: the best of several ways that may be flown, stored as a mission beside what it would change."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from typing import Any
 
 from django.db import transaction
 from django.utils import timezone
-from django.utils.translation import gettext as _
 
 from missions.models import MissionState, OfferState, ReplanOffer
 from missions.selectors.missions import mission_of_organisation
@@ -17,59 +17,65 @@ from missions.services.replanning.proposals import Field, Proposal, field_of, pr
 from missions.services.replanning.rest import Cause, rests_of
 from missions.services.replanning.staleness import basis_of, valid_until
 from missions.services.replanning.storing import stored
+from operation.reasons import Reason, Why, reason_from_json, text_reason
 from planning.solver.solver import Stop
 from workspace.jobs.services import JobCancelled, finish_job
 from workspace.live.changes import publish_live
 from workspace.models import Job
+from workspace.reason_texts import why_of_column
 
 
-def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[float, str], None]) -> None:
+def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[float, Why], None]) -> None:
     """The offer of the job becomes open, or impossible with the reasons; together with the job's end. Safe to run twice."""
     offer = ReplanOffer.objects.select_related("mission__organisation").get(pk=job.parameters["offer"])
     if offer.state == OfferState.COMPUTING:
         _work_out(offer, stop, search_s, note)
     offer.refresh_from_db()
-    if not finish_job(job=job, result={"offer": str(offer.pk), "state": offer.state}, message=offer.outcome or "Worked out"):
+    message = why_of_column(offer.outcome_why, offer.outcome) or Reason("worked_out")
+    if not finish_job(job=job, result={"offer": str(offer.pk), "state": offer.state}, message=message):
         raise JobCancelled
 
 
-def _work_out(offer: ReplanOffer, stop: Stop, search_s: float, note: Callable[[float, str], None]) -> None:
+def _work_out(offer: ReplanOffer, stop: Stop, search_s: float, note: Callable[[float, Why], None]) -> None:
     now = timezone.now()
     mission = mission_of_organisation(offer.mission.organisation, offer.mission_id)
     cause = Cause(offer.code, offer.cause.get("uav"), offer.cause.get("zone"))
     if mission.state != MissionState.ACTIVE:
-        return _close(offer, OfferState.OUTDATED, _("The mission does not fly any more."))
-    note(0.1, "Looking up what is left")
+        return _close(offer, OfferState.OUTDATED, [Reason("mission_not_flying")])
+    note(0.1, Reason("looking_up_rest"))
     field = replace(field_of(mission, rests_of(mission, cause, now), cause, now), stop=stop, search_s=search_s)
-    words = _open_the_best(offer, field, note)
-    if words:
-        _close(offer, OfferState.IMPOSSIBLE, words)
+    why = _open_the_best(offer, field, note)
+    if why:
+        _close(offer, OfferState.IMPOSSIBLE, why)
     return None
 
 
-def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, str], None]) -> str:
+def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, Why], None]) -> list[Reason]:
     """Why there is none; empty where there is one. The first that leaves nothing undone is taken, else the best of all."""
     found: list[Proposal] = []
-    words: list[str] = []
+    why: list[Reason] = []
     for number, proposal in enumerate(proposals(field)):
-        note(min(0.9, 0.3 + 0.15 * number), "Comparing ways to share it out")
+        note(min(0.9, 0.3 + 0.15 * number), Reason("comparing_shares"))
         if not proposal.continued:
-            words += [message for _code, message, _why in proposal.unreached.values()]
+            why += [reason for _code, message, json in proposal.unreached.values() for reason in _reasons(message, json)]
             continue
         if not proposal.unreached and not (reasons := _open(offer, proposal)):
-            return ""
+            return []
         if not proposal.unreached:
-            words += [reason.message for reason in reasons]
+            why += [text_reason(reason.message) for reason in reasons]
         else:
             found.append(proposal)
     for proposal in sorted(found, key=lambda one: one.merit):
         reasons = _open(offer, proposal)
         if not reasons:
-            return ""
-        words += [reason.message for reason in reasons]
-    troubles = [field.why(rest.place) for rest in field.rests]
-    reported = dict.fromkeys(filter(None, [*words, *troubles]))
-    return "\n".join(reported) or _("Nothing would change: the UAVs fly on as they do.")
+            return []
+        why += [text_reason(reason.message) for reason in reasons]
+    why += [reason for rest in field.rests for reason in field.why(rest.place)]
+    return list({str(reason): reason for reason in why}.values()) or [Reason("nothing_would_change")]
+
+
+def _reasons(message: str, why: Sequence[Mapping[str, Any]]) -> list[Reason]:
+    return [reason_from_json(reason) for reason in why] or [text_reason(message)]
 
 
 def _open(offer: ReplanOffer, proposal: Proposal) -> list[RefusalReason]:
@@ -90,8 +96,8 @@ def _open(offer: ReplanOffer, proposal: Proposal) -> list[RefusalReason]:
     return []
 
 
-def _close(offer: ReplanOffer, state: OfferState, words: str) -> None:
+def _close(offer: ReplanOffer, state: OfferState, why: Sequence[Reason]) -> None:
     with transaction.atomic():
         held = held_offer(offer)
         if held.state == OfferState.COMPUTING:
-            end_offer(held, state, words)
+            end_offer(held, state, why)

@@ -284,7 +284,7 @@ function refusal({ faults }, acts) {
   const [first, ...rest] = faults.length
     ? faults
     : [{ place: "", message: t("The file could not be read."), position: null }];
-  /** @param {Proposal["faults"][number]} fault @param {boolean} isFirst */
+  /** @param {Pick<Proposal["faults"][number], "place" | "message" | "position">} fault @param {boolean} isFirst */
   const faultLine = ({ place, message, position }, isFirst) => [
     h(isFirst ? "strong" : "span", {}, place ? `${place}: ${message}` : message),
     isFirst && ` ${t("Nothing was imported.")} `,

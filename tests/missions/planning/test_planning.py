@@ -389,7 +389,7 @@ def test_a_zone_saved_while_a_plan_is_made_is_kept_clear_of() -> None:
     zones: list[NoFlyZone] = []
 
     def save_a_zone(progress: PlanProgress) -> None:
-        if progress.message.startswith("Working out heights") and not zones:
+        if progress.message.code == "working_out_heights" and not zones:
             zones.append(zone_around((10.010, 56.0), half_deg=0.0005, with_graph=False))
 
     plan = make_plan(request=request(here.towers[5]), on_progress=save_a_zone)

@@ -208,7 +208,7 @@ def test_a_search_improves_the_plan_and_reports_progress() -> None:
     assert shares == sorted(shares)
     assert shares[-1] == 1.0
     assert any(0.3 < share < 1.0 for share in shares)
-    assert reported[-1].message.startswith("longest route ")
+    assert reported[-1].message.code == "longest_route"
     merits = [merit(problem, progress.best_routes) for progress in reported if progress.best_routes is not None]
     assert len(merits) > 3
     assert merits == sorted(merits, reverse=True)

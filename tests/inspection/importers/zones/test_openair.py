@@ -236,7 +236,7 @@ def test_mutated_files_raise_nothing_but_the_named_error(name: str, zone_file: C
 def test_seconds_and_minutes_of_60_are_carried_over_with_a_note() -> None:
     found = read("AC R\nAN Carried\n" + TRIANGLE.replace("50:10:00 N 014:20:00", "50:09:60.0 N 013:79:60").replace("013:79", "014:60"))
     assert shapely.get_coordinates(found.zones[0].geometry).max(axis=0).tolist() == pytest.approx([15 + 1 / 60, 50 + 10 / 60])
-    assert found.notes == ("Minutes or seconds of 60 were read as the next degree or minute: line 5.",)
+    assert [str(note) for note in found.notes] == ["Minutes or seconds of 60 were read as the next degree or minute: line 5."]
 
 
 @pytest.mark.parametrize("text", ["50:60.1 N 014:00 E", "50:00:60.01 N 014:00:00 E", "50:00:61 N 014:00:00 E"])
