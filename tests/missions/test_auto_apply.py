@@ -117,6 +117,8 @@ def test_a_file_with_records_that_are_not_read_is_held_back(client: Client) -> N
     held = brought_in(client, broken, name="national.txt", parameters={"leave_out_faulty": True})
     assert (held["state"], codes(held), held["decided_by"]) == ("ready", ["not_read"], None)
     assert held["held_back"][0]["message"] == "Records of the file that have a fault and are left out: 1."
+    german = client.get(f"/api/v1/imports/{held['id']}", headers={"Accept-Language": "de"}).json()
+    assert german["held_back"][0]["message"] == "Datensätze der Datei, die fehlerhaft sind und ausgelassen werden: 1."
     assert not NoFlyZone.objects.exists()
 
 

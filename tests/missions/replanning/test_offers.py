@@ -4,8 +4,10 @@ from datetime import timedelta
 
 import pytest
 from django.utils.dateparse import parse_datetime
+from django.utils.translation import override
 
 from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
+from missions.serializers.replan_offers import offer_json
 from missions.services.commands.commands import note_applied, note_failed, note_sent
 from missions.services.commands.flight_progress import FlightEnd, mark_flight_ended
 from missions.services.commands.refused import Refused
@@ -13,6 +15,7 @@ from missions.services.commands.route_swap import stuck_hand_overs
 from missions.services.commands.steering import mission_in_hand
 from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
 from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
+from operation.reasons import Reason
 from tests.accounts.users import a_user
 from tests.missions.commands.outbox import claim, fence, give
 from tests.missions.flights import carry, ground
@@ -181,6 +184,18 @@ def test_whoever_commands_the_uav_meanwhile_has_the_last_word(flight):
     assert note_sent(upload.pk, **fence(upload))
     assert note_applied(upload.pk, **fence(upload))
     assert [command.kind for command in claim(*flight.uavs)] == ["return"]
+
+
+def test_why_an_offer_is_outdated_is_read_in_german(flight):
+    offer = suggest(mission_id=flight.mission.pk, code="asked-for", cause={})
+    why = [Reason("other_command_since", {"uav": "Tern"}), Reason("asked_for_again")]
+    offers.end_offer(offers.held_offer(offer), OfferState.OUTDATED, why)
+    offer.refresh_from_db()
+    assert offer.outcome == "Tern was given another command since.\nIt was asked for again."
+    with override("de"):
+        shown = offer_json(offer)
+    assert shown["outcome"].splitlines()[1] == "Es wurde neu danach gefragt."
+    assert [reason["code"] for reason in shown["outcome_why"]] == ["other_command_since", "asked_for_again"]
 
 
 def test_one_cause_is_suggested_once(flight):
