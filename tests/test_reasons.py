@@ -13,6 +13,8 @@ from mavlink.commands.actions import Order
 from mavlink.vehicle_class import VehicleClass, refusal_of
 from mavlink.vehicle_plan import MissionType
 from operation.reasons import SENTENCES, Reason, english, reason_from_json, register_sentences, text_reason
+from simulation.flight.airframe import OwnAction
+from simulation.serializers.words import reason_of
 from workspace.reason_texts import column_text, reason_text, reasons_of_column, text_and_column
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -55,6 +57,8 @@ def test_the_codes_that_are_put_together_have_sentences() -> None:
     codes = {f"order_{order}" for order in Order} | {f"list_{kind.name.lower()}" for kind in MissionType}
     codes |= {refusal_of(kind).params["kind"].code for kind in VehicleClass}
     codes |= {f"{one}_{origin}" for one in ("item", "items") for origin in ("new", "before", "neither", "not_approved")}
+    acts = [action for action in OwnAction if action is not OwnAction.NONE]
+    codes |= {f"{what}_{action}" for what in ("battery_low", "battery_critical", "gps_lost") for action in acts}
     codes |= {f"{what}_{where}" for what in ("stands", "home") for where in ("elsewhere", "above", "below")}
     assert codes - set(SENTENCES) == set()
 
@@ -104,3 +108,11 @@ def test_a_figure_that_is_none_is_stored_as_text_and_others_are_written_as_the_r
     assert Reason("parameter_kept", {"value": float("nan")}).to_json()["params"]["value"] == "nan"
     with override("de"):
         assert "60,5" in reason_text(kept)
+
+
+def test_why_a_rehearsed_uav_crashed_is_read_in_german() -> None:
+    hit = Reason("hit_ground", {"speed": 7.3})
+    finding = {"code": "crashed", "facts": {"name": "Kite", "said": str(hit), "said_why": hit.to_json()}}
+    with override("de"):
+        assert reason_of(finding, {}).endswith("Es ist mit 7,3 m/s auf den Boden geschlagen.")
+        assert reason_of({"code": "crashed", "facts": {"name": "Kite", "said": str(hit)}}, {}).endswith(str(hit))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import Flight, FrozenRoute, FrozenWaypoint
+from operation.reasons import Reason
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -49,7 +50,7 @@ class FlownTrack:
     is_coming_down: BoolArray
     attitude_deg: FloatArray
     ending: TrackEnding
-    stated: tuple[str, ...] = ()
+    stated: tuple[Reason | str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.t_s)

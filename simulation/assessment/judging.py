@@ -8,6 +8,7 @@ import numpy as np
 
 from inspection.zones.reach import ZoneTable
 from mavlink.approved_route import FrozenRoute
+from operation.reasons import Reason
 from planning.energy.conditions import Conditions
 from simulation.assessment.closest_approach import ClosestApproach, closest_approaches_of
 from simulation.assessment.flown import AssessedRoute, FloatArray, TrackEnding
@@ -208,7 +209,8 @@ def _of_endings(route: AssessedRoute) -> Iterator[AssessmentFinding]:
         elif not flown.track.is_over_well:
             stated = flown.track.stated[-1] if flown.track.stated else ""
             at_s = float(flown.track.t_s[-1]) if len(flown.track) else None
-            yield AssessmentFinding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | {"said": stated, "at_s": at_s})
+            said = {"said": str(stated), "said_why": stated.to_json() if isinstance(stated, Reason) else None}
+            yield AssessmentFinding(Level.FAIL, str(flown.track.ending), route.uav, facts=facts | said | {"at_s": at_s})
 
 
 def _of_energy(

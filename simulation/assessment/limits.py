@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from enum import StrEnum
+from typing import Any
 
 from planning.rules import FlightRules, SeparationRules
 
@@ -82,7 +83,7 @@ class Level(StrEnum):
 
 
 SEVERITY = {Level.PASS: 0, Level.WARNINGS: 1, Level.FAIL: 2}
-Fact = float | int | str | None
+Fact = float | int | str | dict[str, Any] | None
 Facts = dict[str, Fact]
 
 

@@ -2,6 +2,7 @@
 
 import math
 
+from operation.reasons import Reason
 from simulation.flight.airframe import OwnAction
 from simulation.flight.body import OFF_GROUND_M, STEADY_M, Body, Contact
 from simulation.flight.events import Armed, Crashed, Disarmed, LandedAt, ModeChanged, PhotoTaken, TookOff
@@ -37,11 +38,12 @@ class Failsafes:
             return None
         self._battery_level = level
         if level == 1:
-            context.report(f"Battery {percent:.0f} %", Severity.WARNING)
+            context.report(Reason("battery_at", {"percent": round(percent)}), Severity.WARNING)
             return None
         action = settings.battery_low_action if level == 2 else settings.battery_critical_action
         severity = Severity.WARNING if level == 2 else Severity.CRITICAL
-        return _act(context, mode, action, f"Battery {'low' if level == 2 else 'critical'}: {percent:.0f} %", severity)
+        why = Reason("battery_low" if level == 2 else "battery_critical", {"percent": round(percent)})
+        return _act(context, mode, action, why, severity)
 
     def _gps(self, context: ManoeuvreContext, mode: FlightMode, *, is_gps_lost: bool) -> Manoeuvre | None:
         if not is_gps_lost:
@@ -51,19 +53,19 @@ class Failsafes:
             return None
         if self._gps_lost_since_s is None:
             self._gps_lost_since_s = context.now_s
-            context.report("No GPS fix, dead reckoning", Severity.WARNING)
+            context.report(Reason("dead_reckoning"), Severity.WARNING)
         if self._has_acted_on_gps or context.now_s - self._gps_lost_since_s < context.settings.gps_lost_patience_s:
             return None
         self._has_acted_on_gps = True
-        return _act(context, mode, context.settings.gps_lost_action, "GPS lost", Severity.CRITICAL)
+        return _act(context, mode, context.settings.gps_lost_action, Reason("gps_lost"), Severity.CRITICAL)
 
 
-def _act(context: ManoeuvreContext, mode: FlightMode, action: OwnAction, why: str, severity: Severity) -> Manoeuvre | None:
+def _act(context: ManoeuvreContext, mode: FlightMode, action: OwnAction, why: Reason, severity: Severity) -> Manoeuvre | None:
     manoeuvre = _manoeuvre(action)
     if manoeuvre is None or not context.is_in_air or STRENGTH.get(mode, 0) >= STRENGTH.get(manoeuvre.mode, 0) > 0:
         context.report(why, severity)
         return None
-    context.report(f"{why}: {manoeuvre.mode}", severity)
+    context.report(Reason(f"{why.code}_{manoeuvre.mode}", why.params), severity)
     return manoeuvre
 
 
@@ -127,7 +129,7 @@ class Autopilot:
         try:
             self.body.advance()
         except CameApart as error:
-            self._crash(f"The flight model: {error}.")
+            self._crash(Reason("flight_model_failed", {"error": str(error)}))
             return
         self._look_around()
         self._touch()
@@ -148,7 +150,7 @@ class Autopilot:
         if not context.is_armed:
             return
         if self.body.battery_percent <= 0.0:
-            context.report("Battery empty: the motors stop", Severity.CRITICAL)
+            context.report(Reason("battery_empty"), Severity.CRITICAL)
             self.disarm()
             return
         own = self._failsafes.step(context, self.manoeuvre.mode, self.body.battery_percent, is_gps_lost=self.is_gps_lost)
@@ -211,12 +213,12 @@ class Autopilot:
             return
         contact = body.contact()
         if contact is Contact.OVERTURNED:
-            self._crash("It overturned.")
+            self._crash(Reason("overturned"))
         elif contact is Contact.HARD:
-            self._crash(f"It hit the ground at {body.impact_mps:.1f} m/s.")
+            self._crash(Reason("hit_ground", {"speed": round(body.impact_mps, 1)}))
         elif contact is Contact.SOFT:
             if context.is_armed and not self.manoeuvre.is_landing:
-                context.report("Touched the ground outside of a landing", Severity.WARNING)
+                context.report(Reason("touched_ground"), Severity.WARNING)
             self._landed()
 
     def _landed(self) -> None:
@@ -242,13 +244,13 @@ class Autopilot:
                 self.begin(Hold(), is_own=True)
         self.revision += 1
 
-    def _crash(self, reason: str) -> None:
+    def _crash(self, reason: Reason) -> None:
         context = self.context
         self.is_crashed = True
         context.is_in_air = False
         self.disarm()
         context.events.append(Crashed(self.now_s, self.body.position, reason))
-        context.report(f"Crashed: {reason}", Severity.CRITICAL)
+        context.report(Reason("crashed", {"reason": reason}), Severity.CRITICAL)
         self.body.stop()
 
     def _take_photo(self) -> None:

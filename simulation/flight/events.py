@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from inspection.geodesy import LonLat
+from operation.reasons import Reason
 from simulation.flight.states import FlightMode, Severity
 
 
@@ -47,7 +48,7 @@ class StatusTextSent:
     """A text for the operator."""
 
     at_s: float
-    text: str
+    text: Reason | str
     severity: Severity
 
 
@@ -78,7 +79,7 @@ class LandedAt:
 class Crashed:
     at_s: float
     position: LonLat
-    reason: str
+    reason: Reason
 
 
 Event = ItemReached | MissionEnded | ModeChanged | PhotoTaken | StatusTextSent | Armed | Disarmed | TookOff | LandedAt | Crashed

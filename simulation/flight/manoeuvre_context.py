@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from operation.reasons import Reason
 from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.camera import Camera
 from simulation.flight.course import Vector, Via, course
@@ -46,7 +47,7 @@ class ManoeuvreContext:
     heading_deg: float | None = None
     events: list[Event] = field(default_factory=list)
 
-    def report(self, text: str, severity: Severity = Severity.INFO) -> None:
+    def report(self, text: Reason | str, severity: Severity = Severity.INFO) -> None:
         self.events.append(StatusTextSent(self.now_s, text, severity))
 
     def level_of(self, position: LonLat) -> tuple[float, float]:

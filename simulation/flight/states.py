@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from inspection.geodesy import LonLat
+from operation.reasons import Reason
 
 
 class FlightMode(StrEnum):
@@ -109,7 +110,7 @@ class OrderRefused:
     """The order is not carried out: `code` for programs, `words` for people."""
 
     code: str
-    words: str
+    words: Reason | str
     is_done: bool = False
 
 

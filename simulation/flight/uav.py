@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from operation.reasons import Reason
 from simulation.flight.airframe import Airframe, Settings
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body
@@ -215,9 +216,9 @@ class SimulatedUav:
         if self._context.is_armed:
             return DONE
         if self.battery_percent <= self.settings.battery_critical_percent:
-            return OrderRefused("battery", f"The battery holds {self.battery_percent:.0f} %.")
+            return OrderRefused("battery", Reason("battery_holds", {"percent": round(self.battery_percent)}))
         if self.is_gps_lost:
-            return OrderRefused("gps", "There is no GPS fix.")
+            return OrderRefused("gps", Reason("no_gps_fix"))
         self._pilot.arm()
         return DONE
 
@@ -231,7 +232,7 @@ class SimulatedUav:
         """Straight up; a UAV that is not armed yet does so once it is. None: as high as the settings have it."""
         height_m = self.settings.take_off_height_m if height_relative_m is None else height_relative_m
         if not (math.isfinite(height_m) and 0.5 <= height_m <= 1_000.0):
-            return OrderRefused("height", f"A take-off to {height_m:g} m is not flown.")
+            return OrderRefused("height", Reason("take_off_not_flown", {"height": height_m}))
         return self._order(TakeOffManoeuvre(height_m))
 
     def set_mode(self, mode: FlightMode) -> Outcome:
@@ -289,7 +290,7 @@ class SimulatedUav:
 
     def _fly_mission(self) -> Outcome:
         if self._mission is None:
-            return OrderRefused("no-mission", "There is no mission.")
+            return OrderRefused("no-mission", Reason("no_mission"))
         if self._mission.is_done:
             if self._context.is_in_air:
                 return OrderRefused("complete", "The mission is complete.")

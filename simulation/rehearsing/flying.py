@@ -10,6 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat
 from mavlink.approved_route import HOVER, Flight, FrozenRoute
 from mavlink.vehicle_plan import MissionItem
+from operation.reasons import Reason
 from simulation.assessment.flown import NO_WAYPOINT, AssessedRoute, FlownFlight, FlownTrack, TrackEnding
 
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
@@ -34,7 +35,7 @@ class RehearsedVehicle(Protocol):
     def arm(self) -> Any: ...
     def take_off(self, height_relative_m: float) -> Any: ...
     def start_mission(self) -> Any: ...
-    def take_texts(self) -> list[str]: ...
+    def take_texts(self) -> Sequence[Reason | str]: ...
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class _Rows:
     """A track while it is being flown."""
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
-    texts: list[str] = field(default_factory=list)
+    texts: list[Reason | str] = field(default_factory=list)
 
 
 class _Flyer:

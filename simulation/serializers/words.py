@@ -7,6 +7,8 @@ from django.utils.formats import get_format
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
+from workspace.reason_texts import why_text
+
 # Of findings, by their code; the figures are put in as they are written for people.
 SENTENCES = {
     "crashed": gettext_noop("%(name)s crashed%(flight)s. %(said)s"),
@@ -44,7 +46,8 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
     facts["wind"], facts["agl"] = facts.get("wind_mps"), facts.get("agl_m")
     facts["number"] = facts.get("flight")
     facts["other"] = names.get(facts.get("other", -1), "")
-    facts["said"] = str(facts.get("said") or "")
+    said_why = facts.pop("said_why", None)
+    facts["said"] = why_text([said_why] if said_why else [], str(facts.get("said") or ""))
     several = (facts.get("flights") or 1) > 1
     facts["flight"] = f" ({_('flight %(number)s') % {'number': facts['number']}})" if several else ""
     facts["waypoint"] = _number_of(facts.get("waypoint"))

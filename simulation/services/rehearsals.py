@@ -77,12 +77,12 @@ class RehearsedUav:
     def start_mission(self) -> Outcome:
         return self._uav.set_mode(FlightMode.MISSION)
 
-    def take_texts(self) -> list[str]:
+    def take_texts(self) -> list[Reason | str]:
         """What it has said of trouble since it was last asked. Why it has crashed is told once."""
         events = self._uav.take_events()
         reasons = [event.reason for event in events if isinstance(event, Crashed)]
         stated = [event.text for event in events if isinstance(event, StatusTextSent) and event.severity is not Severity.INFO]
-        return [text for text in stated if not any(text.endswith(reason) for reason in reasons)] + reasons
+        return [text for text in stated if not (isinstance(text, Reason) and text.code == "crashed")] + reasons
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terrain: Heights | None) -> MakeVehicle:

@@ -156,7 +156,7 @@ class Endpoint:
         outcome = self.vehicle.load(items)
         self.streams.send_now(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
         if isinstance(outcome, OrderRefused):
-            self.pilot.refusal = outcome.words
+            self.pilot.refusal = str(outcome.words)
             return int(mavlink.MAV_MISSION_DENIED)
         return int(mavlink.MAV_MISSION_ACCEPTED)
 
@@ -222,7 +222,7 @@ class Endpoint:
         return [mission_current(self._report())]
 
     def _stated(self, event: events.StatusTextSent) -> list[Message]:
-        return self._text(event.text, SEVERITIES[event.severity])
+        return self._text(str(event.text), SEVERITIES[event.severity])
 
     def _landed(self, event: events.Event) -> list[Message]:
         return [REPORTS[mavlink.MAVLINK_MSG_ID_EXTENDED_SYS_STATE](self._report())]

@@ -187,7 +187,7 @@ class Pilot:
         return self.set_mode(FlightMode.RETURN)
 
     def _result(self, outcome: Outcome, refused: int = FAILED) -> int:
-        return self._refused(outcome.words, refused) if isinstance(outcome, OrderRefused) else ACCEPTED
+        return self._refused(str(outcome.words), refused) if isinstance(outcome, OrderRefused) else ACCEPTED
 
     def _refused(self, words: str, result: int = FAILED) -> int:
         self.refusal = words

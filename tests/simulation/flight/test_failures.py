@@ -22,7 +22,7 @@ def own_modes(events: list[object]) -> list[FlightMode]:
 
 
 def texts(events: list[object]) -> str:
-    return " | ".join(event.text for event in events if isinstance(event, StatusTextSent))
+    return " | ".join(str(event.text) for event in events if isinstance(event, StatusTextSent))
 
 
 def test_weak_battery_returns_in_time_and_lands_at_home() -> None:
@@ -121,7 +121,7 @@ def test_flight_into_a_hillside_is_a_crash_there() -> None:
     flown = fly_mission(uav)
     assert flown.ending is Ending.CRASHED
     assert off_m(flown.end.true_position, place(50.0, 0.0)) < 3.0  # where the hill is 10 m high
-    assert "hit the ground" in (flown.crash.reason if flown.crash else "")
+    assert "hit the ground" in (str(flown.crash.reason) if flown.crash else "")
 
 
 def test_landing_on_higher_ground_ends_there() -> None:
