@@ -25,7 +25,7 @@ from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.legs import Attachments
 from inspection.network.paths.along_paths import steps_of_graph
-from inspection.network.paths.paths import travel_of_legs
+from inspection.network.paths.paths import PlaceLegs, travel_of_legs
 from inspection.network.route_index import route_index
 from planning.connection_points import TargetPaths
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
@@ -105,7 +105,7 @@ class Mission:
         nodes = np.concatenate([joined, asked.targets]).astype(np.int32)
         places = np.arange(UAVS + TARGETS + 1)
         sinks = np.array([*range(UAVS, UAVS + TARGETS), *range(UAVS)], dtype=np.int64)
-        travel = travel_of_legs(plain.index, places, nodes, np.zeros(len(nodes)), np.zeros(len(nodes)), places[:-1], sinks)
+        travel = travel_of_legs(plain.index, PlaceLegs(places, nodes, np.zeros(len(nodes)), np.zeros(len(nodes))), places[:-1], sinks)
         self.ways = TargetPaths(travel, UAVS, TARGETS, (NO_LEGS,) * UAVS, (NO_LEGS,) * TARGETS, (NO_LEGS,) * TARGETS)
         self.starts = [LonLat(*place) for place in asked.uavs.tolist()]
         self.courses = [[LonLat(*graph.position[node].tolist())] for node in asked.targets]

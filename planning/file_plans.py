@@ -22,7 +22,7 @@ from inspection.network.nearness import EARTH_RADIUS_M
 from inspection.network.paths.contracted_graph import contract_columns
 from inspection.network.paths.hub_labels import label
 from inspection.network.paths.node_tree import NodeTree, tree_of
-from inspection.network.paths.paths import travel_of_legs
+from inspection.network.paths.paths import PlaceLegs, travel_of_legs
 from inspection.network.route_index import RouteIndex
 from planning.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
 from planning.solver.cost_matrices import NO_PATH_M
@@ -112,7 +112,7 @@ def plan_json(graph: FileGraph, mission: Mapping[str, Any], objective: Objective
     leg_node = np.concatenate([joined, asked.targets]).astype(np.int32)
     began.append(clock())
     places = np.arange(uavs + targets + 1)
-    travel = travel_of_legs(graph.index, places, leg_node, leg_m, leg_m, places[:-1], places[uavs:-1])
+    travel = travel_of_legs(graph.index, PlaceLegs(places, leg_node, leg_m, leg_m), places[:-1], places[uavs:-1])
     began.append(clock())
     routes = _routes(travel.length_m, uavs, objective)
     began.append(clock())

@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from threading import RLock
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 from weakref import WeakKeyDictionary
 
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import build_asset_places
-from inspection.network.paths.contracted_graph import ContractedGraph, NumberArray, contract
+from inspection.network.paths.contracted_graph import ContractedGraph, contract
 from inspection.network.paths.hub_labels import HubLabels, label
 from inspection.network.paths.node_tree import build_node_tree
 
@@ -24,45 +24,6 @@ class RouteIndex:
     @cached_property
     def component_count(self) -> int:
         return int(self.labels.component.max(initial=-1)) + 1
-
-    @cached_property
-    def component_arrays(self) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray]:
-        """In the order in which compiled code takes them to look up the components of nodes."""
-        return self.contracted.node_chain, self.contracted.node_place, self.contracted.chain_tail, self.labels.component
-
-    @cached_property
-    def query_arrays(self) -> tuple[Any, ...]:
-        """In the order in which the compiled query takes them."""
-        contracted, labels = self.contracted, self.labels
-        return (
-            contracted.node_chain,
-            contracted.node_place,
-            contracted.chain_first,
-            contracted.chain_tail,
-            contracted.chain_head,
-            contracted.place_cost,
-            contracted.place_m,
-            labels.label_first,
-            labels.label_hub,
-            labels.label_cost,
-            labels.label_m,
-        )
-
-    @cached_property
-    def path_arrays(self) -> tuple[Any, ...]:
-        """In the order in which the compiled expansion takes them."""
-        contracted, labels = self.contracted, self.labels
-        return (
-            contracted.node_chain,
-            contracted.node_place,
-            contracted.chain_first,
-            contracted.chain_tail,
-            contracted.chain_head,
-            contracted.place_node,
-            labels.label_first,
-            labels.label_hub,
-            labels.label_chain,
-        )
 
 
 Part = TypeVar("Part")

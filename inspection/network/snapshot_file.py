@@ -211,11 +211,11 @@ def _remember_index(graph: InspectionGraph, arrays: Arrays) -> None:
 
 
 def _arrays_of(name: str, part: ContractedGraph | HubLabels | NodeTree | AssetPlaces) -> Arrays:
-    return {f"{name}.{field.name}": getattr(part, field.name) for field in fields(part)}
+    return {f"{name}.{field}": array for field, array in part._asdict().items()}
 
 
 def _part(kind: type[Part], arrays: Arrays, name: str) -> Part:
-    return kind(**{field.name: arrays[f"{name}.{field.name}"] for field in fields(kind)})
+    return kind(*(arrays[f"{name}.{field}"] for field in kind._fields))
 
 
 def _arrays(graph: Network | InspectionGraph) -> Arrays:

@@ -13,7 +13,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import Spans, spans_between
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, hold_taken, landing_taken, leg_taken, speeds, table_of
+from planning.energy.leg_cost import J_PER_WH, Air, hold_taken, landing_taken, leg_taken
 from planning.energy.performance import Performance
 from planning.rules import FlightRules
 from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
@@ -125,7 +125,7 @@ def checked_returns(
     if plan.behaviour is LostLink.GO_ON or not len(waypoints):
         return Returns([], None)
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
-    air = _Air(performance, cruise_speed_mps, conditions, rules)
+    air = Air.of(performance, cruise_speed_mps, conditions, rules)
     taken_wh = _taken_wh(clock, performance)
     begin = LonLat(*waypoints.points.position[0].tolist()) if home is None else home
     returns = _returns(waypoints, begin, plan.rally_points, ground_heights_m)
@@ -148,7 +148,7 @@ def checked_returns(
             failed.append(FailedReturn(one.waypoint, one.return_point, trouble, over_m=level_m - most_m + HEIGHT_ROUNDING_M))
         else:
             levels_m.append(level_m)
-        taken = air.taken(one, waypoints, level_m, hold_s)
+        taken = _taken(one, waypoints, level_m, hold_s, air)
         if math.isinf(taken[-1][0]):
             failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.WIND))
         elif performance.usable_wh is not None and taken_wh is not None:
@@ -209,38 +209,30 @@ def _amsl_m(one: _Return, waypoints: Waypoints) -> float:
     return float(one.ground_m[0] + waypoints.points.agl_m[one.waypoint])
 
 
-class _Air:
-    """What climbing, flying and staying take in the wind."""
-
-    def __init__(self, performance: Performance, cruise_speed_mps: float, conditions: Conditions, rules: FlightRules) -> None:
-        self.wind, self.temperature_c = conditions.wind_table, float(conditions.temperature_c)
-        self.own = speeds(performance, cruise_speed_mps, rules)
-        self.table = table_of(performance, self.own.climb_mps)
-
-    def taken(self, one: _Return, waypoints: Waypoints, level_m: float, hold_s: float) -> list[tuple[float, float]]:
-        """Seconds and joules until it has stayed and climbed, until it is over the return point, and until it has landed."""
-        task = waypoints.points.task.get(one.waypoint)
-        stays_s = hold_s + (0.0 if task is None else task.hold_s)
-        here_m, agl_m = _amsl_m(one, waypoints), float(waypoints.points.agl_m[one.waypoint])
-        level_agl_m, down_m = level_m - float(one.ground_m[0]), level_m - float(one.ground_m[-1])
-        is_known = waypoints.amsl_m is not None
-        density = air_density(here_m if is_known else 0.0, self.temperature_c)
-        up = leg_taken(0.0, 0.0, 0.0, agl_m, level_agl_m, level_m - here_m, self.wind, density, self.own, self.table)
-        stops_s = 2.0 * self.own.brake_s + self.own.settle_s  # however short it stays: it turns round
-        stay = hold_taken(stays_s + stops_s, agl_m, self.wind, density, self.own, self.table)
-        density = air_density(level_m if one.is_known else 0.0, self.temperature_c)
-        # The ground under it rises and falls, so that one of the winds between its least and its greatest height may be met.
-        across = max(
-            (
-                leg_taken(one.length_m, one.east, one.north, height_m, height_m, 0.0, self.wind, density, self.own, self.table)
-                for height_m in (level_m - float(one.ground_m.min()), level_m - float(one.ground_m.max()))
-            ),
-            key=lambda found: found[1] if len(self.table) else found[0],
-        )
-        touching = landing_taken(down_m, self.wind, density, self.own, self.table)
-        down = np.add(leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, self.wind, density, self.own, self.table), touching)
-        sums = np.cumsum([np.add(stay, up), across, down], axis=0)
-        return [(float(seconds), float(joules)) for seconds, joules in sums]
+def _taken(one: _Return, waypoints: Waypoints, level_m: float, hold_s: float, air: Air) -> list[tuple[float, float]]:
+    """Seconds and joules until it has stayed and climbed, until it is over the return point, and until it has landed."""
+    task = waypoints.points.task.get(one.waypoint)
+    stays_s = hold_s + (0.0 if task is None else task.hold_s)
+    here_m, agl_m = _amsl_m(one, waypoints), float(waypoints.points.agl_m[one.waypoint])
+    level_agl_m, down_m = level_m - float(one.ground_m[0]), level_m - float(one.ground_m[-1])
+    is_known = waypoints.amsl_m is not None
+    density = air_density(here_m if is_known else 0.0, air.temperature_c)
+    up = leg_taken(0.0, 0.0, 0.0, agl_m, level_agl_m, level_m - here_m, density, air)
+    stops_s = 2.0 * air.own.brake_s + air.own.settle_s  # however short it stays: it turns round
+    stay = hold_taken(stays_s + stops_s, agl_m, density, air)
+    density = air_density(level_m if one.is_known else 0.0, air.temperature_c)
+    # The ground under it rises and falls, so that one of the winds between its least and its greatest height may be met.
+    across = max(
+        (
+            leg_taken(one.length_m, one.east, one.north, height_m, height_m, 0.0, density, air)
+            for height_m in (level_m - float(one.ground_m.min()), level_m - float(one.ground_m.max()))
+        ),
+        key=lambda found: found[1] if len(air.table) else found[0],
+    )
+    touching = landing_taken(down_m, density, air)
+    down = np.add(leg_taken(0.0, 0.0, 0.0, down_m, 0.0, -down_m, density, air), touching)
+    sums = np.cumsum([np.add(stay, up), across, down], axis=0)
+    return [(float(seconds), float(joules)) for seconds, joules in sums]
 
 
 def _flown(one: _Return, waypoints: Waypoints, level_m: float, start_s: float | None, seconds: Sequence[float]) -> FlownRoute:

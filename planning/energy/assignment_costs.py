@@ -7,6 +7,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, chain
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,12 +16,12 @@ from numpy.typing import NDArray
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.paths.along_paths import chain_arrays
-from inspection.network.paths.contracted_graph import NumberArray
+from inspection.network.paths.contracted_graph import ContractedGraph
+from inspection.network.paths.paths import PathEnds
 from planning.connection_points import TargetPaths
 from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
-from planning.energy.path_cost import FlightClass, NodeGround, bends_of_paths, graph_taken, taken_on_paths
+from planning.energy.leg_cost import J_PER_WH, Air, landing_taken, leg_taken, stay_taken, take_off_taken
+from planning.energy.path_cost import Bends, FlightClass, GraphTaken, NodeGround, bends_of_paths, graph_taken, taken_on_paths
 from planning.problem import End
 from planning.rules import FlightRules
 
@@ -95,20 +96,19 @@ def flight_costs(
     flown = np.array([agl_m, hold_s], dtype=np.float64)
     ends = np.array([(_ENDS[finish.end], finish.lands) for finish in finishes], dtype=np.int64).reshape(-1, 2)
     source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
-    own_class = np.array(class_of, dtype=np.int64)
-    first, end = np.empty((2, uavs, visits)), np.empty((2, visits, uavs))
-    onward, at_visit = np.empty((2, len(numbers), visits, visits)), np.empty((2, 2, len(numbers), visits))
+    terms = _Terms(
+        np.array(class_of, dtype=np.int64), ends, ways.nearest_base, begins, stands, source_m, sink_m,
+        _Visits(course, course_first, flown, float(rules.transit_agl_m)),
+    )  # fmt: skip
+    costs = _Costs(
+        np.empty((2, uavs, visits)), np.empty((2, len(numbers), visits, visits)), np.empty((2, visits, uavs)),
+        np.empty((2, 2, len(numbers), visits)),
+    )  # fmt: skip
     bends = bends_of_paths(travel, float(rules.transit_agl_m))
     for flying, number in numbers.items():
         taken = graph_taken(graph, flying, conditions, rules, ground)
-        _fill(
-            number, own_class, ends, ways.nearest_base, course, course_first, begins, stands, flown,
-            source_m, sink_m, float(rules.transit_agl_m),
-            travel.way, travel.entry_leg, travel.entry_label, travel.leg_node, *chain_arrays(travel.index),
-            taken.sums.place, taken.sums.label, graph.position, taken.passed_m, taken.ground_m,
-            *bends, taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
-        )  # fmt: skip
-    seconds, wh = (Taken(first[part], onward[part], end[part], *at_visit[part]) for part in range(2))
+        _fill(number, terms, travel.ends, travel.index.contracted, graph.position, taken, bends, costs)
+    seconds, wh = (Taken(costs.first[part], costs.onward[part], costs.end[part], *costs.at_visit[part]) for part in range(2))
     usable_wh = [flying.performance.usable_wh for flying in classes]
     return FlightCosts(seconds, wh, class_of, np.array([np.inf if one is None else one for one in usable_wh], dtype=np.float64))
 
@@ -122,65 +122,57 @@ ALONG, SERVICE, UP, LANDING_THERE = range(4)
 TAKE_OFF, LANDING = range(2)
 
 
+class _Visits(NamedTuple):
+    """The visits' courses one after another, lon, lat [deg], and where each begins; height and hold of each, (2, v); transit height."""
+
+    course: FloatArray
+    course_first: IntArray
+    flown: FloatArray
+    transit_m: float
+
+
+class _Terms(NamedTuple):
+    """Who flies, from where to where: each UAV's class, ends (u, 2): where it ends and whether it lands; each visit's nearest base.
+
+    begins: the starts; stands: the homes, then the bases; the ground above sea level of sources and sinks, empty where not known.
+    """
+
+    class_of: IntArray
+    ends: IntArray
+    nearest_base: IntArray
+    begins: FloatArray
+    stands: FloatArray
+    source_ground_m: FloatArray
+    sink_ground_m: FloatArray
+    visits: _Visits
+
+
+class _Costs(NamedTuple):
+    """Seconds and Wh that are written: first (2, u, v), onward (2, c, v, v), end (2, v, u) and at_visit (2, along or service, c, v)."""
+
+    first: FloatArray
+    onward: FloatArray
+    end: FloatArray
+    at_visit: FloatArray
+
+
 @njit(cache=True, nogil=True)
 def _fill(
     number: int,
-    class_of: IntArray,
-    ends: IntArray,
-    nearest_base: IntArray,
-    course: FloatArray,
-    course_first: IntArray,
-    begins: FloatArray,
-    stands: FloatArray,
-    flown: FloatArray,
-    source_ground_m: FloatArray,
-    sink_ground_m: FloatArray,
-    transit_m: float,
-    way: NumberArray,
-    entry_leg: NumberArray,
-    entry_label: IntArray,
-    leg_node: NumberArray,
-    node_chain: NumberArray,
-    node_place: NumberArray,
-    chain_first: NumberArray,
-    place_sum: FloatArray,
-    label_sum: FloatArray,
+    terms: _Terms,
+    path_ends: PathEnds,
+    contracted: ContractedGraph,
     node_position: FloatArray,
-    passed_m: FloatArray,
-    node_ground_m: FloatArray,
-    bend: FloatArray,
-    bend_first: IntArray,
-    direct_number: NumberArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-    first: FloatArray,
-    onward: FloatArray,
-    end: FloatArray,
-    at_visit: FloatArray,
+    graph: GraphTaken,
+    bends: Bends,
+    costs: _Costs,
 ) -> None:
-    """Write what UAVs of one class take into first (2, u, v), onward (2, c, v, v), end (2, v, u) and at_visit (2, along or service, c, v).
-
-    course: the visits' courses one after another; begins: the starts; stands: the homes, then the bases; flown: height and hold of
-    each visit; ends (u, 2): where each UAV ends, and whether it lands.
-    """
-    uavs, visits = len(class_of), len(course_first) - 1
-    source, sink = np.full((uavs + visits, 4), np.nan), np.full((visits + len(stands), 4), np.nan)
-    for uav in range(len(stands)):
-        sink[visits + uav, :2], sink[visits + uav, 2] = stands[uav], transit_m
-    for uav in range(uavs):
-        source[uav, :2], source[uav, 2] = begins[uav], transit_m
-    for visit in range(visits):
-        source[uavs + visit, :2], sink[visit, :2] = course[course_first[visit + 1] - 1], course[course_first[visit]]
-        source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)
-    if len(source_ground_m):
-        source[:, 3], sink[:, 3] = source_ground_m, sink_ground_m
-    taken = taken_on_paths(
-        way, entry_leg, entry_label, leg_node, node_chain, node_place, chain_first, place_sum, label_sum,
-        node_position, passed_m, node_ground_m, source, sink, bend, bend_first, direct_number, wind, temperature_c, own, table,
-    )  # fmt: skip
-    parts, columns = _at_visits(course, course_first, flown, source[:, 3], transit_m, wind, temperature_c, own, table)
+    """Write what UAVs of one class take."""
+    source, sink = _sources_and_sinks(terms)
+    class_of, ends, uavs, visits = terms.class_of, terms.ends, len(terms.class_of), len(terms.visits.course_first) - 1
+    first, onward, end, at_visit = costs.first, costs.onward, costs.end, costs.at_visit
+    taken = taken_on_paths(path_ends, contracted, node_position, graph, source, sink, bends)
+    parts, columns = _at_visits(terms.visits, source[:, 3], graph.air)
     for part in range(2):
         for visit in range(visits):
             # What cannot be done in this wind cannot be flown to.
@@ -197,7 +189,7 @@ def _fill(
                 if ends[uav, 0] == _OPEN:
                     end[part, visit, uav], landing = 0.0, parts[part, LANDING_THERE, visit]
                 else:
-                    home = visits + (uav if ends[uav, 0] == _RETURN else uavs + nearest_base[visit])
+                    home = visits + (uav if ends[uav, 0] == _RETURN else uavs + terms.nearest_base[visit])
                     there = taken[part, uavs + visit, home] if home < len(sink) else np.inf  # no base is free
                     end[part, visit, uav] = parts[part, UP, visit] + there
                 if ends[uav, 1]:
@@ -205,21 +197,30 @@ def _fill(
 
 
 @njit(cache=True, nogil=True)
-def _at_visits(
-    course: FloatArray,
-    course_first: IntArray,
-    flown: FloatArray,
-    ground_m: FloatArray,
-    transit_m: float,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
+def _sources_and_sinks(terms: _Terms) -> tuple[FloatArray, FloatArray]:
+    """As taken_on_paths has them: starts, then exits; entries, then homes and bases."""
+    course, course_first, flown, transit_m = terms.visits.course, terms.visits.course_first, terms.visits.flown, terms.visits.transit_m
+    uavs, visits, stands = len(terms.class_of), len(course_first) - 1, terms.stands
+    source, sink = np.full((uavs + visits, 4), np.nan), np.full((visits + len(stands), 4), np.nan)
+    for uav in range(len(stands)):
+        sink[visits + uav, :2], sink[visits + uav, 2] = stands[uav], transit_m
+    for uav in range(uavs):
+        source[uav, :2], source[uav, 2] = terms.begins[uav], transit_m
+    for visit in range(visits):
+        source[uavs + visit, :2], sink[visit, :2] = course[course_first[visit + 1] - 1], course[course_first[visit]]
+        source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)
+    if len(terms.source_ground_m):
+        source[:, 3], sink[:, 3] = terms.source_ground_m, terms.sink_ground_m
+    return source, sink
+
+
+@njit(cache=True, nogil=True)
+def _at_visits(of_visits: _Visits, ground_m: FloatArray, air: Air) -> tuple[FloatArray, FloatArray]:
     """Seconds and Wh of each visit's parts, (2, 4, v), and of take-off to transit height and landing from there, (2, 2).
 
     ground_m is of the starts and then of the visits, NaN where not known. The columns are those of the highest start: in the thinnest air.
     """
+    course, course_first, flown, transit_m = of_visits.course, of_visits.course_first, of_visits.flown, of_visits.transit_m
     visits = len(course_first) - 1
     uavs = len(ground_m) - visits
     parts, columns = np.zeros((2, 4, visits)), np.zeros((2, 2))
@@ -227,19 +228,19 @@ def _at_visits(
         level_m = flown[0, visit]
         low_m = min(level_m, transit_m)
         known_m = ground_m[uavs + visit]
-        density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
-        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = stay_taken(flown[1, visit], level_m, wind, density, own, table)
+        density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, air.temperature_c)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = stay_taken(flown[1, visit], level_m, density, air)
         for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
             east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
             length_m = math.hypot(east, north)
             if length_m > 0.0:
-                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, wind, density, own, table)
+                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, density, air)
                 parts[0, ALONG, visit] += along[0]
                 parts[1, ALONG, visit] += along[1]
-        down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
-        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
-        landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, wind, density, own, table)
-        touching = landing_taken(level_m, wind, density, own, table)
+        down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, density, air)
+        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, density, air)
+        landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, density, air)
+        touching = landing_taken(level_m, density, air)
         for part in range(2):
             parts[part, SERVICE, visit] += down[part]
             parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part] + touching[part]
@@ -247,10 +248,10 @@ def _at_visits(
     for uav in range(uavs):
         if not math.isnan(ground_m[uav]):
             highest_m = max(highest_m, ground_m[uav])
-    density = air_density(highest_m, temperature_c)
-    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
-    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
-    lifting, touching = take_off_taken(transit_m, wind, density, own, table), landing_taken(transit_m, wind, density, own, table)
+    density = air_density(highest_m, air.temperature_c)
+    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, density, air)
+    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, density, air)
+    lifting, touching = take_off_taken(transit_m, density, air), landing_taken(transit_m, density, air)
     for part in range(2):
         columns[part, TAKE_OFF] += lifting[part]
         columns[part, LANDING] += touching[part]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from planning.energy.conditions import Conditions
-from planning.energy.leg_cost import J_PER_WH, landing_taken, leg_taken, speeds, table_of, take_off_taken
+from planning.energy.leg_cost import J_PER_WH, Air, landing_taken, leg_taken, take_off_taken
 from planning.energy.performance import Performance
 from planning.rules import FlightRules
 from planning.trajectory.timing import Timing
@@ -133,17 +133,18 @@ def _way_to_towers(
     rules: FlightRules,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Seconds and Wh of the way down to each tower from above it, and of the way up again; (towers, 2) each."""
-    own = speeds(performance, rules.cruise_speed_mps, rules)
-    table = table_of(performance, own.climb_mps)
+    air = Air.of(performance, rules.cruise_speed_mps, conditions, rules)
     down, up = np.empty((len(places), 2)), np.empty((len(places), 2))
     for number, place in enumerate(places.tolist()):
         agl_m = float(waypoints.points.agl_m[place])
         density = conditions.air_density(None if waypoints.amsl_m is None else float(waypoints.amsl_m[place]))
         low_m = min(tops_m[number], agl_m)
-        air = conditions.wind_table, density, own, table
-        touching, lifting = landing_taken(agl_m + low_m, *air), take_off_taken(agl_m + low_m, *air)  # half way between the two
+        touching, lifting = (
+            landing_taken(agl_m + low_m, density, air),
+            take_off_taken(agl_m + low_m, density, air),
+        )  # half way between the two
         for way, start_m, end_m, besides in ((down, agl_m, low_m, touching), (up, low_m, agl_m, lifting)):
-            seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, *air)
+            seconds, joules = leg_taken(0.0, 0.0, 0.0, start_m, end_m, end_m - start_m, density, air)
             way[number] = seconds + besides[0], (joules + besides[1]) / J_PER_WH
     return down, up
 

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.paths.along_paths import Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along
-from inspection.network.paths.contracted_graph import NumberArray
+from inspection.network.paths.along_paths import PathSteps, Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along
+from inspection.network.paths.contracted_graph import ContractedGraph, NumberArray
 from inspection.network.paths.hub_labels import IntArray
-from inspection.network.paths.paths import DIRECT, Travel
+from inspection.network.paths.paths import DIRECT, PathEnds, Travel
 from inspection.network.route_index import route_index
 from planning.energy.conditions import Conditions, air_density, wind_in_table
-from planning.energy.leg_cost import J_PER_WH, Speeds, is_closed, leg_taken, speeds, table_of, taken_in_wind
+from planning.energy.leg_cost import J_PER_WH, Air, is_closed, leg_taken, taken_in_wind
 from planning.energy.performance import Performance
 from planning.rules import FlightRules
 from planning.trajectory.heights import pass_agl_m
@@ -48,20 +48,6 @@ class NodeGround:
     node_m: FloatArray
     source_m: FloatArray
     sink_m: FloatArray
-
-
-class Air(NamedTuple):
-    """What is flown in, and how, as compiled code reads it."""
-
-    wind: FloatArray
-    temperature_c: float
-    own: Speeds
-    table: FloatArray
-
-    @classmethod
-    def of(cls, flying: FlightClass, conditions: Conditions, rules: FlightRules) -> "Air":
-        own = speeds(flying.performance, flying.cruise_speed_mps, rules)
-        return cls(conditions.wind_table, float(conditions.temperature_c), own, table_of(flying.performance, own.climb_mps))
 
 
 class GraphTaken(NamedTuple):
@@ -92,13 +78,9 @@ def graph_taken(
         if key in kept_of_graph:
             kept_of_graph.move_to_end(key)
             return kept_of_graph[key]
-    air = Air.of(flying, conditions, rules)
+    air = Air.of(flying.performance, flying.cruise_speed_mps, conditions, rules)
     passed_m = pass_agl_m(node_heights_m(graph, slice(None)), rules)
-    contracted, steps = route_index(graph).contracted, steps_of_graph(graph)
-    taken = _steps_taken(
-        contracted.chain_first, contracted.place_node, steps.length_m, steps.east, steps.north, passed_m, ground_m,
-        air.wind, air.temperature_c, air.own, air.table,
-    )  # fmt: skip
+    taken = _steps_taken(route_index(graph).contracted, steps_of_graph(graph), passed_m, ground_m, air)
     kept = GraphTaken(sums_along(graph, taken), air, passed_m, ground_m)
     with _one_thread:
         kept_of_graph[key] = kept
@@ -108,7 +90,10 @@ def graph_taken(
 
 
 class Bends(NamedTuple):
-    """As taken_on_ways has them."""
+    """bend (b, 3): lon, lat [deg] and height above ground of the bends of legs, from their place on.
+
+    Those of leg i begin at bend_first[i], where any has some. Direct ways with bends are numbered on after the legs: direct_number (s, t).
+    """
 
     bend: FloatArray
     bend_first: IntArray
@@ -145,20 +130,10 @@ def _rise_and_density(
 
 
 @njit(cache=True, nogil=True)
-def _steps_taken(
-    chain_first: NumberArray,
-    place_node: NumberArray,
-    length_m: FloatArray,
-    east: FloatArray,
-    north: FloatArray,
-    passed_m: FloatArray,
-    ground_m: FloatArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-) -> FloatArray:
+def _steps_taken(contracted: ContractedGraph, steps: PathSteps, passed_m: FloatArray, ground_m: FloatArray, air: Air) -> FloatArray:
     """Seconds and joules of the step to each place of a chain and of the step back, (p, 2, 2)."""
+    chain_first, place_node = contracted.chain_first, contracted.place_node
+    length_m, east, north, temperature_c = steps.length_m, steps.east, steps.north, air.temperature_c
     taken = np.zeros((len(place_node), 2, 2))
     is_known = len(ground_m) > 0
     density = air_density(0.0, temperature_c)
@@ -173,13 +148,13 @@ def _steps_taken(
             middle_m, is_level = 0.5 * (passed_m[before] + passed_m[node]), passed_m[before] == passed_m[node]
             if middle_m != wind_agl_m:
                 wind_agl_m = middle_m
-                east_mps, north_mps = wind_in_table(wind, middle_m)
+                east_mps, north_mps = wind_in_table(air.wind, middle_m)
             for way in range(2):
                 sign = 1.0 - 2.0 * way
                 to_east, to_north = sign * east[place], sign * north[place]
                 # As leg_taken: most steps are level, and in the wind of the step before.
-                seconds, joules = taken_in_wind(length_m[place], to_east, to_north, sign * rise_m, east_mps, north_mps, density, own, table)
-                if not is_level and is_closed(True, to_east, to_north, passed_m[before], passed_m[node], wind, own):
+                seconds, joules = taken_in_wind(length_m[place], to_east, to_north, sign * rise_m, east_mps, north_mps, density, air)
+                if not is_level and is_closed(True, to_east, to_north, passed_m[before], passed_m[node], air):
                     seconds = joules = np.inf
                 taken[place, way, 0], taken[place, way, 1] = min(seconds, NO_HEADWAY), min(joules, NO_HEADWAY)
     return taken
@@ -187,34 +162,21 @@ def _steps_taken(
 
 @njit(cache=True, nogil=True)
 def taken_on_paths(
-    way: NumberArray,
-    entry_leg: NumberArray,
-    entry_label: IntArray,
-    leg_node: NumberArray,
-    node_chain: NumberArray,
-    node_place: NumberArray,
-    chain_first: NumberArray,
-    place_sum: FloatArray,
-    label_sum: FloatArray,
+    ends: PathEnds,
+    contracted: ContractedGraph,
     node_position: FloatArray,
-    passed_m: FloatArray,
-    node_ground_m: FloatArray,
+    graph: GraphTaken,
     source: FloatArray,
     sink: FloatArray,
-    bend: FloatArray,
-    bend_first: IntArray,
-    direct_number: NumberArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
+    bends: Bends,
 ) -> FloatArray:
     """Seconds and Wh of the way from each source to each sink, (2, s, t); inf where there is none, or the wind closes it.
 
     source (s, 4) and sink (t, 4): lon, lat [deg], the height above ground at which it is left or come to, and the ground above sea level
-    there, NaN where not known. bend (b, 3): lon, lat [deg] and height above ground of the bends of legs, from their place on; those of
-    leg i begin at bend_first[i], where any has some. Direct ways with bends are numbered on after the legs by direct_number (s, t).
+    there, NaN where not known.
     """
+    air, way, entry_leg, leg_node = graph.air, ends.way, ends.entry_leg, ends.leg_node
+    bend, bend_first, direct_number = bends.bend, bends.bend_first, bends.direct_number
     legs = len(leg_node)
     out, back = np.full((legs, 2), np.nan), np.full((legs, 2), np.nan)
     direct = np.full((len(source), len(sink), 2), np.inf)
@@ -227,20 +189,18 @@ def taken_on_paths(
                 if len(direct_number):
                     leg = direct_number[start, end]
                     over = none if leg < 0 else bend[bend_first[leg] : bend_first[leg + 1]]
-                direct[start, end, 0], direct[start, end, 1] = _over(source[start], over, sink[end], wind, temperature_c, own, table)
+                direct[start, end, 0], direct[start, end, 1] = _over(source[start], over, sink[end], air)
                 continue
             left, right = leg_of_way(way[start, end, 0], entry_leg), leg_of_way(way[start, end, 1], entry_leg)
             if left >= 0 and math.isnan(out[left, 0]):
-                _put_node(node_at, leg_node[left], node_position, passed_m, node_ground_m)
+                _put_node(node_at, leg_node[left], node_position, graph)
                 over = bend[bend_first[left] : bend_first[left + 1]] if len(bend) else none
-                out[left, 0], out[left, 1] = _over(source[start], over, node_at, wind, temperature_c, own, table)
+                out[left, 0], out[left, 1] = _over(source[start], over, node_at, air)
             if right >= 0 and math.isnan(back[right, 0]):
-                _put_node(node_at, leg_node[right], node_position, passed_m, node_ground_m)
+                _put_node(node_at, leg_node[right], node_position, graph)
                 over = bend[bend_first[right] : bend_first[right + 1]][::-1] if len(bend) else none[::-1]
-                back[right, 0], back[right, 1] = _over(node_at, over, sink[end], wind, temperature_c, own, table)
-    taken = quantities_of_pairs(
-        way, leg_node, entry_leg, entry_label, out, back, direct, place_sum, label_sum, node_chain, node_place, chain_first
-    )
+                back[right, 0], back[right, 1] = _over(node_at, over, sink[end], air)
+    taken = quantities_of_pairs(ends, out, back, direct, graph.sums, contracted)
     for start in range(len(source)):
         for end in range(len(sink)):
             if taken[0, start, end] >= NO_HEADWAY / 2.0 or taken[1, start, end] >= NO_HEADWAY / 2.0:
@@ -251,18 +211,16 @@ def taken_on_paths(
 
 
 @njit(cache=True, nogil=True)
-def _put_node(at: FloatArray, node: int, node_position: FloatArray, passed_m: FloatArray, node_ground_m: FloatArray) -> None:
-    at[0], at[1], at[2] = node_position[node, 0], node_position[node, 1], passed_m[node]
-    at[3] = node_ground_m[node] if len(node_ground_m) else np.nan
+def _put_node(at: FloatArray, node: int, node_position: FloatArray, graph: GraphTaken) -> None:
+    at[0], at[1], at[2] = node_position[node, 0], node_position[node, 1], graph.passed_m[node]
+    at[3] = graph.ground_m[node] if len(graph.ground_m) else np.nan
 
 
 @njit(cache=True, nogil=True)
-def _over(
-    start: FloatArray, bend: FloatArray, end: FloatArray, wind: FloatArray, temperature_c: float, own: Speeds, table: FloatArray
-) -> tuple[float, float]:
+def _over(start: FloatArray, bend: FloatArray, end: FloatArray, air: Air) -> tuple[float, float]:
     """Seconds and joules from place to place over bends, under which the ground is taken to be that of the start."""
     if len(bend) == 0:
-        return _straight(start, end, wind, temperature_c, own, table)
+        return _straight(start, end, air)
     seconds = joules = 0.0
     here, there = start.copy(), start.copy()
     for number in range(len(bend) + 1):
@@ -270,20 +228,18 @@ def _over(
             there[:3] = bend[number]
         else:
             there[:] = end
-        one_s, one_j = _straight(here, there, wind, temperature_c, own, table)
+        one_s, one_j = _straight(here, there, air)
         seconds, joules = seconds + one_s, joules + one_j
         here[:] = there
     return seconds, joules
 
 
 @njit(cache=True, nogil=True)
-def _straight(
-    start: FloatArray, end: FloatArray, wind: FloatArray, temperature_c: float, own: Speeds, table: FloatArray
-) -> tuple[float, float]:
+def _straight(start: FloatArray, end: FloatArray, air: Air) -> tuple[float, float]:
     """Seconds and joules of the straight leg between two places, each as in taken_on_ways."""
     east, north = short_vector_m(start[0], start[1], end[0], end[1])
     length_m = math.hypot(east, north)
     if length_m > 0.0:
         east, north = east / length_m, north / length_m
-    rise_m, density = _rise_and_density(start[2], start[3], end[2], end[3], temperature_c)
-    return leg_taken(length_m, east, north, start[2], end[2], rise_m, wind, density, own, table)
+    rise_m, density = _rise_and_density(start[2], start[3], end[2], end[3], air.temperature_c)
+    return leg_taken(length_m, east, north, start[2], end[2], rise_m, density, air)

@@ -321,9 +321,10 @@ class _Look:
 
 def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
     """The number of the component that each node is in, (n,)."""
-    node_chain, node_place, chain_tail, component = route_index(graph).component_arrays
-    core = np.where(node_chain == CORE, node_place, chain_tail[np.maximum(node_chain, 0)] if len(chain_tail) else node_place)
-    found: NDArray[np.int32] = component[core]
+    contracted, labels = route_index(graph).contracted, route_index(graph).labels
+    chain, place, tail = contracted.node_chain, contracted.node_place, contracted.chain_tail
+    core = np.where(chain == CORE, place, tail[np.maximum(chain, 0)] if len(tail) else place)
+    found: NDArray[np.int32] = labels.component[core]
     return found
 
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -11,12 +12,11 @@ from inspection.geodesy.local_frame import short_vector_m
 from planning.energy.conditions import Conditions, air_density, wind_in_table
 from planning.energy.leg_cost import (
     J_PER_WH,
+    Air,
     Speeds,
     hold_taken,
     is_closed,
     landing_taken,
-    speeds,
-    table_of,
     take_off_taken,
     taken_in_wind,
 )
@@ -71,24 +71,18 @@ def timing(
     hold_s = np.zeros(len(points))
     for place, task in points.task.items():
         hold_s[place] = task.hold_s
-    own = speeds(performance, cruise_speed_mps, rules)
-    wanted_mps = np.full(len(points) if points.speed_mps else 0, own.cruise_mps)
+    air = Air.of(performance, cruise_speed_mps, conditions, rules)
+    wanted_mps = np.full(len(points) if points.speed_mps else 0, air.own.cruise_mps)
     for place, speed_mps in points.speed_mps.items():
         wanted_mps[place] = speed_mps
     arrival_s, used_j, total_s, total_j, too_strong = _timing(
-        points.position,
-        points.agl_m,
-        waypoints.relative_m,
-        _NO_HEIGHTS if waypoints.amsl_m is None else waypoints.amsl_m,
+        _Flown(
+            points.position, points.agl_m, waypoints.relative_m, _NO_HEIGHTS if waypoints.amsl_m is None else waypoints.amsl_m, wanted_mps
+        ),
         hold_s,
-        wanted_mps,
-        conditions.wind_table,
-        float(conditions.temperature_c),
-        own,
-        table_of(performance, own.climb_mps),
+        air,
         lands,
-        rules.manoeuvres.acceleration_mps2,
-        rules.manoeuvres.corner_mps2,
+        (rules.manoeuvres.acceleration_mps2, rules.manoeuvres.corner_mps2),
     )
     if too_strong >= 0:
         raise NoHeadway(too_strong)
@@ -108,34 +102,35 @@ def timing(
 _NO_HEIGHTS = np.zeros(0)
 
 
+class _Flown(NamedTuple):
+    """Where waypoints lie: lon, lat [deg]; metres above ground, above take-off, and above sea level, empty where not known.
+
+    wanted_mps are speeds over ground to each waypoint, empty where all are as the UAV does.
+    """
+
+    position: FloatArray
+    agl_m: FloatArray
+    relative_m: FloatArray
+    amsl_m: FloatArray
+    wanted_mps: FloatArray
+
+
 @njit(cache=True, nogil=True)
 def _timing(
-    position: FloatArray,
-    agl_m: FloatArray,
-    relative_m: FloatArray,
-    amsl_m: FloatArray,
-    hold_s: FloatArray,
-    wanted_mps: FloatArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-    lands: bool,
-    acceleration_mps2: float,
-    corner_mps2: float,
+    flown: _Flown, hold_s: FloatArray, air: Air, lands: bool, manoeuvres: tuple[float, float]
 ) -> tuple[FloatArray, FloatArray, float, float, int]:
     """Arrival and joules at each waypoint, both in total, and the first waypoint that the wind keeps the UAV from, -1 for none.
 
-    amsl_m is empty where not known, wanted_mps (speeds over ground to each waypoint) where all are as the UAV does.
+    manoeuvres: acceleration and speed round corners, as in `Manoeuvres`.
     """
-    count = len(position)
+    count, agl_m, own = len(flown.position), flown.agl_m, air.own
     arrival_s, used_j = np.empty(count), np.empty(count)
-    leg_m, leg_s, leg_j, density = _legs(position, agl_m, relative_m, amsl_m, wanted_mps, wind, temperature_c, own, table, lands)
+    leg_m, leg_s, leg_j, density = _legs(flown, air, lands)
     turning = np.zeros(len(leg_s))
     if count > 1 and np.isfinite(leg_s).all():
         is_stop = hold_s > 0.0
         is_stop[0], is_stop[-1] = True, is_stop[-1] or lands
-        turning[1:count] = turning_s(leg_m[1:count], leg_s[1:count], is_stop, own.brake_s, acceleration_mps2, corner_mps2)
+        turning[1:count] = turning_s(leg_m[1:count], leg_s[1:count], is_stop, own.brake_s, manoeuvres[0], manoeuvres[1])
     now_s = now_j = 0.0
     for place in range(len(leg_s)):
         now_s, now_j = now_s + leg_s[place], now_j + leg_j[place]
@@ -143,19 +138,19 @@ def _timing(
         if place < count and hold_s[place] > 0.0:
             beside_s += own.brake_s
         if place == 0:
-            seconds, joules = take_off_taken(agl_m[0], wind, density[0], own, table)
+            seconds, joules = take_off_taken(agl_m[0], density[0], air)
             now_s, now_j = now_s + seconds, now_j + joules
         if beside_s > 0.0:
-            seconds, joules = hold_taken(beside_s, agl_m[place], wind, density[place], own, table)
+            seconds, joules = hold_taken(beside_s, agl_m[place], density[place], air)
             now_s, now_j = now_s + seconds, now_j + joules
         if place < count:
             arrival_s[place], used_j[place] = now_s, now_j
             if hold_s[place] > 0.0:
                 stays_s = own.settle_s + hold_s[place] + own.brake_s
-                seconds, joules = hold_taken(stays_s, agl_m[place], wind, density[place], own, table)
+                seconds, joules = hold_taken(stays_s, agl_m[place], density[place], air)
                 now_s, now_j = now_s + seconds, now_j + joules
         else:
-            seconds, joules = landing_taken(agl_m[count - 1], wind, density[place], own, table)
+            seconds, joules = landing_taken(agl_m[count - 1], density[place], air)
             now_s, now_j = now_s + seconds, now_j + joules
         if math.isinf(now_s):
             return arrival_s, used_j, now_s, now_j, min(place, count - 1)
@@ -163,27 +158,17 @@ def _timing(
 
 
 @njit(cache=True, nogil=True)
-def _legs(
-    position: FloatArray,
-    agl_m: FloatArray,
-    relative_m: FloatArray,
-    amsl_m: FloatArray,
-    wanted_mps: FloatArray,
-    wind: FloatArray,
-    temperature_c: float,
-    own: Speeds,
-    table: FloatArray,
-    lands: bool,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+def _legs(flown: _Flown, air: Air, lands: bool) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Metres to east, north and up, seconds and joules of the leg to each waypoint, and the air's density there.
 
     The first leg leads up from the ground; with `lands` there is one more, down to it.
     """
-    count = len(position)
+    position, agl_m, relative_m, amsl_m = flown.position, flown.agl_m, flown.relative_m, flown.amsl_m
+    count, own = len(position), air.own
     legs = count + 1 if lands and count else count
     leg_m, leg_s, leg_j, density = np.zeros((legs, 3)), np.empty(legs), np.empty(legs), np.empty(legs)
-    density_amsl_m, here = 0.0, air_density(0.0, temperature_c)
-    wind_agl_m, wind_here = (0.0, 0.0), wind_in_table(wind, 0.0)
+    density_amsl_m, here = 0.0, air_density(0.0, air.temperature_c)
+    wind_agl_m, wind_here = (0.0, 0.0), wind_in_table(air.wind, 0.0)
     for place in range(legs):
         length_m = east = north = 0.0
         before_m, after_m = agl_m[place - 1] if place > 0 else 0.0, agl_m[place] if place < count else 0.0
@@ -195,19 +180,20 @@ def _legs(
             length_m = math.sqrt(east * east + north * north)
             if length_m > 0.0:
                 east, north = east / length_m, north / length_m
-        if len(table) > 0 and len(amsl_m) > 0 and abs(amsl_m[min(place, count - 1)] - density_amsl_m) > SAME_AIR_M:
+        if len(air.table) > 0 and len(amsl_m) > 0 and abs(amsl_m[min(place, count - 1)] - density_amsl_m) > SAME_AIR_M:
             density_amsl_m = amsl_m[min(place, count - 1)]
-            here = air_density(density_amsl_m, temperature_c)
+            here = air_density(density_amsl_m, air.temperature_c)
         if before_m != wind_agl_m[0] or after_m != wind_agl_m[1]:
-            wind_agl_m, wind_here = (before_m, after_m), wind_in_table(wind, 0.5 * (before_m + after_m))
-        flown = own
-        if place < len(wanted_mps):
-            flown = Speeds(
-                wanted_mps[place], own.limit_mps, own.climb_mps, own.descent_mps, own.brake_s, own.settle_s, own.lift_s, own.touch_s
+            wind_agl_m, wind_here = (before_m, after_m), wind_in_table(air.wind, 0.5 * (before_m + after_m))
+        on_leg = air
+        if place < len(flown.wanted_mps):
+            wanted = Speeds(
+                flown.wanted_mps[place], own.limit_mps, own.climb_mps, own.descent_mps, own.brake_s, own.settle_s, own.lift_s, own.touch_s
             )
+            on_leg = Air(air.wind, air.temperature_c, wanted, air.table)
         # As leg_taken: most legs are level, and in the wind of the leg before.
-        seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here[0], wind_here[1], here, flown, table)
-        if before_m != after_m and is_closed(length_m > 0.0, east, north, before_m, after_m, wind, flown):
+        seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here[0], wind_here[1], here, on_leg)
+        if before_m != after_m and is_closed(length_m > 0.0, east, north, before_m, after_m, on_leg):
             seconds = joules = np.inf
         leg_s[place], leg_j[place], density[place] = seconds, joules, here
     return leg_m, leg_s, leg_j, density

@@ -1,5 +1,7 @@
 """How a position that is not on the graph gets onto it: legs that are clear of zones."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -9,9 +11,9 @@ from inspection.geodesy.wgs84 import short_distance_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachments, joined
 from inspection.network.nearness import chord
-from inspection.network.paths.contracted_graph import CORE, FloatArray, NumberArray
-from inspection.network.paths.hub_labels import IntArray
-from inspection.network.paths.node_tree import around_in_tree, nearest_in_tree, point_on_sphere
+from inspection.network.paths.contracted_graph import CORE, ContractedGraph, FloatArray, NumberArray
+from inspection.network.paths.hub_labels import HubLabels, IntArray
+from inspection.network.paths.node_tree import NodeTree, around_in_tree, nearest_in_tree, point_on_sphere
 from inspection.network.route_index import node_tree, route_index
 from inspection.network.rules import FlownHeights, asset_heights_m
 from inspection.network.zones.zone_detours import Errand, ways_round
@@ -41,8 +43,8 @@ def clear_legs(
     the factor. With heights a zone counts where its band has a height between the pass heights of the leg's ends; height_m is that of
     the asset at the position, None where it is not known.
     """
-    tree, index = node_tree(graph).arrays, route_index(graph)
-    reach = float(position.lon), float(position.lat), float(radius_m), chord(float(radius_m))
+    tree, index = node_tree(graph), route_index(graph)
+    around = Around(float(position.lon), float(position.lat), float(radius_m), chord(float(radius_m)))
     behind: list[NumberArray] = []
 
     def clear(node: NumberArray) -> slice | NDArray[np.bool_]:
@@ -57,7 +59,7 @@ def clear_legs(
     legs: list[Attachments] = []
     missing, tried, asked = want, 0, 2 * want
     while missing > 0 and tried < graph.node_count:
-        node, length_m, found = _nearest_legs(*reach, tried, min(asked, graph.node_count), graph.position, *tree)
+        node, length_m, found = _nearest_legs(around, tried, min(asked, graph.node_count), graph.position, tree)
         is_clear = clear(node)
         node, length_m = node[is_clear][:missing], length_m[is_clear][:missing]
         legs.append(Attachments(node, length_m, length_m * factor))
@@ -68,7 +70,7 @@ def clear_legs(
     wanted = [np.concatenate(behind)[:MAX_ROUND]] if behind else []
     if index.component_count >= 2:
         served = joined(legs).node
-        node, length_m, component = _legs_elsewhere(*reach, served, index.component_count, *index.component_arrays, graph.position, *tree)
+        node, length_m, component = _legs_elsewhere(around, served, index.contracted, index.labels, graph.position, tree)
         if len(node):
             is_clear = clear(node)
             _, first = np.unique(component[is_clear], return_index=True)
@@ -126,69 +128,54 @@ def _legs_round(
     return Attachments(nodes[there_is], length_m, length_m * factor, tuple(way.bend for way in ways))
 
 
+class Around(NamedTuple):
+    """A position, how long legs from it may be, and the same as a chord on the unit sphere."""
+
+    lon: float
+    lat: float
+    radius_m: float
+    chord: float
+
+
 @njit(cache=True, nogil=True)
-def _nearest_legs(
-    lon: float,
-    lat: float,
-    radius_m: float,
-    within: float,
-    tried: int,
-    asked: int,
-    position: FloatArray,
-    order: NumberArray,
-    point: FloatArray,
-    axis: NDArray[np.uint8],
-) -> tuple[NumberArray, FloatArray, int]:
-    """Legs to the `asked` nearest nodes but those tried before, the shortest first, and how many nodes there are in the chord `within`."""
-    nodes = nearest_in_tree(point_on_sphere(lon, lat), asked, within * within, order, point, axis)
-    node, length_m = _legs_to(nodes[tried:], lon, lat, radius_m, position)
+def _nearest_legs(around: Around, tried: int, asked: int, position: FloatArray, tree: NodeTree) -> tuple[NumberArray, FloatArray, int]:
+    """Legs to the `asked` nearest nodes but those tried before, the shortest first, and how many nodes there are within the chord."""
+    nodes = nearest_in_tree(point_on_sphere(around.lon, around.lat), asked, around.chord * around.chord, tree)
+    node, length_m = _legs_to(nodes[tried:], around, position)
     return node, length_m, len(nodes)
 
 
 @njit(cache=True, nogil=True)
 def _legs_elsewhere(
-    lon: float,
-    lat: float,
-    radius_m: float,
-    within: float,
-    served: NumberArray,
-    component_count: int,
-    node_chain: NumberArray,
-    node_place: NumberArray,
-    chain_tail: NumberArray,
-    component: NumberArray,
-    position: FloatArray,
-    order: NumberArray,
-    point: FloatArray,
-    axis: NDArray[np.uint8],
+    around: Around, served: NumberArray, contracted: ContractedGraph, labels: HubLabels, position: FloatArray, tree: NodeTree
 ) -> tuple[NumberArray, FloatArray, IntArray]:
     """Legs to all nodes within the radius that share no component with the nodes served, the shortest first, and those components."""
-    is_served = np.zeros(component_count, dtype=np.bool_)
+    is_served = np.zeros(labels.component.max() + 1, dtype=np.bool_)
     for node in served:
-        is_served[_component_of(node, node_chain, node_place, chain_tail, component)] = True
-    nodes = around_in_tree(point_on_sphere(lon, lat), within * within, order, point, axis)
+        is_served[_component_of(node, contracted, labels)] = True
+    nodes = around_in_tree(point_on_sphere(around.lon, around.lat), around.chord * around.chord, tree)
     count = 0
     for node in nodes:
-        if not is_served[_component_of(node, node_chain, node_place, chain_tail, component)]:
+        if not is_served[_component_of(node, contracted, labels)]:
             nodes[count] = node
             count += 1
-    cut_off, length_m = _legs_to(nodes[:count], lon, lat, radius_m, position)
+    cut_off, length_m = _legs_to(nodes[:count], around, position)
     components = np.empty(len(cut_off), dtype=np.int64)
     for leg in range(len(cut_off)):
-        components[leg] = _component_of(cut_off[leg], node_chain, node_place, chain_tail, component)
+        components[leg] = _component_of(cut_off[leg], contracted, labels)
     return cut_off, length_m, components
 
 
 @njit(cache=True, nogil=True)
-def _legs_to(nodes: IntArray, lon: float, lat: float, radius_m: float, position: FloatArray) -> tuple[NumberArray, FloatArray]:
+def _legs_to(nodes: IntArray, around: Around, position: FloatArray) -> tuple[NumberArray, FloatArray]:
     """Of these nodes those that a leg within the radius reaches on this side of the antimeridian, and its metres; the shortest first."""
     node = np.empty(len(nodes), dtype=np.int32)
     length_m = np.empty(len(nodes))
     count = 0
     for other in np.sort(nodes):
-        if abs(position[other, 0] - lon) <= 180.0:
-            metres = short_distance_m(lon, lat, position[other, 0], position[other, 1])
-            if metres <= radius_m:
+        if abs(position[other, 0] - around.lon) <= 180.0:
+            metres = short_distance_m(around.lon, around.lat, position[other, 0], position[other, 1])
+            if metres <= around.radius_m:
                 node[count], length_m[count] = other, metres
                 count += 1
     by_length = np.argsort(length_m[:count], kind="mergesort")
@@ -196,7 +183,7 @@ def _legs_to(nodes: IntArray, lon: float, lat: float, radius_m: float, position:
 
 
 @njit(cache=True, nogil=True)
-def _component_of(node: int, node_chain: NumberArray, node_place: NumberArray, chain_tail: NumberArray, component: NumberArray) -> int:
-    chain = node_chain[node]
-    number: int = component[node_place[node] if chain == CORE else chain_tail[chain]]
+def _component_of(node: int, contracted: ContractedGraph, labels: HubLabels) -> int:
+    chain = contracted.node_chain[node]
+    number: int = labels.component[contracted.node_place[node] if chain == CORE else contracted.chain_tail[chain]]
     return number

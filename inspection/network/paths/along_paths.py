@@ -5,6 +5,7 @@ with each hub label, so that no way is walked. Each quantity of each direction i
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,14 +13,13 @@ from numba import njit
 from inspection.geodesy.local_frame import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import NO_BENDS
-from inspection.network.paths.contracted_graph import FloatArray, NumberArray
-from inspection.network.paths.hub_labels import IntArray
-from inspection.network.paths.paths import ALONG_CHAIN, DIRECT, NO_WAY, Travel
-from inspection.network.route_index import OncePerGraph, RouteIndex, route_index
+from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray
+from inspection.network.paths.hub_labels import HubLabels, IntArray, entry_at
+from inspection.network.paths.paths import ALONG_CHAIN, DIRECT, NO_WAY, PathEnds, Travel
+from inspection.network.route_index import OncePerGraph, route_index
 
 
-@dataclass(frozen=True, eq=False)
-class PathSteps:
+class PathSteps(NamedTuple):
     """Each place of a chain and the step to it from the place before; the first place of a chain has none. p places, e label entries.
 
     length_m     float64 (p,)  metres of the step
@@ -35,8 +35,7 @@ class PathSteps:
     turn: IntArray
 
 
-@dataclass(frozen=True, eq=False)
-class Sums:
+class Sums(NamedTuple):
     """q quantities along chains and along label entries.
 
     place  float64 (p, 2, q)  from the chain's first place to this one, and from this one back to it
@@ -54,10 +53,8 @@ class Sums:
 def _steps(graph: InspectionGraph) -> PathSteps:
     index = route_index(graph)
     contracted, labels = index.contracted, index.labels
-    next_entry, turn = _entries_in_turn(
-        contracted.chain_tail, contracted.chain_head, labels.label_first, labels.label_hub, labels.label_chain
-    )
-    length_m, east, north = _directions(contracted.chain_first, contracted.place_node, contracted.place_m, graph.position)
+    next_entry, turn = _entries_in_turn(contracted, labels)
+    length_m, east, north = _directions(contracted, graph.position)
     return PathSteps(length_m, east, north, next_entry, turn)
 
 
@@ -66,12 +63,8 @@ steps_of_graph = OncePerGraph(_steps)
 
 def sums_along(graph: InspectionGraph, taken: FloatArray) -> Sums:
     """taken (p, 2, q): what the step to each place of a chain takes, and the step back; 0 at a chain's first place. Summed in place."""
-    contracted, labels = route_index(graph).contracted, route_index(graph).labels
-    steps = steps_of_graph(graph)
-    label = _sums(
-        taken, contracted.chain_first, contracted.chain_tail, labels.label_first, labels.label_chain, steps.next_entry, steps.turn
-    )
-    return Sums(taken, label)
+    index = route_index(graph)
+    return Sums(taken, _sums(taken, index.contracted, index.labels, steps_of_graph(graph)))
 
 
 def quantities_of_ways(travel: Travel, sums: Sums, out: FloatArray, back: FloatArray, direct: FloatArray) -> FloatArray:
@@ -80,10 +73,7 @@ def quantities_of_ways(travel: Travel, sums: Sums, out: FloatArray, back: FloatA
     out (legs, q) and back (legs, q): the legs of Travel.leg_node flown to the node and from it; only those need be right that ways
     take (see `ends_of_ways`). direct (s, t, q): straight from source to sink, where the way is direct.
     """
-    return quantities_of_pairs(
-        travel.way, travel.leg_node, travel.entry_leg, travel.entry_label, out, back, direct, sums.place, sums.label,
-        *chain_arrays(travel.index),
-    )  # fmt: skip
+    return quantities_of_pairs(travel.ends, out, back, direct, sums, travel.index.contracted)
 
 
 @njit(cache=True, nogil=True)
@@ -94,16 +84,9 @@ def leg_of_way(end: int, entry_leg: NumberArray) -> int:
     return entry_leg[end] // 2 if end >= 0 else -1
 
 
-def chain_arrays(index: RouteIndex) -> tuple[NumberArray, NumberArray, NumberArray]:
-    """In the order in which the compiled sums take them."""
-    contracted = index.contracted
-    return contracted.node_chain, contracted.node_place, contracted.chain_first
-
-
 @njit(cache=True, nogil=True)
-def _directions(
-    chain_first: NumberArray, place_node: NumberArray, place_m: FloatArray, position: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _directions(contracted: ContractedGraph, position: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    chain_first, place_node, place_m = contracted.chain_first, contracted.place_node, contracted.place_m
     places = len(place_node)
     length_m, east, north = np.zeros(places), np.zeros(places), np.zeros(places)
     for chain in range(len(chain_first) - 1):
@@ -118,9 +101,9 @@ def _directions(
 
 
 @njit(cache=True, nogil=True)
-def _entries_in_turn(
-    chain_tail: NumberArray, chain_head: NumberArray, label_first: IntArray, label_hub: NumberArray, label_chain: NumberArray
-) -> tuple[IntArray, IntArray]:
+def _entries_in_turn(contracted: ContractedGraph, labels: HubLabels) -> tuple[IntArray, IntArray]:
+    chain_tail, chain_head = contracted.chain_tail, contracted.chain_head
+    label_first, label_hub, label_chain = labels.label_first, labels.label_hub, labels.label_chain
     entries = len(label_hub)
     next_entry = np.full(entries, -1, dtype=np.int64)
     for core in range(len(label_first) - 1):
@@ -129,14 +112,7 @@ def _entries_in_turn(
             if chain < 0:
                 continue
             other = chain_head[chain] if chain_tail[chain] == core else chain_tail[chain]
-            low, high = label_first[other], label_first[other + 1]
-            while low < high:
-                middle = (low + high) // 2
-                if label_hub[middle] < label_hub[entry]:
-                    low = middle + 1
-                else:
-                    high = middle
-            next_entry[entry] = low
+            next_entry[entry] = entry_at(labels, other, label_hub[entry])
     turn = np.empty(entries, dtype=np.int64)
     is_placed = np.zeros(entries, dtype=np.bool_)
     waiting = np.empty(max(len(label_first), 1), dtype=np.int64)  # a way passes no node twice
@@ -155,15 +131,9 @@ def _entries_in_turn(
 
 
 @njit(cache=True, nogil=True)
-def _sums(
-    taken: FloatArray,
-    chain_first: NumberArray,
-    chain_tail: NumberArray,
-    label_first: IntArray,
-    label_chain: NumberArray,
-    next_entry: IntArray,
-    turn: IntArray,
-) -> FloatArray:
+def _sums(taken: FloatArray, contracted: ContractedGraph, labels: HubLabels, steps: PathSteps) -> FloatArray:
+    chain_first, chain_tail = contracted.chain_first, contracted.chain_tail
+    label_first, label_chain, next_entry = labels.label_first, labels.label_chain, steps.next_entry
     quantities = taken.shape[2]
     for chain in range(len(chain_first) - 1):
         for place in range(chain_first[chain] + 1, chain_first[chain + 1]):
@@ -174,7 +144,7 @@ def _sums(
     for core in range(len(label_first) - 1):
         core_of[label_first[core] : label_first[core + 1]] = core
     label = np.zeros((len(label_chain), 2, quantities))
-    for entry in turn:
+    for entry in steps.turn:
         chain = label_chain[entry]
         if chain < 0:
             continue
@@ -188,20 +158,12 @@ def _sums(
 
 @njit(cache=True, nogil=True)
 def quantities_of_pairs(
-    way: NumberArray,
-    leg_node: NumberArray,
-    entry_leg: NumberArray,
-    entry_label: IntArray,
-    out: FloatArray,
-    back: FloatArray,
-    direct: FloatArray,
-    place_sum: FloatArray,
-    label_sum: FloatArray,
-    node_chain: NumberArray,
-    node_place: NumberArray,
-    chain_first: NumberArray,
+    ends: PathEnds, out: FloatArray, back: FloatArray, direct: FloatArray, sums: Sums, contracted: ContractedGraph
 ) -> FloatArray:
     """As quantities_of_ways, for compiled code."""
+    way, leg_node, entry_leg, entry_label = ends.way, ends.leg_node, ends.entry_leg, ends.entry_label
+    place_sum, label_sum = sums.place, sums.label
+    node_chain, node_place, chain_first = contracted.node_chain, contracted.node_place, contracted.chain_first
     sources, sinks = way.shape[0], way.shape[1]
     quantities = place_sum.shape[2]
     taken = np.full((quantities, sources, sinks), np.inf)

@@ -1,6 +1,6 @@
 """Where on a graph each asset is: the node that stands for a tower or bridge, the edges of a line or railway."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,8 +9,7 @@ from inspection.network.paths.contracted_graph import NumberArray
 from inspection.network.paths.hub_labels import IntArray
 
 
-@dataclass(frozen=True, eq=False)
-class AssetPlaces:
+class AssetPlaces(NamedTuple):
     """Sorted by the assets' primary keys.
 
     single_asset  int64 (s,)  towers and bridges

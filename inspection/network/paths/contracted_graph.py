@@ -4,8 +4,7 @@ In graphs of power lines 90 to 98 % of the nodes have two neighbours. A chain ke
 length from its first node on, so that the way from any node on it to either end, or to another node on it, is a subtraction.
 """
 
-from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,8 +16,7 @@ NumberArray = NDArray[np.int32]
 CORE = -1  # in place of a chain's number, for a node of the core
 
 
-@dataclass(frozen=True, eq=False)
-class ContractedGraph:
+class ContractedGraph(NamedTuple):
     """k core nodes and c chains; p places on chains, both ends of each included; n nodes.
 
     core_node     int32 (k,)      the graph's number of each core node
@@ -75,7 +73,7 @@ def contract_columns(
     for array in arrays:
         array.setflags(write=False)
     contracted = ContractedGraph(*arrays)
-    return replace(contracted, place_m=contracted.place_cost) if is_cost_length else contracted
+    return contracted._replace(place_m=contracted.place_cost) if is_cost_length else contracted
 
 
 def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:

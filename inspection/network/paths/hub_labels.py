@@ -5,8 +5,7 @@ the hubs of earlier searches know a way that is not worse. The order decides how
 and Werneck 2014, the next hub is the node that covers the most pairs of sampled trees of shortest ways that are not covered yet.
 """
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -24,8 +23,7 @@ SEED = 20_130_622  # of the sample; the same graph always gives the same labels
 IntArray = NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False)
-class HubLabels:
+class HubLabels(NamedTuple):
     """k core nodes, e entries; the entries of a node are sorted by hub.
 
     label_first  int64 (k + 1,)  where each core node's entries begin
@@ -58,6 +56,21 @@ def label(contracted: ContractedGraph) -> HubLabels:
     for array in arrays:
         array.setflags(write=False)
     return HubLabels(*arrays)
+
+
+@njit(cache=True, nogil=True)
+def entry_at(labels: HubLabels, core: int, hub: int) -> int:
+    """Return the entry of a core node that has this hub; there is one."""
+    label_hub = labels.label_hub
+    low: int = labels.label_first[core]
+    high: int = labels.label_first[core + 1]
+    while low < high:
+        middle = (low + high) // 2
+        if label_hub[middle] < hub:
+            low = middle + 1
+        else:
+            high = middle
+    return low
 
 
 @njit(cache=True, nogil=True)

@@ -1,6 +1,6 @@
 """The nodes of a graph by place: a balanced k-d tree in plain arrays, which processes share memory-mapped."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -14,8 +14,7 @@ from inspection.network.paths.hub_labels import IntArray
 LEAF = 12  # nodes of a leaf are looked at one by one
 
 
-@dataclass(frozen=True, eq=False)
-class NodeTree:
+class NodeTree(NamedTuple):
     """n nodes on the unit sphere (Bentley 1975). The middle of each range splits it; a range of LEAF nodes or fewer is a leaf.
 
     order  int32   (n,)    the graph's number of each node
@@ -27,24 +26,19 @@ class NodeTree:
     point: FloatArray
     axis: NDArray[np.uint8]
 
-    @property
-    def arrays(self) -> tuple[NumberArray, FloatArray, NDArray[np.uint8]]:
-        """In the order in which compiled searches take them."""
-        return self.order, self.point, self.axis
-
     def nearest(self, position: LonLat, count: int, within: float = np.inf) -> IntArray:
         """Up to `count` nodes nearest to a position, no farther than the chord `within` on the unit sphere, the nearest first."""
-        nodes: IntArray = nearest_in_tree(_point(position), count, float(within * within), *self.arrays)
+        nodes: IntArray = nearest_in_tree(_point(position), count, float(within * within), self)
         return nodes
 
     def around(self, position: LonLat, within: float) -> IntArray:
         """All nodes no farther from a position than the chord `within` on the unit sphere, sorted."""
-        nodes: IntArray = around_in_tree(_point(position), float(within * within), *self.arrays)
+        nodes: IntArray = around_in_tree(_point(position), float(within * within), self)
         return np.sort(nodes)
 
     def nearest_of_each(self, positions: FloatArray) -> tuple[IntArray, FloatArray]:
         """For each position (q, 2) the nearest node, and how far away it is as a chord on the unit sphere; the tree has nodes."""
-        node, chord = _nearest_of_each(on_unit_sphere(positions), *self.arrays)
+        node, chord = _nearest_of_each(on_unit_sphere(positions), self)
         return node, chord
 
 
@@ -150,10 +144,9 @@ def _build(lon: FloatArray, lat: FloatArray) -> tuple[NumberArray, FloatArray, N
 
 
 @njit(cache=True, nogil=True)
-def nearest_in_tree(
-    here: FloatArray, count: int, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]
-) -> IntArray:
+def nearest_in_tree(here: FloatArray, count: int, within_2: float, tree: NodeTree) -> IntArray:
     """Up to `count` nodes nearest to a point on the unit sphere, no farther than the root of within_2, the nearest first."""
+    order, point, axis = tree.order, tree.point, tree.axis
     best_2 = np.full(count, np.inf)
     best = np.full(count, -1, dtype=np.int64)
     ranges = np.empty((128, 2), dtype=np.int64)
@@ -190,8 +183,9 @@ def nearest_in_tree(
 
 
 @njit(cache=True, nogil=True)
-def around_in_tree(here: FloatArray, within_2: float, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> IntArray:
+def around_in_tree(here: FloatArray, within_2: float, tree: NodeTree) -> IntArray:
     """All nodes no farther from a point on the unit sphere than the root of within_2."""
+    order, point, axis = tree.order, tree.point, tree.axis
     nodes = np.empty(64, dtype=np.int64)
     found = 0
     ranges = np.empty((128, 2), dtype=np.int64)
@@ -222,7 +216,8 @@ def around_in_tree(here: FloatArray, within_2: float, order: NumberArray, point:
 
 
 @njit(cache=True, nogil=True)
-def _nearest_of_each(here: FloatArray, order: NumberArray, point: FloatArray, axis: NDArray[np.uint8]) -> tuple[IntArray, FloatArray]:
+def _nearest_of_each(here: FloatArray, tree: NodeTree) -> tuple[IntArray, FloatArray]:
+    order, point, axis = tree.order, tree.point, tree.axis
     node = np.empty(len(here), dtype=np.int64)
     chord = np.empty(len(here))
     ranges = np.empty((128, 2), dtype=np.int64)

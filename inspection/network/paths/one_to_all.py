@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -26,8 +27,7 @@ class OneToAllSearch:
     taken: FloatArray
 
 
-@dataclass(frozen=True, eq=False)
-class CoreGraph:
+class CoreGraph(NamedTuple):
     """The chains at each core node: those of node k are chain[first[k]:first[k + 1]]; a loop is there twice."""
 
     first: NumberArray
@@ -61,72 +61,68 @@ def search_from(
     taken = np.zeros((len(legs), 2, sums.shape[2])) if leg_taken is None else leg_taken
     if taken.shape != (len(legs), 2, sums.shape[2]):
         raise ValueError("leg_taken must have shape (legs, 2, quantities)")
-    return OneToAllSearch(
-        *_search_from(
-            contracted.core_node,
-            contracted.node_chain,
-            contracted.node_place,
-            contracted.chain_first,
-            contracted.chain_tail,
-            contracted.chain_head,
-            contracted.place_node,
-            contracted.place_cost,
-            contracted.place_m,
-            at_core.first,
-            at_core.chain,
-            np.asarray(legs.node, dtype=np.int32),
-            np.asarray(legs.cost, dtype=np.float64),
-            np.asarray(legs.length_m, dtype=np.float64),
-            taken,
-            sums,
-        )
-    )
+    node, cost = np.asarray(legs.node, dtype=np.int32), np.asarray(legs.cost, dtype=np.float64)
+    own_legs = TakenLegs(node, cost, np.asarray(legs.length_m, dtype=np.float64), taken)
+    return OneToAllSearch(*_search_from(contracted, at_core, own_legs, sums))
+
+
+class TakenLegs(NamedTuple):
+    """Legs from the place to nodes, and what they take there and back, (legs, 2, q)."""
+
+    node: NumberArray
+    cost: FloatArray
+    length_m: FloatArray
+    taken: FloatArray
 
 
 @njit(cache=True, nogil=True)
 def _search_from(
-    core_node: NumberArray,
-    node_chain: NumberArray,
-    node_place: NumberArray,
-    chain_first: NumberArray,
-    chain_tail: NumberArray,
-    chain_head: NumberArray,
-    place_node: NumberArray,
-    place_cost: FloatArray,
-    place_m: FloatArray,
-    core_first: NumberArray,
-    core_chain: NumberArray,
-    leg_node: NumberArray,
-    leg_cost: FloatArray,
-    leg_m: FloatArray,
-    leg_taken: FloatArray,
-    place_sum: FloatArray,
+    contracted: ContractedGraph, at_core: CoreGraph, legs: TakenLegs, place_sum: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    cores, quantities = len(core_node), place_sum.shape[2]
+    core_cost, core_m, core_taken = _search_core(contracted, at_core, legs, place_sum)
+    nodes = len(contracted.node_chain)
+    cost, length_m, taken = np.full(nodes, np.inf), np.full(nodes, np.inf), np.zeros((nodes, 2, place_sum.shape[2]))
+    for core in range(len(core_cost)):
+        node = contracted.core_node[core]
+        cost[node], length_m[node] = core_cost[core], core_m[core]
+        taken[node] = core_taken[core]
+    _fill_chains(contracted, (core_cost, core_m, core_taken), place_sum, cost, length_m, taken)
+    _fill_along_legs(contracted, legs, place_sum, cost, length_m, taken)
+    return cost, length_m, taken
+
+
+@njit(cache=True, nogil=True)
+def _search_core(
+    contracted: ContractedGraph, at_core: CoreGraph, legs: TakenLegs, place_sum: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Cost, metres and what is taken of each node of the core."""
+    chain_first, chain_tail, chain_head = contracted.chain_first, contracted.chain_tail, contracted.chain_head
+    place_cost, place_m, core_first, core_chain = contracted.place_cost, contracted.place_m, at_core.first, at_core.chain
+    cores, quantities = len(contracted.core_node), place_sum.shape[2]
     core_cost, core_m = np.full(cores, np.inf), np.full(cores, np.inf)
     core_taken = np.zeros((cores, 2, quantities))
     waiting = [(np.inf, np.int64(-1))]  # which says what is in it
     waiting.pop()
-    for leg in range(len(leg_node)):
-        chain, place = node_chain[leg_node[leg]], node_place[leg_node[leg]]
+    for leg in range(len(legs.node)):
+        chain, place = contracted.node_chain[legs.node[leg]], contracted.node_place[legs.node[leg]]
         if chain < 0:
-            if leg_cost[leg] < core_cost[place]:
-                core_cost[place], core_m[place] = leg_cost[leg], leg_m[leg]
-                core_taken[place] = leg_taken[leg]
-                heappush(waiting, (leg_cost[leg], np.int64(place)))
+            if legs.cost[leg] < core_cost[place]:
+                core_cost[place], core_m[place] = legs.cost[leg], legs.length_m[leg]
+                core_taken[place] = legs.taken[leg]
+                heappush(waiting, (legs.cost[leg], np.int64(place)))
             continue
         last = chain_first[chain + 1] - 1
         for end in range(2):
             core = chain_tail[chain] if end == 0 else chain_head[chain]
             on_chain = place_cost[place] if end == 0 else place_cost[last] - place_cost[place]
-            if leg_cost[leg] + on_chain < core_cost[core]:
-                core_cost[core] = leg_cost[leg] + on_chain
-                core_m[core] = leg_m[leg] + (place_m[place] if end == 0 else place_m[last] - place_m[place])
+            if legs.cost[leg] + on_chain < core_cost[core]:
+                core_cost[core] = legs.cost[leg] + on_chain
+                core_m[core] = legs.length_m[leg] + (place_m[place] if end == 0 else place_m[last] - place_m[place])
                 for quantity in range(quantities):
                     to_place, back = place_sum[place, 0, quantity], place_sum[place, 1, quantity]
                     onward, hither = place_sum[last, 0, quantity] - to_place, place_sum[last, 1, quantity] - back
-                    core_taken[core, 0, quantity] = leg_taken[leg, 0, quantity] + (back if end == 0 else onward)
-                    core_taken[core, 1, quantity] = leg_taken[leg, 1, quantity] + (to_place if end == 0 else hither)
+                    core_taken[core, 0, quantity] = legs.taken[leg, 0, quantity] + (back if end == 0 else onward)
+                    core_taken[core, 1, quantity] = legs.taken[leg, 1, quantity] + (to_place if end == 0 else hither)
                 heappush(waiting, (core_cost[core], np.int64(core)))
     while len(waiting) > 0:
         so_far, core = heappop(waiting)
@@ -144,15 +140,23 @@ def _search_from(
                     core_taken[other, 0, quantity] = core_taken[core, 0, quantity] + place_sum[last, there, quantity]
                     core_taken[other, 1, quantity] = core_taken[core, 1, quantity] + place_sum[last, 1 - there, quantity]
                 heappush(waiting, (core_cost[other], np.int64(other)))
+    return core_cost, core_m, core_taken
 
-    nodes = len(node_chain)
-    cost, length_m, taken = np.full(nodes, np.inf), np.full(nodes, np.inf), np.zeros((nodes, 2, quantities))
-    for core in range(cores):
-        node = core_node[core]
-        cost[node], length_m[node] = core_cost[core], core_m[core]
-        taken[node] = core_taken[core]
-    for chain in range(len(chain_tail)):
-        tail, head, last = chain_tail[chain], chain_head[chain], chain_first[chain + 1] - 1
+
+@njit(cache=True, nogil=True)
+def _fill_chains(
+    contracted: ContractedGraph,
+    of_core: tuple[FloatArray, FloatArray, FloatArray],
+    place_sum: FloatArray,
+    cost: FloatArray,
+    length_m: FloatArray,
+    taken: FloatArray,
+) -> None:
+    """Write nodes within chains, each from the end of its chain that costs less."""
+    core_cost, core_m, core_taken = of_core
+    chain_first, place_node, place_cost, place_m = contracted.chain_first, contracted.place_node, contracted.place_cost, contracted.place_m
+    for chain in range(len(contracted.chain_tail)):
+        tail, head, last = contracted.chain_tail[chain], contracted.chain_head[chain], chain_first[chain + 1] - 1
         if core_cost[tail] == np.inf and core_cost[head] == np.inf:
             continue
         for place in range(chain_first[chain] + 1, last):
@@ -161,26 +165,33 @@ def _search_from(
             if from_tail <= from_head:
                 cost[node], length_m[node] = from_tail, core_m[tail] + place_m[place]
                 for way in range(2):
-                    for quantity in range(quantities):
+                    for quantity in range(taken.shape[2]):
                         taken[node, way, quantity] = core_taken[tail, way, quantity] + place_sum[place, way, quantity]
             else:
                 cost[node], length_m[node] = from_head, core_m[head] + place_m[last] - place_m[place]
                 for way in range(2):
-                    for quantity in range(quantities):
+                    for quantity in range(taken.shape[2]):
                         along = place_sum[last, 1 - way, quantity] - place_sum[place, 1 - way, quantity]
                         taken[node, way, quantity] = core_taken[head, way, quantity] + along
-    for leg in range(len(leg_node)):
-        chain, here = node_chain[leg_node[leg]], node_place[leg_node[leg]]
+
+
+@njit(cache=True, nogil=True)
+def _fill_along_legs(
+    contracted: ContractedGraph, legs: TakenLegs, place_sum: FloatArray, cost: FloatArray, length_m: FloatArray, taken: FloatArray
+) -> None:
+    """Write nodes of the chains that legs meet, where the way along the chain costs less than by its ends."""
+    chain_first, place_cost, place_m = contracted.chain_first, contracted.place_cost, contracted.place_m
+    for leg in range(len(legs.node)):
+        chain, here = contracted.node_chain[legs.node[leg]], contracted.node_place[legs.node[leg]]
         if chain < 0:
             continue
         for place in range(chain_first[chain] + 1, chain_first[chain + 1] - 1):
-            node = place_node[place]
-            along_chain = leg_cost[leg] + abs(place_cost[place] - place_cost[here])
+            node = contracted.place_node[place]
+            along_chain = legs.cost[leg] + abs(place_cost[place] - place_cost[here])
             if along_chain < cost[node]:
-                cost[node], length_m[node] = along_chain, leg_m[leg] + abs(place_m[place] - place_m[here])
+                cost[node], length_m[node] = along_chain, legs.length_m[leg] + abs(place_m[place] - place_m[here])
                 direction = 0 if place >= here else 1
                 for way in range(2):
-                    for quantity in range(quantities):
+                    for quantity in range(taken.shape[2]):
                         along = abs(place_sum[place, (way + direction) % 2, quantity] - place_sum[here, (way + direction) % 2, quantity])
-                        taken[node, way, quantity] = leg_taken[leg, way, quantity] + along
-    return cost, length_m, taken
+                        taken[node, way, quantity] = legs.taken[leg, way, quantity] + along

@@ -10,7 +10,7 @@ from inspection.geodesy import path_length_m
 from missions.services.replanning.rest import Rest
 from operation.reasons import Reason, text_reason
 from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, hold_taken, speeds, table_of
+from planning.energy.leg_cost import J_PER_WH, Air, hold_taken
 from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
 from planning.request import EndAction, UavRequest, task_from_json
 from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
@@ -135,9 +135,9 @@ def _with_less(rest: Rest, performance: Performance, percent: float) -> Performa
 def _waiting_percent(rest: Rest, performance: Performance, conditions: Conditions, prefix: Sequence[RoutePoint]) -> float:
     if performance.battery_wh is None:
         return 0.0
-    own = speeds(performance, rest.route.mission_uav.cruise_speed_mps, settings.FLIGHT_RULES)
+    air = Air.of(performance, rest.route.mission_uav.cruise_speed_mps, conditions, settings.FLIGHT_RULES)
     density = air_density(0.0, float(conditions.temperature_c))
-    taken = hold_taken(WAIT_S, prefix[0].agl_m, conditions.wind_table, density, own, table_of(performance, own.climb_mps))
+    taken = hold_taken(WAIT_S, prefix[0].agl_m, density, air)
     return 100.0 * float(taken[1]) / J_PER_WH / performance.battery_wh
 
 

@@ -39,7 +39,7 @@ def test_beyond_their_room_the_sums_used_longest_ago_go_first(monkeypatch: pytes
 
 def test_sums_go_with_their_graph() -> None:
     graph = line_graph([at(0, 0), at(500, 0)], [45, 45])
-    sums = weakref.ref(graph_taken(graph, IRIS, WINDY, RULES, None).sums)
+    sums = weakref.ref(graph_taken(graph, IRIS, WINDY, RULES, None).sums.place)
     del graph
     gc.collect()
     assert sums() is None
