@@ -7,6 +7,7 @@ of the air through the disk.
 
 import math
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -42,19 +43,30 @@ def power_w(performance: Performance, *, airspeed_mps: float = 0.0, climb_mps: f
 
     A descent costs as much as level flight: what it saves is small beside the doubt of flying into one's own wake.
     """
-    return float(_power_w(float(airspeed_mps), float(climb_mps), float(air_density), *_figures(performance)))
+    return float(_power_w(float(airspeed_mps), float(climb_mps), float(air_density), _rotors(performance)))
 
 
 @lru_cache(maxsize=64)
 def power_table(performance: Performance, climb_mps: float) -> FloatArray:
     """Watts in level flight and climbing, (2, DENSITIES, AIRSPEEDS), as `watts` reads them."""
     table = np.empty((2, DENSITIES, AIRSPEEDS))
-    _fill(table, float(climb_mps), *_figures(performance))
+    _fill(table, float(climb_mps), _rotors(performance))
     return table
 
 
-def _figures(performance: Performance) -> tuple[float, ...]:
-    return (
+class Rotors(NamedTuple):
+    """What the power of a UAV follows from, as in Performance."""
+
+    weight_n: float
+    disk_m2: float
+    efficiency: float
+    avionics_w: float
+    drag_area_m2: float
+    rotor_drag: float
+
+
+def _rotors(performance: Performance) -> Rotors:
+    return Rotors(
         performance.weight_n,
         performance.rotor_disk_m2,
         performance.hover_efficiency,
@@ -103,39 +115,18 @@ def watts(table: FloatArray, phase: int, airspeed_mps: float, air_density: float
 
 
 @njit(cache=True, nogil=True)
-def _fill(
-    table: FloatArray,
-    climb_mps: float,
-    weight_n: float,
-    disk_m2: float,
-    efficiency: float,
-    avionics_w: float,
-    drag_area_m2: float,
-    rotor_drag: float,
-) -> None:
+def _fill(table: FloatArray, climb_mps: float, rotors: Rotors) -> None:
     for row in range(DENSITIES):
         air_density = MIN_DENSITY + DENSITY_STEP * row
         for column in range(AIRSPEEDS):
             airspeed_mps = AIRSPEED_STEP_MPS * column
             for phase in range(2):
-                climb = climb_mps if phase == CLIMBING else 0.0
-                table[phase, row, column] = _power_w(
-                    airspeed_mps, climb, air_density, weight_n, disk_m2, efficiency, avionics_w, drag_area_m2, rotor_drag
-                )
+                table[phase, row, column] = _power_w(airspeed_mps, climb_mps if phase == CLIMBING else 0.0, air_density, rotors)
 
 
 @njit(cache=True, nogil=True)
-def _power_w(
-    airspeed_mps: float,
-    climb_mps: float,
-    air_density: float,
-    weight_n: float,
-    disk_m2: float,
-    efficiency: float,
-    avionics_w: float,
-    drag_area_m2: float,
-    rotor_drag: float,
-) -> float:
+def _power_w(airspeed_mps: float, climb_mps: float, air_density: float, rotors: Rotors) -> float:
+    weight_n, disk_m2, efficiency, avionics_w, drag_area_m2, rotor_drag = rotors
     climb_mps = max(climb_mps, 0.0)
     total_mps = math.hypot(airspeed_mps, climb_mps)
     drag_of_speed = 0.5 * air_density * drag_area_m2 * total_mps  # times the speed along an axis: newtons along it

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, auto
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -27,8 +28,7 @@ class Classes:
     pilots: tuple[int, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Quantities:
+class Quantities(NamedTuple):
     """Several quantities, q of them, of all arcs of u UAVs in c classes and v visits; NO_WAY_M where there is no way.
 
     first (q, u, v) from each start; onward (q, c, v, v) from the row's visit; end (q, u, v) on to where the UAV ends; along (q, c, v) what
@@ -139,44 +139,41 @@ def _write(
     resources: Resources, rows: IntArray, classes: Classes, service: FloatArray, ready: FloatArray, found: Quantities, at: int
 ) -> None:
     """service (v,) and ready (u,) come on top of the amounts."""
-    _fill(
-        np.ascontiguousarray(resources.first), np.ascontiguousarray(resources.onward), np.ascontiguousarray(resources.end),
-        np.ascontiguousarray(resources.at_visit), ready if resources.ready is None else ready + resources.ready, service, rows,
-        classes.of_uav, at, found.first, found.onward, found.end, found.along,
-    )  # fmt: skip
+    arrays = (resources.first, resources.onward, resources.end, resources.at_visit)
+    first, onward, end, at_visit = (np.ascontiguousarray(array) for array in arrays)
+    own_ready = ready if resources.ready is None else ready + resources.ready
+    _fill(ResourceArrays(first, onward, end, at_visit, own_ready, service), rows, classes.of_uav, at, found)
+
+
+class ResourceArrays(NamedTuple):
+    """As in Resources, with what comes on top: ready (u,), service (v,)."""
+
+    first: FloatArray
+    onward: FloatArray
+    end: FloatArray
+    at_visit: FloatArray
+    ready: FloatArray
+    service: FloatArray
 
 
 @njit(cache=True, nogil=True)
-def _fill(
-    first: FloatArray,
-    onward: FloatArray,
-    end: FloatArray,
-    at_visit: FloatArray,
-    ready: FloatArray,
-    service: FloatArray,
-    rows: IntArray,
-    class_of: IntArray,
-    at: int,
-    all_first: FloatArray,
-    all_onward: FloatArray,
-    all_end: FloatArray,
-    all_along: FloatArray,
-) -> None:
+def _fill(resources: ResourceArrays, rows: IntArray, class_of: IntArray, at: int, found: Quantities) -> None:
     """One quantity; what is not a number is no way."""
+    first, onward, end, along = resources.first, resources.onward, resources.end, found.along
     uavs, visits = first.shape
     for number in range(len(rows)):
         for visit in range(visits):
-            all_along[at, number, visit] = at_visit[rows[number], visit] + service[visit]
+            along[at, number, visit] = resources.at_visit[rows[number], visit] + resources.service[visit]
         for other in range(visits):
             for visit in range(visits):
-                amount = onward[rows[number], other, visit] + all_along[at, number, visit]
-                all_onward[at, number, other, visit] = amount if amount < NO_PATH_M else NO_PATH_M
+                amount = onward[rows[number], other, visit] + along[at, number, visit]
+                found.onward[at, number, other, visit] = amount if amount < NO_PATH_M else NO_PATH_M
     for uav in range(uavs):
         for visit in range(visits):
-            amount = first[uav, visit] + all_along[at, class_of[uav], visit] + ready[uav]
-            all_first[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
+            amount = first[uav, visit] + along[at, class_of[uav], visit] + resources.ready[uav]
+            found.first[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
             amount = end[visit, uav]
-            all_end[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
+            found.end[at, uav, visit] = amount if amount < NO_PATH_M else NO_PATH_M
 
 
 @njit(cache=True, nogil=True)

@@ -1,13 +1,15 @@
 """The best plan of a small problem, proven, by dynamic programming over sets of targets."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
-from planning.solver.constrained_tours import Tours, limited_tours, settled_tours
+from planning.solver.constrained_tours import Limits, Tours, limited_tours, settled_tours
 from planning.solver.plan_state import ABSENT
 from planning.solver.problem_arrays import Arcs
-from planning.solver.tours import walk_back
+from planning.solver.tours import UavArcs, walk_back
 
 MAX_TARGETS = 12  # 4,096 sets and 531,441 pairs of a set and a part of it: about a millisecond per UAV
 
@@ -34,25 +36,14 @@ def proven_routes(arcs: Arcs) -> tuple[Routes, bool]:
         return ((),) * uavs, True
     if arcs.has_sorties:
         return _best_of_limited(arcs)
+    burden = arcs.burden
     is_settled, length, order = _best(
-        arcs.first_m,
-        arcs.onward_m,
-        arcs.end_m,
-        arcs.target,
-        arcs.service_s,
-        arcs.done,
-        arcs.limit_m,
-        arcs.speed_mps,
-        arcs.ready_s,
-        arcs.most,
-        arcs.allowed,
+        Matrices(arcs.first_m, arcs.onward_m, arcs.end_m),
+        Fleet(arcs.limit_m, arcs.speed_mps, arcs.ready_s, arcs.most, arcs.allowed, arcs.class_of),
+        Services(arcs.target, arcs.service_s, arcs.done),
+        Limited(burden.first, burden.onward, burden.end, burden.limit),
         arcs.weight,
         arcs.is_makespan,
-        arcs.class_of,
-        arcs.burden.first,
-        arcs.burden.onward,
-        arcs.burden.end,
-        arcs.burden.limit,
     )
     if not is_settled:
         return _best_of_limited(arcs)
@@ -136,35 +127,55 @@ def _parts(members: int, flown: int, single_m: FloatArray, shared_m: FloatArray,
     return parts
 
 
+class Matrices(NamedTuple):
+    """As in Arcs."""
+
+    first_m: FloatArray
+    onward_m: FloatArray
+    end_m: FloatArray
+
+
+class Fleet(NamedTuple):
+    """Of each UAV, as in Arcs."""
+
+    limit_m: FloatArray
+    speed_mps: FloatArray
+    ready_s: FloatArray
+    most: IntArray
+    allowed: BoolArray
+    class_of: IntArray
+
+
+class Services(NamedTuple):
+    """Of each visit, as in Arcs."""
+
+    target: IntArray
+    service_s: FloatArray
+    done: IntArray
+
+
+class Limited(NamedTuple):
+    """As in Burden."""
+
+    first: FloatArray
+    onward: FloatArray
+    end: FloatArray
+    limit: FloatArray
+
+
 @njit(cache=True, nogil=True)
 def _best(
-    first_m: FloatArray,
-    onward_m: FloatArray,
-    end_m: FloatArray,
-    target: IntArray,
-    service_s: FloatArray,
-    done: IntArray,
-    limit_m: FloatArray,
-    speed_mps: FloatArray,
-    ready_s: FloatArray,
-    most: IntArray,
-    allowed: BoolArray,
-    weight: FloatArray,
-    is_makespan: bool,
-    class_of: IntArray,
-    burden: FloatArray,
-    burden_onward: FloatArray,
-    burden_end: FloatArray,
-    burden_limit: FloatArray,
+    matrices: Matrices, fleet: Fleet, services: Services, more: Limited, weight: FloatArray, is_makespan: bool
 ) -> tuple[bool, IntArray, IntArray]:
     """Visits in order of each UAV (u, t), and how many they are (u,); False first if a set of targets is contested."""
+    first_m, end_m, target = matrices.first_m, matrices.end_m, services.target
     uavs, targets = len(first_m), len(weight)
     sets = 1 << targets
-    back_m = _turned(onward_m)
-    back = np.empty((len(onward_m), len(burden), len(target), len(target)))
-    for at in range(len(burden)):
-        back[:, at] = _turned(burden_onward[at])
-    kind = _kinds(first_m, end_m, limit_m, speed_mps, ready_s, most, allowed, class_of, burden, burden_end, burden_limit)
+    back_m = _turned(matrices.onward_m)
+    back = np.empty((len(back_m), len(more.limit), len(target), len(target)))
+    for at in range(len(more.limit)):
+        back[:, at] = _turned(more.onward[at])
+    kind = _kinds(matrices, fleet, more)
     kinds = kind.max() + 1
     reach_m = np.empty((kinds, sets, len(target)))
     length_m = np.empty((kinds, 1, sets))
@@ -172,27 +183,26 @@ def _best(
     is_contested = np.zeros(sets, dtype=np.bool_)
     order = np.empty((uavs, targets), dtype=np.int64)
     length = np.zeros(uavs, dtype=np.int64)
-    counts = _sums(done, target, targets)
-    services_s = _sums_s(service_s, target, targets)
+    counts = _sums(services.done, target, targets)
+    services_s = _sums_s(services.service_s, target, targets)
     for uav in range(uavs):
-        number, flying = kind[uav], class_of[uav]
+        number, flying = kind[uav], fleet.class_of[uav]
         if uav > 0 and number <= kind[:uav].max():
             continue
         own_m, own_s = length_m[number, 0], duration_s[number, 0]
-        if settled_tours(
-            first_m[uav], back_m[flying], end_m[uav], target, allowed[uav], limit_m[uav], most[uav], counts,
-            burden[:, uav].copy(), back[flying], burden_end[:, uav].copy(), burden_limit[:, uav].copy(),
-            reach_m[number], own_m, is_contested,
-        ):  # fmt: skip
+        arcs = UavArcs(first_m[uav], back_m[flying], end_m[uav], target, fleet.allowed[uav])
+        first, end, limit = more.first[:, uav].copy(), more.end[:, uav].copy(), more.limit[:, uav].copy()
+        limits = Limits(fleet.limit_m[uav], fleet.most[uav], counts, first, back[flying], end, limit)
+        if settled_tours(arcs, limits, reach_m[number], own_m, is_contested):
             return False, length, order
         for members in range(sets):
-            own_s[members] = own_m[members] / speed_mps[uav] + services_s[members] + ready_s[uav]
+            own_s[members] = own_m[members] / fleet.speed_mps[uav] + services_s[members] + fleet.ready_s[uav]
         own_s[0] = 0.0
 
     share, _ = _shared_out(kind, length_m, duration_s, _sums_s(weight, np.arange(targets), targets), targets, is_makespan)
     for uav in range(uavs):
-        own_back_m = back_m[class_of[uav]]
-        length[uav] = walk_back(share[uav], reach_m[kind[uav]], first_m[uav], own_back_m, end_m[uav], target, allowed[uav], order[uav])
+        arcs = UavArcs(first_m[uav], back_m[fleet.class_of[uav]], end_m[uav], target, fleet.allowed[uav])
+        length[uav] = walk_back(share[uav], reach_m[kind[uav]], arcs, order[uav])
     return True, length, order
 
 
@@ -257,37 +267,26 @@ def _choose(least: FloatArray, duration_s: FloatArray, most_s: float, own_m: Flo
 
 
 @njit(cache=True, nogil=True)
-def _kinds(
-    first_m: FloatArray,
-    end_m: FloatArray,
-    limit_m: FloatArray,
-    speed_mps: FloatArray,
-    ready_s: FloatArray,
-    most: IntArray,
-    allowed: BoolArray,
-    class_of: IntArray,
-    burden: FloatArray,
-    burden_end: FloatArray,
-    burden_limit: FloatArray,
-) -> IntArray:
+def _kinds(matrices: Matrices, fleet: Fleet, more: Limited) -> IntArray:
     """UAVs that are alike in everything have the same number."""
+    first_m, end_m = matrices.first_m, matrices.end_m
     kind = np.empty(len(first_m), dtype=np.int64)
     kinds = 0
     for uav in range(len(first_m)):
         kind[uav] = kinds
         for other in range(uav):
             if (
-                limit_m[uav] == limit_m[other]
-                and speed_mps[uav] == speed_mps[other]
-                and ready_s[uav] == ready_s[other]
-                and most[uav] == most[other]
-                and class_of[uav] == class_of[other]
+                fleet.limit_m[uav] == fleet.limit_m[other]
+                and fleet.speed_mps[uav] == fleet.speed_mps[other]
+                and fleet.ready_s[uav] == fleet.ready_s[other]
+                and fleet.most[uav] == fleet.most[other]
+                and fleet.class_of[uav] == fleet.class_of[other]
                 and np.array_equal(first_m[uav], first_m[other])
                 and np.array_equal(end_m[uav], end_m[other])
-                and np.array_equal(allowed[uav], allowed[other])
-                and np.array_equal(burden[:, uav], burden[:, other])
-                and np.array_equal(burden_end[:, uav], burden_end[:, other])
-                and np.array_equal(burden_limit[:, uav], burden_limit[:, other])
+                and np.array_equal(fleet.allowed[uav], fleet.allowed[other])
+                and np.array_equal(more.first[:, uav], more.first[:, other])
+                and np.array_equal(more.end[:, uav], more.end[:, other])
+                and np.array_equal(more.limit[:, uav], more.limit[:, other])
             ):
                 kind[uav] = kind[other]
                 break

@@ -144,28 +144,18 @@ def _next_blink(random: RandomState) -> int:
 def _price(problem: ProblemArrays, work: Workspace, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
     """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
     length_m, service_s = work.plan.length_m[uav], work.plan.service_s[uav] + work.beside_s[uav]
-    limit_m, speed_mps, added_s = problem.limit_m[uav], problem.speed_mps[uav], problem.service_s[visit] + work.opened_s[uav]
-    return _price_of(length_m, service_s, added_m, added_s, limit_m, speed_mps, problem.is_makespan, power, scale)
+    if length_m + added_m > problem.limit_m[uav] and not (length_m > NO_LIMIT_M and added_m < 0.0):
+        return math.inf
+    if not problem.is_makespan:
+        return added_m
+    speed_mps = problem.speed_mps[uav]
+    now_s = duration_s(length_m, speed_mps, service_s)
+    return _price_of(now_s, now_s + added_m / speed_mps + (problem.service_s[visit] + work.opened_s[uav]), power, scale)
 
 
 @njit(cache=True, nogil=True)
-def _price_of(
-    length_m: float,
-    work_s: float,
-    added_m: float,
-    service_s: float,
-    limit_m: float,
-    speed_mps: float,
-    is_makespan: bool,
-    power: int,
-    scale: float,
-) -> float:
-    if length_m + added_m > limit_m and not (length_m > NO_LIMIT_M and added_m < 0.0):
-        return math.inf
-    if not is_makespan:
-        return added_m
-    now_s = duration_s(length_m, speed_mps, work_s)
-    later_s = now_s + added_m / speed_mps + service_s
+def _price_of(now_s: float, later_s: float, power: int, scale: float) -> float:
+    """What it costs that a UAV flies until later."""
     return raised_to(later_s / scale, power) - raised_to(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
 
 

@@ -1,5 +1,7 @@
 """One UAV's shortest routes over every set of targets (Held and Karp 1962)."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 
@@ -7,17 +9,20 @@ from planning.problem import BoolArray, FloatArray, IntArray
 from planning.solver.cost_matrices import NO_PATH_M
 
 
+class UavArcs(NamedTuple):
+    """One UAV's arcs, as in Arcs: first_m (v,), back_m (v, v) to the row's visit, end_m (v,); target (v,), allowed (v,)."""
+
+    first_m: FloatArray
+    back_m: FloatArray
+    end_m: FloatArray
+    target: IntArray
+    allowed: BoolArray
+
+
 @njit(cache=True, nogil=True)
-def shortest_tours(
-    first_m: FloatArray,
-    back_m: FloatArray,
-    end_m: FloatArray,
-    target: IntArray,
-    allowed: BoolArray,
-    reach_m: FloatArray,
-    length_m: FloatArray,
-) -> None:
+def shortest_tours(arcs: UavArcs, reach_m: FloatArray, length_m: FloatArray) -> None:
     """Fill in one UAV's shortest routes: over a set, ending with a visit (sets, v), and over a set (sets,)."""
+    first_m, back_m, end_m, target, allowed = arcs
     visits = len(target)
     length_m[0] = 0.0
     reach_m[0] = np.inf
@@ -44,17 +49,9 @@ def shortest_tours(
 
 
 @njit(cache=True, nogil=True)
-def walk_back(
-    members: int,
-    reach_m: FloatArray,
-    first_m: FloatArray,
-    back_m: FloatArray,
-    end_m: FloatArray,
-    target: IntArray,
-    allowed: BoolArray,
-    order: IntArray,
-) -> int:
+def walk_back(members: int, reach_m: FloatArray, arcs: UavArcs, order: IntArray) -> int:
     """Write one UAV's shortest route over the set; returns how many visits it has."""
+    back_m, end_m, target = arcs.back_m, arcs.end_m, arcs.target
     if members == 0:
         return 0
     visits = len(target)

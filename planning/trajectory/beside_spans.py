@@ -40,14 +40,14 @@ def legs_beside(
     position (n, 2), level_m (n,), own, asset (n,): the target that is inspected at each point and what it lies on, NONE for none. With
     a clearance levels count from flat ground, and what they clear everywhere is left out; with inf all heights may be too high.
     """
-    return _legs_beside(position, level_m, own, asset, clearance_m, _columns(spans))
+    return _legs_beside(_Points(position, level_m, own, asset), clearance_m, _columns(spans))
 
 
 def points_beside(
     position: FloatArray, level_m: FloatArray, own: IntArray, asset: IntArray, clearance_m: float, spans: Spans
 ) -> tuple[IntArray, IntArray]:
     """The same for points over or under which the route goes straight up or down."""
-    return _points_beside(position, level_m, own, asset, clearance_m, _columns(spans))
+    return _points_beside(_Points(position, level_m, own, asset), clearance_m, _columns(spans))
 
 
 def stretches_too_low(
@@ -79,14 +79,12 @@ def _clipped(low: float, high: float, offset: float, slope: float, least: float,
 
 
 @njit(cache=True, nogil=True)
-def _within(
-    x: float, y: float, east: float, north: float, start_x: float, start_y: float, end_x: float, end_y: float, radius_m: float
-) -> tuple[float, float]:
-    """The shares of a leg from (x, y) by (east, north) that lie within the radius of a span; the first above the second for none."""
+def _within(east: float, north: float, start_x: float, start_y: float, end_x: float, end_y: float, radius_m: float) -> tuple[float, float]:
+    """The shares of a leg by (east, north) within the radius of a span, whose ends count from the leg's start; none: first above second."""
     first, last = 1.0, 0.0
     squared = east * east + north * north
     for side in range(2):  # within the radius of an end
-        off_x, off_y = (x - start_x, y - start_y) if side == 0 else (x - end_x, y - end_y)
+        off_x, off_y = (-start_x, -start_y) if side == 0 else (-end_x, -end_y)
         half_b, rest = east * off_x + north * off_y, off_x * off_x + off_y * off_y - radius_m * radius_m
         if squared == 0.0:
             if rest <= 0.0:
@@ -101,7 +99,7 @@ def _within(
     length = math.hypot(end_x - start_x, end_y - start_y)
     if length > 0.0:  # or beside it
         along_x, along_y = (end_x - start_x) / length, (end_y - start_y) / length
-        off_x, off_y = x - start_x, y - start_y
+        off_x, off_y = -start_x, -start_y
         low, high = _clipped(0.0, 1.0, off_x * along_x + off_y * along_y, east * along_x + north * along_y, 0.0, length)
         low, high = _clipped(low, high, off_y * along_x - off_x * along_y, north * along_x - east * along_y, -radius_m, radius_m)
         if low <= high:
@@ -122,7 +120,7 @@ def _is_own(
     for place in range(begin, end + 1):
         x, y = position[place, 0], position[place, 1]
         low, high = _within(
-            0.0, 0.0, 0.0, 0.0,
+            0.0, 0.0,
             (start[0] - x) * east_m, (start[1] - y) * METRES_PER_DEGREE_LAT, (stop[0] - x) * east_m, (stop[1] - y) * METRES_PER_DEGREE_LAT,
             AT_M,
         )  # fmt: skip
@@ -142,19 +140,19 @@ def _is_own(
     return False
 
 
+class _Points(NamedTuple):
+    """Waypoints: lon, lat [deg], height of each, the target that it is a point of and its asset, NONE for none."""
+
+    position: FloatArray
+    level_m: FloatArray
+    own: IntArray
+    asset: IntArray
+
+
 @njit(cache=True, nogil=True)
-def _beside(
-    begin: int,
-    end: int,
-    position: FloatArray,
-    level_m: FloatArray,
-    own: IntArray,
-    asset: IntArray,
-    clearance_m: float,
-    on: _Columns,
-    found: list[int],
-) -> None:
+def _beside(begin: int, end: int, points: _Points, clearance_m: float, on: _Columns, found: list[int]) -> None:
     """Puts the spans beside the leg between two points, or at one, behind those found."""
+    position, level_m, own, asset = points
     start, stop, low, step, shape = on.start, on.stop, on.low, on.step, on.shape
     lat = 0.5 * (position[begin, 1] + position[end, 1])
     east_m = _metres_east(lat)
@@ -182,7 +180,7 @@ def _beside(
                 if own_column != max(column, span_column) or own_row != max(row, span_row):
                     continue  # told of in another cell
                 share, until = _within(
-                    0.0, 0.0, by_x, by_y,
+                    by_x, by_y,
                     (start[span, 0] - x) * east_m, (start[span, 1] - y) * METRES_PER_DEGREE_LAT,
                     (stop[span, 0] - x) * east_m, (stop[span, 1] - y) * METRES_PER_DEGREE_LAT,
                     BESIDE_M,
@@ -198,44 +196,32 @@ def _beside(
 
 
 @njit(cache=True, nogil=True)
-def _legs_beside(
-    position: FloatArray,
-    level_m: FloatArray,
-    own: IntArray,
-    asset: IntArray,
-    clearance_m: float,
-    on: _Columns,
-) -> tuple[IntArray, IntArray]:
+def _legs_beside(points: _Points, clearance_m: float, on: _Columns) -> tuple[IntArray, IntArray]:
+    position = points.position
     legs, found = [0 for _ in range(0)], [0 for _ in range(0)]
     for leg in range(len(position) - 1):
         if position[leg, 0] == position[leg + 1, 0] and position[leg, 1] == position[leg + 1, 1]:
             continue
-        _beside(leg, leg + 1, position, level_m, own, asset, clearance_m, on, found)
+        _beside(leg, leg + 1, points, clearance_m, on, found)
         while len(legs) < len(found):
             legs.append(leg)
     return np.array(legs, dtype=np.int64), np.array(found, dtype=np.int64)
 
 
 @njit(cache=True, nogil=True)
-def _points_beside(
-    position: FloatArray,
-    level_m: FloatArray,
-    own: IntArray,
-    asset: IntArray,
-    clearance_m: float,
-    on: _Columns,
-) -> tuple[IntArray, IntArray]:
-    points, found = [0 for _ in range(0)], [0 for _ in range(0)]
+def _points_beside(points: _Points, clearance_m: float, on: _Columns) -> tuple[IntArray, IntArray]:
+    position = points.position
+    numbers, found = [0 for _ in range(0)], [0 for _ in range(0)]
     for point in range(len(position)):
         is_column = False
         for other in (point - 1, point + 1):
             if 0 <= other < len(position):
                 is_column = is_column or (position[point, 0] == position[other, 0] and position[point, 1] == position[other, 1])
         if is_column:
-            _beside(point, point, position, level_m, own, asset, clearance_m, on, found)
-        while len(points) < len(found):
-            points.append(point)
-    return np.array(points, dtype=np.int64), np.array(found, dtype=np.int64)
+            _beside(point, point, points, clearance_m, on, found)
+        while len(numbers) < len(found):
+            numbers.append(point)
+    return np.array(numbers, dtype=np.int64), np.array(found, dtype=np.int64)
 
 
 @njit(cache=True, nogil=True)
@@ -260,7 +246,7 @@ def _stretches_too_low(
         by_x, by_y = (position[there, 0] - x) * east_m, (position[there, 1] - y) * METRES_PER_DEGREE_LAT
         from_x, from_y = (start[own, 0] - x) * east_m, (start[own, 1] - y) * METRES_PER_DEGREE_LAT
         to_x, to_y = (stop[own, 0] - x) * east_m, (stop[own, 1] - y) * METRES_PER_DEGREE_LAT
-        first, last = _within(0.0, 0.0, by_x, by_y, from_x, from_y, to_x, to_y, BESIDE_M)
+        first, last = _within(by_x, by_y, from_x, from_y, to_x, to_y, BESIDE_M)
         if first > last:
             continue
         # Where on the span the nearest place to each share of the leg is: at `offset` plus share times `slope`, no farther than its ends.

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,8 +19,7 @@ SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
 SAME_HEIGHT_M = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
-class PassedNodes:
+class PassedNodes(NamedTuple):
     """Nodes of the graph and bends round zones on the ways of a route, one way after another.
 
     position float64 (n, 2), lon lat [deg]; agl_m float64 (n,), the height above ground at which each is passed; asset int64 (n,), NONE
@@ -59,67 +59,72 @@ def route_points(
         np.array([start, start if home is None else home], dtype=np.float64),
         home is not None,
         float(transit_agl_m),
-        ways.position,
-        ways.agl_m,
-        ways.asset,
-        ways.first,
-        np.array(stops, dtype=np.float64).reshape(-1, 2),
-        np.array([len(stop.positions) for stop in targets], dtype=np.int64),
-        np.array([stop.agl_m for stop in targets], dtype=np.float64),
-        np.array([NONE if stop.asset is None else stop.asset for stop in targets], dtype=np.int64),
-        np.array([stop.target for stop in targets], dtype=np.int64),
+        ways,
+        _Stops(
+            np.array(stops, dtype=np.float64).reshape(-1, 2),
+            np.array([len(stop.positions) for stop in targets], dtype=np.int64),
+            np.array([stop.agl_m for stop in targets], dtype=np.float64),
+            np.array([NONE if stop.asset is None else stop.asset for stop in targets], dtype=np.int64),
+            np.array([stop.target for stop in targets], dtype=np.int64),
+        ),
     )
     task = {place: stop.task for place, stop in zip(own.tolist(), targets, strict=True)}
     return RoutePoints(position, agl_m, kind, asset, target, task)
 
 
+class _Stops(NamedTuple):
+    """The points of targets one after another, and how many each has; its height, asset and number."""
+
+    position: FloatArray
+    points: IntArray
+    agl_m: FloatArray
+    asset: IntArray
+    target: IntArray
+
+
+class _Written(NamedTuple):
+    position: FloatArray
+    agl_m: FloatArray
+    asset: IntArray
+
+
 @njit(cache=True, nogil=True)
 def _route_points(
-    ends: FloatArray,
-    comes_home: bool,
-    transit_agl_m: float,
-    way_position: FloatArray,
-    way_agl_m: FloatArray,
-    way_asset: IntArray,
-    way_first: IntArray,
-    stop_position: FloatArray,
-    stop_count: IntArray,
-    stop_agl_m: FloatArray,
-    stop_asset: IntArray,
-    stop_target: IntArray,
+    ends: FloatArray, comes_home: bool, transit_agl_m: float, passed: PassedNodes, stops: _Stops
 ) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, IntArray]:
     """Columns as in RoutePoints, and the places of the targets' own points."""
     # a climb before each node, before each stop's entry, and before the end; the stops' own points; start and end
-    most = 2 * (len(way_position) + len(stop_count)) + len(stop_position) + 3
+    most = 2 * (len(passed.position) + len(stops.points)) + len(stops.position) + 3
     position, agl_m = np.empty((most, 2)), np.empty(most)
     kind, asset = np.full(most, PASS, dtype=np.int64), np.full(most, NONE, dtype=np.int64)
     target = np.full(most, NONE, dtype=np.int64)
-    own = np.empty(len(stop_count), dtype=np.int64)
+    own = np.empty(len(stops.points), dtype=np.int64)
+    written = _Written(position, agl_m, asset)
 
     position[0, 0], position[0, 1], agl_m[0], kind[0] = ends[0, 0], ends[0, 1], transit_agl_m, START
     at, stop = 1, 0
-    for number in range(len(stop_count)):
-        for node in range(way_first[number], way_first[number + 1]):
-            lon, lat = way_position[node, 0], way_position[node, 1]
-            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
-        lon, lat, low_m = stop_position[stop, 0], stop_position[stop, 1], stop_agl_m[number]
-        at = _pass(lon, lat, max(low_m, transit_agl_m), stop_asset[number], transit_agl_m, at, position, agl_m, asset)
+    for number in range(len(stops.points)):
+        for node in range(passed.first[number], passed.first[number + 1]):
+            lon, lat = passed.position[node, 0], passed.position[node, 1]
+            at = _pass(lon, lat, passed.agl_m[node], passed.asset[node], transit_agl_m, at, written)
+        lon, lat, low_m = stops.position[stop, 0], stops.position[stop, 1], stops.agl_m[number]
+        at = _pass(lon, lat, max(low_m, transit_agl_m), stops.asset[number], transit_agl_m, at, written)
         if kind[at - 1] == PASS and target[at - 1] == NONE and agl_m[at - 1] == low_m:
             at -= 1  # the target's own point takes its place
         own[number] = at
-        for vertex in range(stop, stop + stop_count[number]):
-            lon, lat = stop_position[vertex, 0], stop_position[vertex, 1]
+        for vertex in range(stop, stop + stops.points[number]):
+            lon, lat = stops.position[vertex, 0], stops.position[vertex, 1]
             if vertex > stop and _is_at(lon, lat, position, at - 1):
                 continue
             position[at, 0], position[at, 1], agl_m[at] = lon, lat, low_m
-            kind[at], asset[at], target[at] = TARGET if vertex == stop else PASS, stop_asset[number], stop_target[number]
+            kind[at], asset[at], target[at] = TARGET if vertex == stop else PASS, stops.asset[number], stops.target[number]
             at += 1
-        stop += stop_count[number]
+        stop += stops.points[number]
     if comes_home:
-        for node in range(way_first[-2], way_first[-1]):
-            lon, lat = way_position[node, 0], way_position[node, 1]
-            at = _pass(lon, lat, way_agl_m[node], way_asset[node], transit_agl_m, at, position, agl_m, asset)
-        at = _climb(ends[1, 0], ends[1, 1], transit_agl_m, at, position, agl_m, asset)
+        for node in range(passed.first[-2], passed.first[-1]):
+            lon, lat = passed.position[node, 0], passed.position[node, 1]
+            at = _pass(lon, lat, passed.agl_m[node], passed.asset[node], transit_agl_m, at, written)
+        at = _climb(ends[1, 0], ends[1, 1], transit_agl_m, at, written)
         position[at, 0], position[at, 1], agl_m[at] = ends[1, 0], ends[1, 1], transit_agl_m
     else:
         position[at, 0], position[at, 1], agl_m[at] = position[at - 1, 0], position[at - 1, 1], agl_m[at - 1]
@@ -129,28 +134,20 @@ def _route_points(
 
 
 @njit(cache=True, nogil=True)
-def _pass(
-    lon: float,
-    lat: float,
-    passed_agl_m: float,
-    passed_asset: int,
-    transit_agl_m: float,
-    at: int,
-    position: FloatArray,
-    agl_m: FloatArray,
-    asset: IntArray,
-) -> int:
+def _pass(lon: float, lat: float, passed_agl_m: float, passed_asset: int, transit_agl_m: float, at: int, written: _Written) -> int:
     """Put in a point that is passed outside targets, unless it repeats the one before; returns how many points there are."""
+    position, agl_m, asset = written
     if agl_m[at - 1] == passed_agl_m and _is_at(lon, lat, position, at - 1):
         return at
-    at = _climb(lon, lat, transit_agl_m, at, position, agl_m, asset)
+    at = _climb(lon, lat, transit_agl_m, at, written)
     position[at, 0], position[at, 1], agl_m[at], asset[at] = lon, lat, passed_agl_m, passed_asset
     return at + 1
 
 
 @njit(cache=True, nogil=True)
-def _climb(lon: float, lat: float, transit_agl_m: float, at: int, position: FloatArray, agl_m: FloatArray, asset: IntArray) -> int:
+def _climb(lon: float, lat: float, transit_agl_m: float, at: int, written: _Written) -> int:
     """Before the way leads on from a low target to somewhere else, rise above it; returns how many points there are."""
+    position, agl_m, asset = written
     if agl_m[at - 1] >= transit_agl_m or _is_at(lon, lat, position, at - 1):
         return at
     position[at, 0], position[at, 1], agl_m[at], asset[at] = position[at - 1, 0], position[at - 1, 1], transit_agl_m, asset[at - 1]
