@@ -107,6 +107,23 @@ def _cut(corners: FloatArray, count: int, at: float, along: float, across: float
 
 
 @njit(cache=True, nogil=True)
+def _corners(h0: float, h1: float, h2: float, vertical_m: float) -> tuple[FloatArray, int]:
+    """The polygon of shares a and b of two pieces at which h0 + h1 a + h2 b is within the limit, and how many corners it has.
+
+    All shares where heights cannot be compared: where one is NaN.
+    """
+    corners = np.empty((MAX_CORNERS, 2))
+    corners[0, 0], corners[0, 1], corners[1, 0], corners[1, 1] = 0.0, 0.0, 1.0, 0.0
+    corners[2, 0], corners[2, 1], corners[3, 0], corners[3, 1] = 1.0, 1.0, 0.0, 1.0
+    count = 4
+    if not math.isnan(h0 + h1 + h2) and max(abs(h0), abs(h0 + h1), abs(h0 + h2), abs(h0 + h1 + h2)) > vertical_m:
+        lower = np.empty((MAX_CORNERS, 2))
+        count = _cut(corners, count, h0, h1, h2, vertical_m, lower)
+        count = _cut(lower, count, -h0, -h1, -h2, vertical_m, corners)
+    return corners, count
+
+
+@njit(cache=True, nogil=True)
 def gaps(one: FloatArray, other: FloatArray, lateral_m: float, vertical_m: float) -> tuple[float, float, float, float, float, float]:
     """The least and the greatest s - t over moments s of one piece and t of another at which they are within both limits.
 
@@ -121,17 +138,9 @@ def gaps(one: FloatArray, other: FloatArray, lateral_m: float, vertical_m: float
     x2, y2 = -(other[SIDES + LON] - other[LON]) * east_m, -(other[SIDES + LAT] - other[LAT]) * north_m
     long_s, other_long_s = one[SIDES + TIME] - one[TIME], other[SIDES + TIME] - other[TIME]
 
-    corners = np.empty((MAX_CORNERS, 2))
-    corners[0, 0], corners[0, 1], corners[1, 0], corners[1, 1] = 0.0, 0.0, 1.0, 0.0
-    corners[2, 0], corners[2, 1], corners[3, 0], corners[3, 1] = 1.0, 1.0, 0.0, 1.0
-    count = 4
     h0, h1, h2 = one[HEIGHT] - other[HEIGHT], one[SIDES + HEIGHT] - one[HEIGHT], other[HEIGHT] - other[SIDES + HEIGHT]
     is_comparable = not math.isnan(h0 + h1 + h2)
-    if is_comparable and max(abs(h0), abs(h0 + h1), abs(h0 + h2), abs(h0 + h1 + h2)) > vertical_m:
-        lower = np.empty((MAX_CORNERS, 2))
-        count = _cut(corners, count, h0, h1, h2, vertical_m, lower)
-        count = _cut(lower, count, -h0, -h1, -h2, vertical_m, corners)
-
+    corners, count = _corners(h0, h1, h2, vertical_m)
     least, greatest = np.inf, -np.inf
     at_least, at_greatest = (0.0, 0.0), (0.0, 0.0)
     for number in range(count):

@@ -169,6 +169,17 @@ def _between_targets(
 
 
 @njit(cache=True, nogil=True)
+def _end_prices(end_m: FloatArray, price: FloatArray, fare: FloatArray, end_price: FloatArray, end_at: IntArray) -> None:
+    """Fill in the least price of each UAV's end, and at which target that is."""
+    for uav in range(len(end_price)):
+        end_price[uav] = np.inf
+        for target in range(len(price)):
+            here_m = end_m[uav, target] + price[target] - fare[uav]
+            if here_m < end_price[uav]:
+                end_price[uav], end_at[uav] = here_m, target
+
+
+@njit(cache=True, nogil=True)
 def _ascent(
     apart_m: FloatArray, start_m: FloatArray, end_m: FloatArray, aim_m: float, steps: int, all_fly: bool, speed_mps: FloatArray
 ) -> tuple[float, float]:
@@ -218,16 +229,8 @@ def _ascent(
                 here_m = row[target] + price[nearest] + price[target]
                 if by[target] >= 0 and here_m < key[target]:
                     key[target], parent[target] = here_m, nearest
-        reward, cheapest, flying = -np.inf, 0, 0
-        for uav in range(uavs):
-            end_price[uav] = np.inf
-            for target in range(n):
-                here_m = end_m[uav, target] + price[target] - fare[uav]
-                if here_m < end_price[uav]:
-                    end_price[uav], end_at[uav] = here_m, target
-            reward = max(reward, end_price[uav] / speed_mps[uav])
-            if end_price[uav] < end_price[cheapest]:
-                cheapest = uav
+        _end_prices(end_m, price, fare, end_price, end_at)
+        reward, cheapest, flying = (end_price / speed_mps).max(), end_price.argmin(), 0
         for uav in range(uavs):
             if all_fly or end_price[uav] < 0.0:
                 value += end_price[uav]

@@ -83,9 +83,8 @@ def _column(values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
 
 
 @njit(cache=True, nogil=True)
-def _contract(
-    node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray, is_cost_length: bool
-) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:
+def edges_of_nodes(node_count: int, tail: NumberArray, head: NumberArray) -> tuple[NumberArray, NumberArray]:
+    """Return where each node's edges begin and the edges, one node after another; loops lead nowhere and are left out."""
     first = np.zeros(node_count + 1, dtype=np.int32)
     for edge in range(len(tail)):
         if tail[edge] != head[edge]:
@@ -97,10 +96,18 @@ def _contract(
     filled = first[:-1].copy()
     for edge in range(len(tail)):
         if tail[edge] != head[edge]:
-            for node in (tail[edge], head[edge]):
-                edge_at[filled[node]] = edge
-                filled[node] += 1
+            edge_at[filled[tail[edge]]] = edge
+            filled[tail[edge]] += 1
+            edge_at[filled[head[edge]]] = edge
+            filled[head[edge]] += 1
+    return first, edge_at
 
+
+@njit(cache=True, nogil=True)
+def _contract(
+    node_count: int, tail: NumberArray, head: NumberArray, cost: FloatArray, length_m: FloatArray, is_cost_length: bool
+) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, NumberArray, FloatArray, FloatArray]:
+    first, edge_at = edges_of_nodes(node_count, tail, head)
     node_chain = np.full(node_count, -2, dtype=np.int32)
     node_place = np.full(node_count, -1, dtype=np.int32)
     core_node = np.empty(node_count, dtype=np.int32)

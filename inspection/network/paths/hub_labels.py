@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray
+from inspection.network.paths.contracted_graph import ContractedGraph, FloatArray, NumberArray, edges_of_nodes
 
 SAMPLED_TREES = 48
 MAX_SAMPLED_NODES = 4_000_000  # in all trees together
@@ -45,7 +45,7 @@ class HubLabels(NamedTuple):
 def label(contracted: ContractedGraph) -> HubLabels:
     """Labels of the core's nodes by the cost of the chains."""
     tail, head, cost, length_m = contracted.chain_tail, contracted.chain_head, contracted.chain_cost, contracted.chain_m
-    first, chain_at = _chains_of_nodes(contracted.core_count, tail, head)
+    first, chain_at = edges_of_nodes(contracted.core_count, tail, head)
     trees = max(MIN_TREES, min(SAMPLED_TREES, MAX_SAMPLED_NODES // max(1, contracted.core_count)))
     draw = np.random.default_rng(SEED)
     roots = np.empty((trees, contracted.core_count), dtype=np.int32)
@@ -71,27 +71,6 @@ def entry_at(labels: HubLabels, core: int, hub: int) -> int:
         else:
             high = middle
     return low
-
-
-@njit(cache=True, nogil=True)
-def _chains_of_nodes(core_count: int, tail: NumberArray, head: NumberArray) -> tuple[NumberArray, NumberArray]:
-    """The chains at each core node, one after another, and where each node's begin; loops lead nowhere and are left out."""
-    first = np.zeros(core_count + 1, dtype=np.int32)
-    for chain in range(len(tail)):
-        if tail[chain] != head[chain]:
-            first[tail[chain] + 1] += 1
-            first[head[chain] + 1] += 1
-    for node in range(core_count):
-        first[node + 1] += first[node]
-    chain_at = np.empty(first[core_count], dtype=np.int32)
-    filled = first[:-1].copy()
-    for chain in range(len(tail)):
-        if tail[chain] != head[chain]:
-            chain_at[filled[tail[chain]]] = chain
-            filled[tail[chain]] += 1
-            chain_at[filled[head[chain]]] = chain
-            filled[head[chain]] += 1
-    return first, chain_at
 
 
 @njit(cache=True, nogil=True)
@@ -136,12 +115,33 @@ def _order(
 
     roots has a row for each sample: in each component the tree grows from the node that the row names first.
     """
+    component, trees = _sampled_trees(first, chain_at, tail, head, cost, roots)
+    return _covering_order(first, trees), component
+
+
+class Trees(NamedTuple):
+    """Sampled trees of shortest ways, (trees, nodes): each node's parent, its first child, the next child of its parent; -1 for none.
+
+    below: nodes of the subtree that are not covered yet.
+    """
+
+    parent: NumberArray
+    child: NumberArray
+    sibling: NumberArray
+    below: NumberArray
+
+
+@njit(cache=True, nogil=True)
+def _sampled_trees(
+    first: NumberArray, chain_at: NumberArray, tail: NumberArray, head: NumberArray, cost: FloatArray, roots: NumberArray
+) -> tuple[NumberArray, Trees]:
+    """The component of each node, and the trees, nothing of which is covered."""
     trees, nodes = roots.shape
     component = np.full(nodes, -1, dtype=np.int32)
     parent = np.empty((trees, nodes), dtype=np.int32)
-    child = np.full((trees, nodes), -1, dtype=np.int32)  # the first of each node
-    sibling = np.full((trees, nodes), -1, dtype=np.int32)  # the next child of the same parent
-    below = np.ones((trees, nodes), dtype=np.int32)  # nodes of the subtree that are not covered yet
+    child = np.full((trees, nodes), -1, dtype=np.int32)
+    sibling = np.full((trees, nodes), -1, dtype=np.int32)
+    below = np.ones((trees, nodes), dtype=np.int32)
     heap_key = np.empty(2 * len(chain_at) + nodes + 1)
     heap_node = np.empty(2 * len(chain_at) + nodes + 1, dtype=np.int32)
     reached = np.empty(nodes)
@@ -183,13 +183,21 @@ def _order(
                 below[tree, above] += below[tree, node]
                 sibling[tree, node] = child[tree, above]
                 child[tree, above] = node
+    return component, Trees(parent, child, sibling, below)
 
-    # Greedy cover. A node's worth only falls: one that has fallen since it was put on the heap goes back with what it is worth now.
+
+@njit(cache=True, nogil=True)
+def _covering_order(first: NumberArray, sampled: Trees) -> NumberArray:
+    """Cover the trees greedily: next comes the node that the most pairs of nodes not covered yet lead over."""
+    parent, child, sibling, below = sampled
+    trees, nodes = parent.shape
+    # A node's worth only falls: one that has fallen since it was put on the heap goes back with what it is worth now.
     worth = np.zeros(nodes, dtype=np.int64)
     for tree in range(trees):
         for node in range(nodes):
             worth[node] += below[tree, node]
     tie = np.empty(nodes)  # of nodes that are worth the same, the one with more chains comes first
+    heap_key, heap_node = np.empty(2 * nodes + 1), np.empty(2 * nodes + 1, dtype=np.int32)
     size = 0
     for node in range(nodes):
         tie[node] = 0.5 - 0.5 / (1.0 + first[node + 1] - first[node])
@@ -228,7 +236,7 @@ def _order(
                     stack[height] = inner
                     height += 1
                     inner = sibling[tree, inner]
-    return order, component
+    return order
 
 
 @njit(cache=True, nogil=True)
@@ -248,26 +256,17 @@ def _label(
     hub, chain_of = np.empty(blocks * BLOCK, dtype=np.int32), np.empty(blocks * BLOCK, dtype=np.int32)
     entry_cost, entry_m = np.empty(blocks * BLOCK), np.empty(blocks * BLOCK)
     next_block = np.empty(blocks, dtype=np.int32)
-    first_block = np.full(nodes, -1, dtype=np.int32)
-    last_block = np.full(nodes, -1, dtype=np.int32)
+    first_block, last_block = np.full(nodes, -1, dtype=np.int32), np.full(nodes, -1, dtype=np.int32)
     count = np.zeros(nodes, dtype=np.int32)
 
-    heap_key = np.empty(len(chain_at) + 2)
-    heap_node = np.empty(len(chain_at) + 2, dtype=np.int32)
-    reached = np.full(nodes, np.inf)
-    flown_m = np.empty(nodes)
-    by_chain = np.empty(nodes, dtype=np.int32)
+    heap_key, heap_node = np.empty(len(chain_at) + 2), np.empty(len(chain_at) + 2, dtype=np.int32)
+    reached, flown_m = np.full(nodes, np.inf), np.empty(nodes)
+    by_chain, touched = np.empty(nodes, dtype=np.int32), np.empty(nodes, dtype=np.int32)
     is_settled = np.zeros(nodes, dtype=np.bool_)
-    touched = np.empty(nodes, dtype=np.int32)
     of_root = np.full(nodes, np.inf)  # the root's cost to each hub
     for rank in range(nodes):
         root = order[rank]
-        block, left = first_block[root], count[root]
-        while left > 0:
-            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
-                of_root[hub[entry]] = entry_cost[entry]
-            left -= BLOCK
-            block = next_block[block]
+        _write_root(of_root, first_block[root], count[root], next_block, hub, entry_cost, 0.0)
         reached[root], flown_m[root], by_chain[root] = 0.0, 0.0, -1
         touched[0] = root
         touches = 1
@@ -278,16 +277,7 @@ def _label(
             if is_settled[node]:
                 continue
             is_settled[node] = True
-            is_known = False
-            block, left = first_block[node], count[node]
-            while left > 0 and not is_known:
-                for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
-                    if of_root[hub[entry]] + entry_cost[entry] <= reached[node]:
-                        is_known = True
-                        break
-                left -= BLOCK
-                block = next_block[block]
-            if is_known:
+            if _is_known(reached[node], first_block[node], count[node], next_block, hub, entry_cost, of_root):
                 continue
             if count[node] % BLOCK == 0:
                 if used == blocks:
@@ -320,22 +310,51 @@ def _label(
         for at in range(touches):
             reached[touched[at]] = np.inf
             is_settled[touched[at]] = False
-        block, left = first_block[root], count[root]
-        while left > 0:
-            for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
-                of_root[hub[entry]] = np.inf
-            left -= BLOCK
-            block = next_block[block]
+        _write_root(of_root, first_block[root], count[root], next_block, hub, entry_cost, np.inf)
 
     label_first = np.zeros(nodes + 1, dtype=np.int64)
-    for node in range(nodes):
-        label_first[node + 1] = label_first[node] + count[node]
+    label_first[1:] = np.cumsum(count)
     # One array of the pool after the other, each of which is let go as soon as it has been copied.
     out_cost = _together(entry_cost, first_block, next_block, label_first)
     out_m = _together(entry_m, first_block, next_block, label_first)
     out_hub = _together(hub, first_block, next_block, label_first)
     out_chain = _together(chain_of, first_block, next_block, label_first)
     return label_first, out_hub, out_chain, out_cost, out_m
+
+
+@njit(cache=True, nogil=True)
+def _write_root(
+    of_root: FloatArray,
+    block: int,
+    left: int,
+    next_block: NumberArray,
+    hub: NumberArray,
+    entry_cost: FloatArray,
+    added: float,
+) -> None:
+    """Write the cost of each entry of the root, whose entries begin in this block, plus what is added."""
+    while left > 0:
+        for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+            of_root[hub[entry]] = entry_cost[entry] + added
+        left -= BLOCK
+        block = next_block[block]
+
+
+@njit(cache=True, nogil=True, inline="always")
+def _is_known(
+    cost: float, block: int, count: int, next_block: NumberArray, hub: NumberArray, entry_cost: FloatArray, of_root: FloatArray
+) -> bool:
+    """Whether a node whose entries begin in this block knows a way to the root that costs no more."""
+    left = count
+    is_known = False
+    while left > 0 and not is_known:
+        for entry in range(block * BLOCK, block * BLOCK + min(left, BLOCK)):
+            if of_root[hub[entry]] + entry_cost[entry] <= cost:
+                is_known = True
+                break
+        left -= BLOCK
+        block = next_block[block]
+    return is_known
 
 
 @njit(cache=True, nogil=True)
