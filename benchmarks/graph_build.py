@@ -35,7 +35,7 @@ from inspection import selectors, services  # noqa: E402
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.network.inspection_graph import InspectionGraph  # noqa: E402
 from inspection.network.legs import Attachment  # noqa: E402
-from inspection.network.paths.access import clear_legs  # noqa: E402
+from inspection.network.paths.access import LegRules, clear_legs  # noqa: E402
 from inspection.network.paths.paths import travel_between  # noqa: E402
 from inspection.network.zones.zone_index import zones_of_graph  # noqa: E402
 
@@ -62,10 +62,7 @@ def compare_with_networkx(graph: InspectionGraph) -> None:
     ours_s, theirs_s, error_m = [], [], 0.0
     for _ in range(MISSIONS):
         spots = graph.position[rng.integers(0, graph.node_count, PLACES)] + rng.normal(0, 0.003, (PLACES, 2))
-        legs_of = [
-            clear_legs(graph, zones_of_graph(graph), LonLat(*spot), radius_m=RADIUS_M, factor=2.0, clearance_m=5.0)
-            for spot in spots.tolist()
-        ]
+        legs_of = [clear_legs(graph, zones_of_graph(graph), LonLat(*spot), LegRules(RADIUS_M, 2.0, 5.0)) for spot in spots.tolist()]
         begin_s = perf_counter()
         travel = travel_between(graph, legs_of, legs_of)
         ours_s.append(perf_counter() - begin_s)

@@ -23,7 +23,7 @@ def planner(folder: Path) -> None:
     """What a web worker does, in this process: map the stored graph and its index, and plan; prints the most memory it had."""
     import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
     from inspection.geodesy import LonLat  # noqa: PLC0415
-    from inspection.network.paths.access import clear_legs  # noqa: PLC0415
+    from inspection.network.paths.access import LegRules, clear_legs  # noqa: PLC0415
     from inspection.network.paths.paths import travel_between  # noqa: PLC0415
     from inspection.network.snapshot_file import read_masked  # noqa: PLC0415
     from inspection.network.zones.zone_index import ZoneIndex  # noqa: PLC0415
@@ -35,7 +35,7 @@ def planner(folder: Path) -> None:
     for mission in json.loads((folder / "missions.json").read_bytes()):
         places = [LonLat(lon, lat) for lat, lon in mission["uavs"]]
         places += [LonLat(*graph.position[node].tolist()) for node in mission["targets"]]
-        legs = [clear_legs(graph, zones, place, radius_m=3_000.0, factor=2.0, clearance_m=5.0) for place in places]
+        legs = [clear_legs(graph, zones, place, LegRules(3_000.0, 2.0, 5.0)) for place in places]
         travel = travel_between(graph, legs, legs[UAVS:])
         for source in range(len(legs)):
             for sink in range(TARGETS):

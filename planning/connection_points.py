@@ -17,7 +17,7 @@ from inspection.network.build.network import Network
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import NO_LEGS, Attachments, DirectLeg, joined
 from inspection.network.nearness import chord
-from inspection.network.paths.access import MAX_ROUND, band_of_legs, clear_legs
+from inspection.network.paths.access import MAX_ROUND, LegRules, band_of_legs, clear_legs
 from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.paths import Travel, travel_between_places
 from inspection.network.route_index import asset_places, node_tree
@@ -76,16 +76,8 @@ def attachments(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, ru
 
 def access_legs(graph: InspectionGraph, zones: ZoneIndex, terminal: Terminal, rules: AccessRules) -> Attachments:
     """Legs that are clear of zones, and the nearest places behind zones round these."""
-    return clear_legs(
-        graph,
-        zones,
-        terminal.position,
-        radius_m=rules.access_leg_m,
-        factor=rules.off_network_factor,
-        clearance_m=rules.zone_clearance_m,
-        heights=rules.heights,
-        height_m=terminal.known_height_m,
-    )
+    leg_rules = LegRules(rules.access_leg_m, rules.off_network_factor, rules.zone_clearance_m, rules.heights)
+    return clear_legs(graph, zones, terminal.position, leg_rules, height_m=terminal.known_height_m)
 
 
 def is_near_network(graph: InspectionGraph, position: LonLat, radius_m: float) -> bool:

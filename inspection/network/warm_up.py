@@ -6,7 +6,7 @@ from shapely import box
 from inspection.geodesy import LonLat
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.legs import Attachment
-from inspection.network.paths.access import clear_legs
+from inspection.network.paths.access import LegRules, clear_legs
 from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import node_tree
 from inspection.network.zones.zone_detours import Errand, ways_round
@@ -18,7 +18,7 @@ def rehearse() -> None:
     graph = graph_to_rehearse_on()
     travel = travel_between(graph, [[Attachment(0, 1.0, 1.0)]], [[Attachment(2, 1.0, 1.0)]])
     travel.path(0, 0)
-    clear_legs(graph, ZoneIndex([], [], []), BESIDE, radius_m=1_000.0, factor=2.0, clearance_m=0.0)
+    clear_legs(graph, ZoneIndex([], [], []), BESIDE, LegRules(1_000.0, 2.0, 0.0))
     tree = node_tree(graph)
     tree.nearest(BESIDE, 2)
     tree.around(BESIDE, 1.0)

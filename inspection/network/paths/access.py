@@ -1,5 +1,6 @@
 """How a position that is not on the graph gets onto it: legs that are clear of zones."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -23,17 +24,18 @@ MAX_ROUND = 8  # nearest nodes behind zones that are offered legs round them
 ROUND_ELSEWHERE = 2  # nearest nodes of each component that no straight leg reaches
 
 
+@dataclass(frozen=True)
+class LegRules:
+    """How long legs may be, what a metre of them costs, and how far zones are kept from; with heights, at which heights zones count."""
+
+    radius_m: float
+    factor: float
+    clearance_m: float
+    heights: FlownHeights | None = None
+
+
 def clear_legs(
-    graph: InspectionGraph,
-    zones: ZoneIndex,
-    position: LonLat,
-    *,
-    radius_m: float,
-    factor: float,
-    clearance_m: float,
-    want: int = 24,
-    heights: FlownHeights | None = None,
-    height_m: float | None = 0.0,
+    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, rules: LegRules, *, want: int = 24, height_m: float | None = 0.0
 ) -> Attachments:
     """Legs from the position to nodes within the radius that keep the clearance from every zone, the shortest first.
 
@@ -44,14 +46,14 @@ def clear_legs(
     the asset at the position, None where it is not known.
     """
     tree, index = node_tree(graph), route_index(graph)
-    around = Around(float(position.lon), float(position.lat), float(radius_m), chord(float(radius_m)))
+    around = Around(float(position.lon), float(position.lat), float(rules.radius_m), chord(float(rules.radius_m)))
     behind: list[NumberArray] = []
 
     def clear(node: NumberArray) -> slice | NDArray[np.bool_]:
         """Notes those that are not."""
         if not len(zones):
             return slice(None)
-        is_met = zones.meets([position], graph.position[node], clearance_m, *band_of_legs(graph, node, heights, height_m))
+        is_met = zones.meets([position], graph.position[node], rules.clearance_m, *band_of_legs(graph, node, rules.heights, height_m))
         if is_met.any():
             behind.append(node[is_met])
         return ~is_met
@@ -62,7 +64,7 @@ def clear_legs(
         node, length_m, found = _nearest_legs(around, tried, min(asked, graph.node_count), graph.position, tree)
         is_clear = clear(node)
         node, length_m = node[is_clear][:missing], length_m[is_clear][:missing]
-        legs.append(Attachments(node, length_m, length_m * factor))
+        legs.append(Attachments(node, length_m, length_m * rules.factor))
         missing -= len(node)
         if found < asked:
             break
@@ -75,11 +77,11 @@ def clear_legs(
             is_clear = clear(node)
             _, first = np.unique(component[is_clear], return_index=True)
             shortest = np.sort(first)
-            legs.append(Attachments(node[is_clear][shortest], length_m[is_clear][shortest], length_m[is_clear][shortest] * factor))
+            legs.append(Attachments(node[is_clear][shortest], length_m[is_clear][shortest], length_m[is_clear][shortest] * rules.factor))
             wanted.append(_nearest_of_each(node, component, component[is_clear][shortest]))
     if behind:
         some = np.unique(np.concatenate(wanted))
-        legs.append(_legs_round(graph, zones, position, some, radius_m, factor, clearance_m, *band_of_legs(graph, some, heights, height_m)))
+        legs.append(_legs_round(graph, zones, position, some, rules, height_m))
     return joined(legs)
 
 
@@ -104,28 +106,21 @@ def band_of_legs(
 
 
 def _legs_round(
-    graph: InspectionGraph,
-    zones: ZoneIndex,
-    position: LonLat,
-    nodes: NumberArray,
-    radius_m: float,
-    factor: float,
-    clearance_m: float,
-    low_m: FloatArray | None,
-    high_m: FloatArray | None,
+    graph: InspectionGraph, zones: ZoneIndex, position: LonLat, nodes: NumberArray, rules: LegRules, height_m: float | None
 ) -> Attachments:
     """The shortest ways to these nodes round the zones that stand before them."""
+    low_m, high_m = band_of_legs(graph, nodes, rules.heights, height_m)
     errand = Errand(
         np.concatenate([[position], graph.position[nodes]]),
         np.column_stack([np.zeros(len(nodes), dtype=np.int64), np.arange(1, len(nodes) + 1)]),
         None if low_m is None else float(low_m.min()),
         None if high_m is None else float(high_m.max()),
     )
-    found = ways_round(zones, [errand], clearance_m, radius_m)[0]
+    found = ways_round(zones, [errand], rules.clearance_m, rules.radius_m)[0]
     there_is = np.array([way is not None for way in found], dtype=bool)
     ways = [way for way in found if way is not None]
     length_m = np.array([way.length_m for way in ways], dtype=np.float64)
-    return Attachments(nodes[there_is], length_m, length_m * factor, tuple(way.bend for way in ways))
+    return Attachments(nodes[there_is], length_m, length_m * rules.factor, tuple(way.bend for way in ways))
 
 
 class Around(NamedTuple):

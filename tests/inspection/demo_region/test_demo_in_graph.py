@@ -11,7 +11,7 @@ from inspection.demo_region import BASES, make_region, write_osm_file
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, NoFlyZone
 from inspection.network.build.edges import component_labels
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
-from inspection.network.paths.access import clear_legs
+from inspection.network.paths.access import LegRules, clear_legs
 from inspection.selectors import current_graph, zones_in_force
 from inspection.services import build_graph, import_osm, import_zones
 
@@ -74,14 +74,8 @@ def test_nine_tenths_of_the_nodes_hang_together_and_both_bases_reach_them(graph:
     assert sizes.max() > 0.9 * graph.node_count
     rules = settings.GRAPH_RULES
     for base in BASES:
-        legs = clear_legs(
-            graph,
-            zones_in_force(),
-            base.position,
-            radius_m=settings.ROUTING_RULES.access_leg_m,
-            factor=rules.off_network_factor,
-            clearance_m=rules.zone_clearance_m,
-        )
+        leg_rules = LegRules(settings.ROUTING_RULES.access_leg_m, rules.off_network_factor, rules.zone_clearance_m)
+        legs = clear_legs(graph, zones_in_force(), base.position, leg_rules)
         assert sizes.argmax() in component[[leg.node for leg in legs]], base.name
 
 

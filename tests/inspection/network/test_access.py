@@ -5,7 +5,7 @@ import pytest
 from shapely import box
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from inspection.network.paths.access import MAX_ROUND, clear_legs
+from inspection.network.paths.access import MAX_ROUND, LegRules, clear_legs
 from inspection.network.rules import FlownHeights
 from inspection.network.zones.zone_index import ZoneIndex
 from tests.inspection.network.drawn_graphs import drawn_graph
@@ -16,7 +16,7 @@ CHAIN = drawn_graph(ROW, [(number, number + 1, 72.0) for number in range(99)])
 
 
 def legs(graph=CHAIN, zones=NO_ZONES, position=LonLat(10.0, 50.001), *, radius_m=2_000.0, want=24):  # noqa: B008  # LonLat is immutable
-    return clear_legs(graph, zones, position, radius_m=radius_m, factor=2.0, clearance_m=5.0, want=want)
+    return clear_legs(graph, zones, position, LegRules(radius_m, 2.0, 5.0), want=want)
 
 
 def test_the_nearest_nodes_come_first_with_their_geodesic_length():
@@ -74,10 +74,10 @@ def test_heights_decide_what_stands_in_the_way():
     """The nodes' towers are taken to be 45 m tall and are passed at 60 m, as a place without height is; 20 m more or less are reached."""
     for floor_m, is_straight in ((80.0, False), (81.0, True)):
         wall = ZoneIndex([box(9.99, 50.0004, 10.02, 50.0006)], [7], ["wall"], floor_agl_m=[floor_m])
-        given = {"radius_m": 2_000.0, "factor": 2.0, "clearance_m": 5.0, "heights": FlownHeights()}
-        found = clear_legs(CHAIN, wall, LonLat(10.0, 50.001), **given)
+        rules = LegRules(2_000.0, 2.0, 5.0, FlownHeights())
+        found = clear_legs(CHAIN, wall, LonLat(10.0, 50.001), rules)
         assert (found[0].bends == ()) == is_straight
-        assert clear_legs(CHAIN, wall, LonLat(10.0, 50.001), height_m=None, **given)[0].bends != ()
+        assert clear_legs(CHAIN, wall, LonLat(10.0, 50.001), rules, height_m=None)[0].bends != ()
 
 
 def test_a_component_behind_a_zone_is_reached_round_it():

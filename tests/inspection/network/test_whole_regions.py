@@ -15,7 +15,7 @@ from inspection.network.build.zone_masking import MaskedGraph
 from inspection.network.infrastructure import GroundData, Zones
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.nearness import pairs_within
-from inspection.network.paths.access import clear_legs
+from inspection.network.paths.access import LegRules, clear_legs
 from inspection.network.paths.paths import travel_between
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import zones_of_graph
@@ -162,7 +162,7 @@ def missions(graph: InspectionGraph, count: int):
     for _ in range(count):
         spots = graph.position[rng.integers(0, graph.node_count, 6)] + rng.normal(0, 0.003, (6, 2)) * rng.integers(0, 2, (6, 1))
         yield [
-            clear_legs(graph, zones, LonLat(*spot), radius_m=2_000, factor=RULES.off_network_factor, clearance_m=RULES.zone_clearance_m)
+            clear_legs(graph, zones, LonLat(*spot), LegRules(2_000, RULES.off_network_factor, RULES.zone_clearance_m))
             for spot in spots.tolist()
         ]
 
