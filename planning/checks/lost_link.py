@@ -9,7 +9,9 @@ from inspection.network.spans import spans_of
 from planning.airspace import zone_choice
 from planning.clearance.lost_link import LostLink, LostLinkPlan, checked_returns
 from planning.clearance.nearby_zones import zones_near
+from planning.clearance.surroundings import Surroundings
 from planning.context import PlanningContext
+from planning.energy.path_cost import FlightClass
 from planning.plan import PlannedRoute
 from planning.request import PlanRequest, lost_link_to_json
 
@@ -54,17 +56,12 @@ def _checked(request: PlanRequest, number: int, route: PlannedRoute, context: Pl
     found = checked_returns(
         route.waypoints,
         route.timing,
-        LostLinkPlan(request.lost_link.behaviour, request.lost_link.rally_points, request.lost_link.hold_s),
-        cruise_speed_mps=asked.cruise_speed_mps,
-        performance=asked.performance,
+        LostLinkPlan(request.lost_link.behaviour, request.lost_link.rally_points, request.lost_link.hold_s, asked.home),
+        flying=FlightClass(asked.performance, asked.cruise_speed_mps),
         conditions=request.conditions,
         rules=rules,
-        zones=facts,
-        margins=margins,
+        around=Surroundings(facts, margins, None if route.is_flat else context.heights_m, spans_of(context.network)),
         departs_s=departs_s,
-        ground_heights_m=None if route.is_flat else context.heights_m,
-        spans=spans_of(context.network),
-        home=asked.home,
     )
     failed = [
         {

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.network.spans import Spans, spans_between
-from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
+from planning.clearance.surroundings import Surroundings
+from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, breaches
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, Air, hold_taken, landing_taken, leg_taken
+from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.rules import FlightRules
 from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
@@ -41,9 +42,6 @@ class Trouble(StrEnum):
     UNKNOWN_GROUND = "unknown_ground"
 
 
-NOTHING_STANDS = spans_between(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), np.empty(0))
-
-
 @dataclass(frozen=True)
 class LostLinkPlan:
     """What is done, and where a UAV may return to beside its start: it takes what is nearest."""
@@ -51,6 +49,7 @@ class LostLinkPlan:
     behaviour: LostLink
     rally_points: tuple[LonLat, ...] = ()
     hold_s: float = 0.0  # before it returns; only with HOLD
+    home: LonLat | None = None  # of a route that begins in the air: where its UAV took off, which is its start then
 
 
 @dataclass(frozen=True)
@@ -102,36 +101,32 @@ def checked_returns(
     clock: Timing,
     plan: LostLinkPlan,
     *,
-    cruise_speed_mps: float,
-    performance: Performance,
+    flying: FlightClass,
     conditions: Conditions,
     rules: FlightRules,
-    zones: ZoneFacts,
-    margins: Margins,
+    around: Surroundings,
     departs_s: float | None = None,
-    ground_heights_m: GroundHeights | None = None,
-    spans: Spans = NOTHING_STANDS,
-    home: LonLat | None = None,
 ) -> Returns:
     """Every waypoint from which holding and returning would not go well, and each reason for it, in the order of the route.
 
     The UAV climbs where it is, flies straight to the nearest of its start and the rally points at one height above the sea, and lands
     there. That height clears the ground by transit_agl_m and what stands or hangs beside the way by clearance_m, and is not lower than
     where it is; it must not be above max_agl_m anywhere. The battery has to do with its reserve left, after what is done at the waypoint.
-    home: of a route that begins in the air where its UAV took off; that is its start then.
-    Without ground_heights_m flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the epoch;
-    without it zones count at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than longest_leg_m.
+    Without heights of the ground flat ground is assumed, as the route then does. departs_s: when the route begins, in seconds since the
+    epoch; without it zones count at any time, as the facts say. Between waypoints it is not looked; they are no farther apart than
+    longest_leg_m.
     """
     if plan.behaviour is LostLink.GO_ON or not len(waypoints):
         return Returns([], None)
     hold_s = plan.hold_s if plan.behaviour is LostLink.HOLD else 0.0
-    air = Air.of(performance, cruise_speed_mps, conditions, rules)
+    performance = flying.performance
+    air = Air.of(performance, flying.cruise_speed_mps, conditions, rules)
     taken_wh = _taken_wh(clock, performance)
-    begin = LonLat(*waypoints.points.position[0].tolist()) if home is None else home
-    returns = _returns(waypoints, begin, plan.rally_points, ground_heights_m)
+    begin = LonLat(*waypoints.points.position[0].tolist()) if plan.home is None else plan.home
+    returns = _returns(waypoints, begin, plan.rally_points, around.ground_heights_m)
     starts, ends = (np.stack([one.line[side] for one in returns]) for side in (0, -1))
-    known = ground_heights_m if returns[0].is_known else None
-    tops_m = tops_below(starts, ends, spans, known, rules.transit_agl_m - rules.clearance_m)
+    known = around.ground_heights_m if returns[0].is_known else None
+    tops_m = tops_below(starts, ends, around.spans, known, rules.transit_agl_m - rules.clearance_m)
     failed = []
     levels_m = []
     for one, top_m in zip(returns, tops_m.tolist(), strict=True):
@@ -157,10 +152,10 @@ def checked_returns(
                 failed.append(FailedReturn(one.waypoint, one.return_point, Trouble.BATTERY, missing_wh=missing_wh))
         start_s = None if departs_s is None else departs_s + float(clock.arrival_s[one.waypoint])
         flown = _flown(one, waypoints, level_m, start_s, [seconds for seconds, _ in taken])
-        met = dict.fromkeys(breach.zone for breach in breaches(flown, zones, margins) if breach.leg != TAKE_OFF)
+        met = dict.fromkeys(breach.zone for breach in breaches(flown, around.zones, around.margins) if breach.leg != TAKE_OFF)
         failed += [FailedReturn(one.waypoint, one.return_point, Trouble.ZONE, zone=zone) for zone in met]
     # The first waypoint stands over the start; from home the ground is told by what is above sea level less what is above home.
-    stands_m = float(returns[0].ground_m[0]) if home is None else _home_m(waypoints)
+    stands_m = float(returns[0].ground_m[0]) if plan.home is None else _home_m(waypoints)
     highest_m = max(levels_m, default=math.nan) - stands_m
     return Returns(failed, None if math.isnan(highest_m) else highest_m)
 

@@ -11,8 +11,8 @@ from enum import StrEnum
 import numpy as np
 
 from inspection.geodesy import LonLat, distance_m
-from inspection.network.spans import Spans
-from planning.clearance.zone_clearance import TAKE_OFF, BoolArray, FlownRoute, Margins, ZoneFacts, breaches
+from planning.clearance.surroundings import Surroundings
+from planning.clearance.zone_clearance import TAKE_OFF, BoolArray, FlownRoute, breaches
 from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
 from planning.trajectory.spans_below import tops_below
 from planning.trajectory.waypoints import FloatArray, IntArray
@@ -89,7 +89,7 @@ class Trouble:
 class RtlPaths:
     """From places to one return point. What the ground and obstacles ask for is looked up once, for any level.
 
-    `home_amsl_m` and ground_heights_m are None where flat ground is assumed; heights are then above it.
+    `home_amsl_m` and the heights of the ground are None where flat ground is assumed; heights are then above it.
     """
 
     def __init__(
@@ -97,26 +97,23 @@ class RtlPaths:
         places: Places,
         return_point: ReturnPoint,
         *,
+        around: Surroundings,
         home_amsl_m: float | None,
-        ground_heights_m: GroundHeights | None,
-        spans: Spans,
-        zones: ZoneFacts,
-        margins: Margins,
         clearance_m: float,
     ) -> None:
-        self.places, self.return_point, self.zones, self.margins = places, return_point, zones, margins
+        self.places, self.return_point, self.zones, self.margins = places, return_point, around.zones, around.margins
         self._base_m = 0.0 if home_amsl_m is None else home_amsl_m
-        self._knows_sea = home_amsl_m is not None and ground_heights_m is not None
-        known = ground_heights_m if self._knows_sea else None
+        self._knows_sea = home_amsl_m is not None and around.ground_heights_m is not None
+        known = around.ground_heights_m if self._knows_sea else None
         goal = np.broadcast_to(np.array(return_point.position, dtype=np.float64), places.position.shape)
         self.away_m = distance_m(places.position, goal)
         self._grounds(known)
-        tops_m = tops_below(places.position, goal, spans, known, 0.0) - self._base_m
+        tops_m = tops_below(places.position, goal, around.spans, known, 0.0) - self._base_m
         own_m = places.height_m - self._under_m
         self._over_ground_m = self._highest_m + np.minimum(clearance_m, np.maximum(own_m, 0.0)) - ROUNDING_M
         self._over_tops_m = tops_m + clearance_m - ROUNDING_M
         self._is_unknown = np.isnan(self._highest_m) | (tops_m == np.inf)
-        self._beside_zones = [row for row in range(len(places)) if len(zones) and self._zones_of(row, math.nan)]
+        self._beside_zones = [row for row in range(len(places)) if len(around.zones) and self._zones_of(row, math.nan)]
 
     def _grounds(self, known: GroundHeights | None) -> None:
         """Under each place, under the return point, and the highest and lowest under the way, above the take-off."""

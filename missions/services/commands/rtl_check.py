@@ -26,6 +26,7 @@ from missions.services.approval.document import frozen_route
 from missions.services.approval.fence import rally_points, zones_beside
 from planning.clearance.nearby_zones import zones_near
 from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths, Trouble
+from planning.clearance.surroundings import Surroundings
 from planning.clearance.zone_clearance import ZoneFacts
 
 STEP_M = 5.0  # by which a height is looked for that is clear
@@ -187,11 +188,12 @@ def ways_now(
     home_amsl_m = float(ground_heights_m(np.array([home]))[0])
     positions = np.concatenate([places.position, np.array([home, *(place for place, _height_m in rally)])])
     near, facts = zones_applying(ground.table, positions, window)
+    around = Surroundings(facts, zone_margins(), ground_heights_m, spans_of(ground.network()))
     return_points = [ReturnPoint(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
     ways = [
         RtlPaths(
-            own_places, return_point, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
-            spans=spans_of(ground.network()), zones=facts, margins=zone_margins(), clearance_m=settings.FLIGHT_RULES.clearance_m,
+            own_places, return_point, around=around, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m,
+            clearance_m=settings.FLIGHT_RULES.clearance_m,
         )
         for return_point, own_places in _places_by_return_point(places, ReturnPoint(home), return_points, shuns_home=own.shuns_home)
     ]  # fmt: skip
@@ -238,7 +240,7 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
         departs_s = began_s + route.departs_s
         window = (departs_s, departs_s + route.duration_s + settings.FLIGHT_RULES.longest_flight_s)
     near, facts = zones_near(ground.table, np.array(positions, dtype=np.float64), margins, window)
-    spans = spans_of(ground.network())
+    around = Surroundings(facts, margins, ground_heights_m, spans_of(ground.network()))
     ways = []
     for flight in flights:
         return_points = [ReturnPoint(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
@@ -252,8 +254,8 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
         ):
             ways.append(
                 RtlPaths(
-                    places, return_point, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
-                    zones=facts, margins=margins, clearance_m=settings.FLIGHT_RULES.clearance_m,
+                    places, return_point, around=around, home_amsl_m=flight.take_off.altitude_amsl_m,
+                    clearance_m=settings.FLIGHT_RULES.clearance_m,
                 )
             )  # fmt: skip
     return near, ways

@@ -15,9 +15,11 @@ from planning.clearance.lost_link import (
     Trouble,
     checked_returns,
 )
+from planning.clearance.surroundings import Surroundings
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 from planning.energy.charging import ChargingStop, with_stops
 from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.energy.power import power_w
 from planning.problem import Task, TaskKind
@@ -43,10 +45,22 @@ def route(*kms, agl_m=60.0, ground_m=None, hold_s=0.0):
     return Waypoints(columns, None if ground_m is None else columns.agl_m + ground_m, columns.agl_m)
 
 
-def checked(waypoints, plan=GO_HOME, *, performance=Performance(), conditions=CALM, zones=NOWHERE, **more):  # noqa: B008 (frozen)
+def returns(waypoints, clock, plan, asked, departs_s=None, **around):
+    return checked_returns(
+        waypoints,
+        clock,
+        plan,
+        flying=FlightClass(asked["performance"], asked["cruise_speed_mps"]),
+        conditions=asked["conditions"],
+        rules=asked["rules"],
+        around=Surroundings(**({"zones": NOWHERE, "margins": Margins(5.0, 10.0, 300.0, 10.0)} | around)),
+        departs_s=departs_s,
+    )
+
+
+def checked(waypoints, plan=GO_HOME, *, performance=Performance(), conditions=CALM, **more):  # noqa: B008 (frozen)
     asked = {"cruise_speed_mps": 10.0, "performance": performance, "conditions": conditions, "rules": RULES}
-    clock = timing(waypoints, lands=False, **asked)
-    return checked_returns(waypoints, clock, plan, **asked, zones=zones, margins=Margins(5.0, 10.0, 300.0, 10.0), **more)
+    return returns(waypoints, timing(waypoints, lands=False, **asked), plan, asked, **more)
 
 
 def failed(waypoints, plan=GO_HOME, **more):
@@ -68,10 +82,10 @@ def test_what_was_charged_on_the_way_is_there_for_the_return():
     battery_wh = timing(waypoints, lands=True, performance=Performance(battery_wh=1_000.0), **asked).total_wh * 1.4
     performance = Performance(battery_wh=battery_wh)
     clock = timing(waypoints, lands=True, performance=performance, **asked)
-    around = {"zones": NOWHERE, "margins": Margins(5.0, 10.0, 300.0, 10.0), "performance": performance, **asked}
-    assert [one.waypoint for one in checked_returns(waypoints, clock, GO_HOME, **around).failed] == [1, 2]
+    asked["performance"] = performance
+    assert [one.waypoint for one in returns(waypoints, clock, GO_HOME, asked).failed] == [1, 2]
     stop = ChargingStop(place=1, charging_s=1800.0, charged_wh=0.7 * battery_wh, stopped_s=1900.0, used_wh=1.0)
-    assert [one.waypoint for one in checked_returns(waypoints, with_stops(clock, [stop], battery_wh), GO_HOME, **around).failed] == [1]
+    assert [one.waypoint for one in returns(waypoints, with_stops(clock, [stop], battery_wh), GO_HOME, asked).failed] == [1]
 
 
 def test_between_two_flights_it_stands_at_its_base_with_a_new_battery():
@@ -80,7 +94,7 @@ def test_between_two_flights_it_stands_at_its_base_with_a_new_battery():
     performance = Performance(battery_wh=56.6)
     asked = {"cruise_speed_mps": 10.0, "performance": performance, "conditions": CALM, "rules": RULES}
     clock = timing_of_route(joined, lands=True, **asked)
-    assert checked_returns(joined, clock, GO_HOME, **asked, zones=NOWHERE, margins=Margins(5.0, 10.0, 300.0, 10.0)).failed == []
+    assert returns(joined, clock, GO_HOME, asked).failed == []
 
 
 def test_without_a_battery_a_zone_or_a_hill_every_return_is_a_way_home():

@@ -15,6 +15,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.spans import spans_between
 from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths
+from planning.clearance.surroundings import Surroundings
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 
 HOME = LonLat(10.0, 56.0)
@@ -44,11 +45,8 @@ def ways(*, zones=NO_ZONES, spans=NOTHING, ground=None, return_point=None, heigh
     return RtlPaths(
         places,
         return_point or ReturnPoint(HOME),
+        around=Surroundings(zones, Margins(lateral_m=10.0), ground, spans),
         home_amsl_m=None if ground is None else float(ground(np.array([HOME]))[0]),
-        ground_heights_m=ground,
-        spans=spans,
-        zones=zones,
-        margins=Margins(lateral_m=10.0),
         clearance_m=15.0,
     )
 
