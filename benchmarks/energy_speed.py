@@ -28,7 +28,7 @@ from inspection.network.paths.along_paths import steps_of_graph
 from inspection.network.paths.paths import PlaceLegs, travel_of_legs
 from inspection.network.route_index import route_index
 from planning.connection_points import TargetPaths
-from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.assignment_costs import Finish, FlightCosts, FlownVisits, FlyingFleet, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, graph_taken
 from planning.energy.performance import Performance
@@ -121,13 +121,9 @@ class Mission:
         return flight_costs(
             self.graph,
             self.ways,
-            classes=[FLYING] * UAVS,
-            finishes=[Finish(End.RETURN, lands=True)] * UAVS,
-            starts=self.starts,
+            fleet=FlyingFleet([FLYING] * UAVS, [Finish(End.RETURN, lands=True)] * UAVS, self.starts),
             bases=[],
-            courses=self.courses,
-            agl_m=[AGL_M] * TARGETS,
-            hold_s=[HOLD_S] * TARGETS,
+            visits=FlownVisits(self.courses, [AGL_M] * TARGETS, [HOLD_S] * TARGETS),
             conditions=self.conditions,
             rules=RULES,
         )

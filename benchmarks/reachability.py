@@ -34,7 +34,7 @@ from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
-from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachability import Flight, FlownNetwork, reach
 from planning.reachability.reachable_assets import Reach, Reachability
 from planning.rules import FlightRules, RoutingRules
 
@@ -106,7 +106,7 @@ def measure(
             for number, place in enumerate(places[:uavs])
         ]
         began_s = perf_counter()
-        found = reach(network, whole, graph, zones, zones, flights, places[uavs:], rules, conditions=wind)
+        found = reach(FlownNetwork(network, whole, graph, zones, zones), flights, places[uavs:], rules, conditions=wind)
         size = len(answer(found))
         if run:
             times.append(perf_counter() - began_s)

@@ -9,7 +9,7 @@ from inspection.geodesy import LonLat, path_length_m
 from planning.airspace import Airspace
 from planning.connection_points import TargetPaths
 from planning.context import ResolvedTarget
-from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.assignment_costs import Finish, FlightCosts, FlownVisits, FlyingFleet, flight_costs
 from planning.energy.path_cost import FlightClass, NodeGround
 from planning.problem import Objective, Visit
 from planning.request import BaseRequest, EndAction, PlanRequest
@@ -67,14 +67,18 @@ def costs_of_flying(routing: RoutingInput, uavs: Sequence[int]) -> FlightCosts:
     return flight_costs(
         airspace.graph,
         routing.ways,
-        classes=[FlightClass(uav.performance, uav.cruise_speed_mps) for uav in asked],
-        finishes=[Finish(request.route_end(uav), request.end_action(uav) is not EndAction.HOVER) for uav in uavs],
-        starts=starts,
-        homes=homes,
+        fleet=FlyingFleet(
+            [FlightClass(uav.performance, uav.cruise_speed_mps) for uav in asked],
+            [Finish(request.route_end(uav), request.end_action(uav) is not EndAction.HOVER) for uav in uavs],
+            starts,
+            homes,
+        ),
         bases=[base.position for base in routing.bases],
-        courses=routing.courses,
-        agl_m=[routing.agl_m[visit.target] for visit in routing.visits],
-        hold_s=[routing.targets[visit.target].task.hold_s for visit in routing.visits],
+        visits=FlownVisits(
+            routing.courses,
+            [routing.agl_m[visit.target] for visit in routing.visits],
+            [routing.targets[visit.target].task.hold_s for visit in routing.visits],
+        ),
         conditions=request.conditions,
         rules=airspace.flight,
         ground=_node_ground(routing, starts, homes),

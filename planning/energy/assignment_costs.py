@@ -65,51 +65,65 @@ class Finish:
     lands: bool
 
 
+@dataclass(frozen=True)
+class FlyingFleet:
+    """Of each UAV: how it flies, how it ends, where it starts, and its home, where that is not its start."""
+
+    classes: Sequence[FlightClass]
+    finishes: Sequence[Finish]
+    starts: Sequence[LonLat]
+    homes: Sequence[LonLat] | None = None
+
+
+@dataclass(frozen=True)
+class FlownVisits:
+    """Of each visit: its course, the height above ground, and how long the UAV stays."""
+
+    courses: Sequence[Sequence[LonLat]]
+    agl_m: Sequence[float]
+    hold_s: Sequence[float]
+
+
 def flight_costs(
     graph: InspectionGraph,
     ways: TargetPaths,
     *,
-    classes: Sequence[FlightClass],
-    finishes: Sequence[Finish],
-    starts: Sequence[LonLat],
+    fleet: FlyingFleet,
     bases: Sequence[LonLat],
-    courses: Sequence[Sequence[LonLat]],
-    agl_m: Sequence[float],
-    hold_s: Sequence[float],
+    visits: FlownVisits,
     conditions: Conditions,
     rules: FlightRules,
     ground: NodeGround | None = None,
-    homes: Sequence[LonLat] | None = None,
 ) -> FlightCosts:
-    """classes, finishes, starts: of each UAV of the ways; courses, agl_m, hold_s: of each visit; bases and homes as the ways have them.
+    """UAVs, visits and bases as the ways have them.
 
     Timing a drawn route finds the same, but for turns of its course that drawing leaves out, waypoints that the terrain asks for, and
     wind that changes with height along a leg. Without the ground nothing is known of hills, and the air is that of the sea's level.
     """
-    uavs, visits, travel = ways.uavs, ways.visits, ways.travel
+    uavs, count, travel = ways.uavs, ways.visits, ways.travel
     numbers: dict[FlightClass, int] = {}
-    class_of = tuple(numbers.setdefault(flying, len(numbers)) for flying in classes)
-    course = np.array(list(chain.from_iterable(courses)), dtype=np.float64).reshape(-1, 2)
-    course_first = np.array([0, *accumulate(map(len, courses))], dtype=np.int64)
-    begins = np.array(starts, dtype=np.float64).reshape(-1, 2)
-    stands = np.array([*(starts if homes is None else homes), *bases], dtype=np.float64).reshape(-1, 2)
-    flown = np.array([agl_m, hold_s], dtype=np.float64)
-    ends = np.array([(_ENDS[finish.end], finish.lands) for finish in finishes], dtype=np.int64).reshape(-1, 2)
+    class_of = tuple(numbers.setdefault(flying, len(numbers)) for flying in fleet.classes)
+    course = np.array(list(chain.from_iterable(visits.courses)), dtype=np.float64).reshape(-1, 2)
+    course_first = np.array([0, *accumulate(map(len, visits.courses))], dtype=np.int64)
+    begins = np.array(fleet.starts, dtype=np.float64).reshape(-1, 2)
+    stands = np.array([*(fleet.starts if fleet.homes is None else fleet.homes), *bases], dtype=np.float64).reshape(-1, 2)
+    flown = np.array([visits.agl_m, visits.hold_s], dtype=np.float64)
+    ends = np.array([(_ENDS[finish.end], finish.lands) for finish in fleet.finishes], dtype=np.int64).reshape(-1, 2)
     source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
     terms = _Terms(
         np.array(class_of, dtype=np.int64), ends, ways.nearest_base, begins, stands, source_m, sink_m,
         _Visits(course, course_first, flown, float(rules.transit_agl_m)),
     )  # fmt: skip
     costs = _Costs(
-        np.empty((2, uavs, visits)), np.empty((2, len(numbers), visits, visits)), np.empty((2, visits, uavs)),
-        np.empty((2, 2, len(numbers), visits)),
+        np.empty((2, uavs, count)), np.empty((2, len(numbers), count, count)), np.empty((2, count, uavs)),
+        np.empty((2, 2, len(numbers), count)),
     )  # fmt: skip
     bends = bends_of_paths(travel, float(rules.transit_agl_m))
     for flying, number in numbers.items():
         taken = graph_taken(graph, flying, conditions, rules, ground)
         _fill(number, terms, travel.ends, travel.index.contracted, graph.position, taken, bends, costs)
     seconds, wh = (Taken(costs.first[part], costs.onward[part], costs.end[part], *costs.at_visit[part]) for part in range(2))
-    usable_wh = [flying.performance.usable_wh for flying in classes]
+    usable_wh = [flying.performance.usable_wh for flying in fleet.classes]
     return FlightCosts(seconds, wh, class_of, np.array([np.inf if one is None else one for one in usable_wh], dtype=np.float64))
 
 

@@ -69,29 +69,37 @@ class Flight:
         return np.inf if usable_wh is None else usable_wh
 
 
+@dataclass(frozen=True, eq=False)
+class FlownNetwork:
+    """A network, the cleared graph of it, and the part of that which can be flown over; with the zones.
+
+    leg_zones are those of the zones that reach the heights between targets. no_landing (n,): nodes of the graph where a flight that lands
+    at its target cannot come down to the ground.
+    """
+
+    network: Network
+    whole_graph: InspectionGraph
+    graph: InspectionGraph
+    zones: ZoneIndex
+    leg_zones: ZoneIndex
+    no_landing: BoolArray | None = None
+
+
 def reach(
-    network: Network,
-    whole_graph: InspectionGraph,
-    graph: InspectionGraph,
-    zones: ZoneIndex,
-    leg_zones: ZoneIndex,
+    flown: FlownNetwork,
     flights: Sequence[Flight],
     bases: Sequence[LonLat],
     rules: AccessRules,
     *,
     conditions: Conditions = CALM,
     flight_rules: FlightRules = USUAL,
-    no_landing: BoolArray | None = None,
 ) -> Reach:
-    """whole_graph is the network cleared of the zones, graph the part of it that can be flown over; bases are outside zones.
-
-    leg_zones are those of the zones that reach the heights between targets. At a tower or bridge a photo is taken, elsewhere a look.
-    no_landing (n,): nodes of the graph where a flight that lands at its target cannot come down to the ground.
-    """
+    """Bases are outside zones. At a tower or bridge a photo is taken, elsewhere a look."""
+    network, whole_graph, graph = flown.network, flown.whole_graph, flown.graph
     on_whole = _nodes_of(network.position, network.node_asset, whole_graph.position, whole_graph.node_asset)
     on_graph = _nodes_of(network.position, network.node_asset, graph.position, graph.node_asset)
-    state, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, zones, rules.zone_clearance_m)
-    found = _reach_of_nodes(graph, leg_zones, flights, bases, rules, conditions, flight_rules, no_landing)
+    state, zone = _off_the_graph(network, whole_graph, graph, on_whole, on_graph, flown.zones, rules.zone_clearance_m)
+    found = _reach_of_nodes(graph, flown.leg_zones, flights, bases, rules, conditions, flight_rules, flown.no_landing)
     is_on = on_graph >= 0
     count, at = network.node_count, on_graph[is_on]
     flight, missing_m, missing_wh = np.full(count, -1, dtype=np.int16), np.zeros(count), np.zeros(count)

@@ -8,7 +8,7 @@ from inspection.network.warm_up import graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.connection_points import AccessRules, Terminal, paths_between
-from planning.energy.assignment_costs import Finish, flight_costs
+from planning.energy.assignment_costs import Finish, FlownVisits, FlyingFleet, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
@@ -59,13 +59,9 @@ def _rehearse_time_and_energy(points: RoutePoints) -> None:
     flight_costs(
         graph,
         paths_between(graph, ZoneIndex([], [], []), ends, ends, ends, access),
-        classes=[FlightClass(performance, 10.0)],
-        finishes=[Finish(End.RETURN, lands=True)],
-        starts=[place],
+        fleet=FlyingFleet([FlightClass(performance, 10.0)], [Finish(End.RETURN, lands=True)], [place]),
         bases=[],
-        courses=[[place]],
-        agl_m=[45.0],
-        hold_s=[5.0],
+        visits=FlownVisits([[place]], [45.0], [5.0]),
         conditions=conditions,
         rules=rules,
     )

@@ -16,12 +16,12 @@ from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.rules import FlownHeights, LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, paths_between
-from planning.energy.assignment_costs import Finish, flight_costs
+from planning.energy.assignment_costs import Finish, FlownVisits, FlyingFleet, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
 from planning.problem import End
-from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachability import Flight, FlownNetwork, reach
 from planning.reachability.reachable_assets import Reachability
 from planning.rules import FlightRules
 
@@ -66,10 +66,11 @@ def zone_index(*boxes):
     )
 
 
-def judged(ground, flights, *, zones=None, bases=(), **more):
+def judged(ground, flights, *, zones=None, bases=(), no_landing=None, **more):
     zones = zone_index() if zones is None else zones
     whole = masked(ground, zones, LINKING, HEIGHTS).graph
-    return reach(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, flights, bases, RULES, **more)
+    flown = FlownNetwork(ground, whole, flyable_part(whole, FlightRules().tallest_m), zones, zones, no_landing)
+    return reach(flown, flights, bases, RULES, **more)
 
 
 def reachabilities(found):
@@ -203,8 +204,8 @@ def needed_wh(graph, zones, one, node, bases, conditions):
     target = Terminal(place, int(graph.node_asset[node]))
     ways = paths_between(graph, zones, [Terminal(one.position)], [target], [target], RULES, [Terminal(base) for base in bases])
     costs = flight_costs(
-        graph, ways, classes=[one.flying], finishes=[Finish(one.end, one.lands)], starts=[one.position], bases=bases, courses=[[place]],
-        agl_m=[45.0 + 15.0], hold_s=[10.0], conditions=conditions, rules=FlightRules(),
+        graph, ways, fleet=FlyingFleet([one.flying], [Finish(one.end, one.lands)], [one.position]), bases=bases,
+        visits=FlownVisits([[place]], [45.0 + 15.0], [10.0]), conditions=conditions, rules=FlightRules(),
     )  # fmt: skip
     return float(costs.wh.first[0, 0] + costs.wh.service[0, 0] + costs.wh.end[0, 0])
 

@@ -14,7 +14,7 @@ from planning.airspace import Airspace, airspace_on, column_m, zone_at, zone_cho
 from planning.assignment.refusals import groundings
 from planning.energy.path_cost import FlightClass
 from planning.problem import UavStart
-from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachability import Flight, FlownNetwork, reach
 from planning.reachability.reachable_assets import Reach, Reachability
 from planning.request import ROUTE_ENDS, BaseRequest, EndAction, PlanRequest, UavRequest
 from workspace.locale_negotiation import number_text
@@ -54,8 +54,10 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
     starting, flights, grounded = _flights(request, starts, airspace)
     bases = [base.position for base in request.bases if zone_at(base.position, airspace) is None]
     found = reach(
-        context.network, airspace.whole_graph, airspace.graph, airspace.zones, airspace.leg_zones, flights, bases, airspace.access,
-        conditions=request.conditions, flight_rules=airspace.flight, no_landing=_no_landing(airspace, flights),
+        FlownNetwork(
+            context.network, airspace.whole_graph, airspace.graph, airspace.zones, airspace.leg_zones, _no_landing(airspace, flights)
+        ),
+        flights, bases, airspace.access, conditions=request.conditions, flight_rules=airspace.flight,
     )  # fmt: skip
     chosen = np.ones(len(found.asset), dtype=bool) if box is None else _in_box(found, box)
     may_charge = _may_charge(request, starting)

@@ -18,7 +18,7 @@ from inspection.network.paths.along_paths import BEND, passed_on
 from inspection.network.paths.paths import DIRECT
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, TargetPaths, Terminal, paths_between
-from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.assignment_costs import Finish, FlightCosts, FlownVisits, FlyingFleet, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass, NodeGround
 from planning.energy.performance import Performance
@@ -80,13 +80,9 @@ class World:
         return flight_costs(
             self.graph,
             self.ways,
-            classes=classes,
-            finishes=finishes,
-            starts=self.starts,
+            fleet=FlyingFleet(classes, finishes, self.starts),
             bases=self.bases,
-            courses=[course for course, _, _ in self.visits],
-            agl_m=[agl_m for _, agl_m, _ in self.visits],
-            hold_s=[hold_s for _, _, hold_s in self.visits],
+            visits=FlownVisits(*([visit[part] for visit in self.visits] for part in range(3))),
             conditions=conditions,
             rules=RULES,
             ground=ground,
