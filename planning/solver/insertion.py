@@ -1,6 +1,7 @@
 """Targets put into a plan where they cost least."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -140,22 +141,31 @@ def _next_blink(random: RandomState) -> int:
     return int(-math.log(1.0 - draw(random)) / BLINK_SHARE)
 
 
-@njit(cache=True, nogil=True, inline="always")  # a plan handed on costs more than the price
+class Figures(NamedTuple):
+    """A UAV's route: metres, seconds of service, the most metres, metres a second."""
+
+    length_m: float
+    service_s: float
+    limit_m: float
+    speed_mps: float
+
+
+@njit(cache=True, nogil=True, inline="always")  # a plan handed on costs more than the price, and so does a branch in here
 def _price(problem: ProblemArrays, work: Workspace, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
     """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
     length_m, service_s = work.plan.length_m[uav], work.plan.service_s[uav] + work.beside_s[uav]
-    if length_m + added_m > problem.limit_m[uav] and not (length_m > NO_LIMIT_M and added_m < 0.0):
-        return math.inf
-    if not problem.is_makespan:
-        return added_m
-    speed_mps = problem.speed_mps[uav]
-    now_s = duration_s(length_m, speed_mps, service_s)
-    return _price_of(now_s, now_s + added_m / speed_mps + (problem.service_s[visit] + work.opened_s[uav]), power, scale)
+    figures = Figures(length_m, service_s, problem.limit_m[uav], problem.speed_mps[uav])
+    return _price_of(figures, added_m, problem.service_s[visit] + work.opened_s[uav], problem.is_makespan, power, scale)
 
 
 @njit(cache=True, nogil=True)
-def _price_of(now_s: float, later_s: float, power: int, scale: float) -> float:
-    """What it costs that a UAV flies until later."""
+def _price_of(route: Figures, added_m: float, added_s: float, is_makespan: bool, power: int, scale: float) -> float:
+    if route.length_m + added_m > route.limit_m and not (route.length_m > NO_LIMIT_M and added_m < 0.0):
+        return math.inf
+    if not is_makespan:
+        return added_m
+    now_s = duration_s(route.length_m, route.speed_mps, route.service_s)
+    later_s = now_s + added_m / route.speed_mps + added_s
     return raised_to(later_s / scale, power) - raised_to(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
 
 
