@@ -7,9 +7,11 @@ from threading import RLock
 from typing import Generic, TypeVar
 from weakref import WeakKeyDictionary
 
+import numpy as np
+
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.asset_places import build_asset_places
-from inspection.network.paths.contracted_graph import ContractedGraph, contract
+from inspection.network.paths.contracted_graph import CORE, ContractedGraph, NumberArray, contract
 from inspection.network.paths.hub_labels import HubLabels, label
 from inspection.network.paths.node_tree import build_node_tree
 
@@ -58,3 +60,12 @@ class OncePerGraph(Generic[Part]):
 route_index = OncePerGraph(build_route_index)
 node_tree = OncePerGraph(lambda graph: build_node_tree(graph.position))
 asset_places = OncePerGraph(build_asset_places)
+
+
+def components_of_nodes(graph: InspectionGraph) -> NumberArray:
+    """The number of the component that each node is in, (n,)."""
+    contracted, labels = route_index(graph).contracted, route_index(graph).labels
+    chain, place, tail = contracted.node_chain, contracted.node_place, contracted.chain_tail
+    core = np.where(chain == CORE, place, tail[np.maximum(chain, 0)] if len(tail) else place)
+    found: NumberArray = labels.component[core]
+    return found

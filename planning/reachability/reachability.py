@@ -20,10 +20,9 @@ from inspection.network.inspection_graph import InspectionGraph, NodeKind
 from inspection.network.legs import Attachments, joined
 from inspection.network.nearness import chord
 from inspection.network.paths.access import band_of_legs
-from inspection.network.paths.contracted_graph import CORE
 from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.one_to_all import CoreGraph, core_graph, search_from
-from inspection.network.route_index import node_tree, route_index
+from inspection.network.route_index import components_of_nodes, node_tree, route_index
 from inspection.network.rules import asset_heights_m
 from inspection.network.zones.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
@@ -325,15 +324,6 @@ class _Look:
             other = legs.node[counts].astype(np.int64)
             found.append((np.full(len(other), node, dtype=np.int64), other, legs.length_m[counts]))
         return found
-
-
-def components_of_nodes(graph: InspectionGraph) -> NDArray[np.int32]:
-    """The number of the component that each node is in, (n,)."""
-    contracted, labels = route_index(graph).contracted, route_index(graph).labels
-    chain, place, tail = contracted.node_chain, contracted.node_place, contracted.chain_tail
-    core = np.where(chain == CORE, place, tail[np.maximum(chain, 0)] if len(tail) else place)
-    found: NDArray[np.int32] = labels.component[core]
-    return found
 
 
 @dataclass(frozen=True, eq=False)

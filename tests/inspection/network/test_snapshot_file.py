@@ -212,9 +212,8 @@ def test_the_index_is_stored_with_the_graph_and_mapped(tmp_path: Path):
     cached = read_again(tmp_path, GRAPH, 100.0)
     made = build_route_index(GRAPH)
     for stored, expected in ((route_index(cached).contracted, made.contracted), (route_index(cached).labels, made.labels)):
-        for field in fields(stored):
-            array = getattr(stored, field.name)
-            assert array.tobytes() == getattr(expected, field.name).tobytes()
+        for array, made_array in zip(stored, expected, strict=True):
+            assert array.tobytes() == made_array.tobytes()
             assert isinstance(array.base, np.memmap)
             assert not array.flags.writeable
     assert travel_between(cached, [[Attachment(0, 0.0, 0.0)]], [[Attachment(2, 0.0, 0.0)]]).length_m.tolist() == [[21_100.0]]
