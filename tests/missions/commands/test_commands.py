@@ -1,20 +1,16 @@
 """The outbox of commands to UAVs: order, urgency, leases, and an end for everything."""
 
 import threading
-from importlib import import_module
 from uuid import uuid4
 
 import psycopg
 import pytest
-from django.apps import apps
 from django.conf import settings
 from django.db import IntegrityError, connection, transaction
-from django.utils.translation import override
 
 from missions.command_rules import AXES, PRIORITIES, Axis, axis_of, priority_of
 from missions.models import CommandAxis, CommandKind, CommandPriority, CommandState, LinkKind, Uav, UavCommand
 from missions.selectors.given import given_to
-from missions.serializers.commands import command_json
 from missions.services import change_uav
 from missions.services.commands.commands import (
     CHANNEL,
@@ -30,7 +26,6 @@ from missions.services.commands.commands import (
 )
 from missions.services.commands.refused import Refused
 from missions.tasks import expire_commands
-from operation.reasons import Reason
 from tests.accounts.users import a_user
 from tests.missions.commands.outbox import LEASE_S, a_uav, claim, fence, give, grow_old, lose, now, steps
 from workspace.models import AuditEntry
@@ -327,34 +322,6 @@ def test_a_start_that_had_to_wait_and_was_not_sent_keeps_the_reason() -> None:
     assert (now(start).state, start.outcome_code) == (CommandState.EXPIRED, "no-position")
     assert start.outcome == f"It was not sent in time. {words}"
     assert start.events.order_by("pk").last().note == start.outcome
-
-
-def test_a_reason_to_wait_is_read_in_german_also_once_the_time_is_over() -> None:
-    start = give(a_uav(), CommandKind.START)
-    (held,) = claim(start.uav)
-    note_released(held.pk, **fence(held), note=(Reason("beside_leg", {"metres": 120, "allowed": 100}),), code="off-route")
-    grow_old(start)
-    assert expire_overdue() == 1
-    assert now(start).outcome == "It was not sent in time. The UAV is 120 m from the leg that it would fly on; 100 m are allowed."
-    with override("de"):
-        shown = command_json(start)
-    assert [reason["code"] for reason in shown["outcome_why"]] == ["not_sent_in_time", "beside_leg"]
-    assert "120 m" in shown["outcome"] and "The UAV" not in shown["outcome"]
-
-
-def test_the_migration_gives_codes_to_fixed_outcomes_alone() -> None:
-    outcomes = {
-        "no-position": "The UAV does not tell where it stands.",
-        "denied": "PreArm: Compass",
-        "superseded": "A later command: Hold.",
-    }
-    rows = [give(a_uav(code), CommandKind.START) for code in outcomes]
-    for row, (code, text) in zip(rows, outcomes.items(), strict=True):
-        UavCommand.objects.filter(pk=row.pk).update(outcome_code=code, outcome=text, outcome_why=None)
-    with connection.schema_editor() as editor:
-        import_module("missions.migrations.0007_outcome_why").give_codes(apps, editor)
-    given = [[reason["code"] for reason in command_json(now(row))["outcome_why"]] for row in rows]
-    assert given == [["stand_unknown"], [], ["superseded"]]
 
 
 def test_a_start_that_was_sent_after_all_has_no_reason_to_wait_any_more() -> None:
