@@ -221,7 +221,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         unavailable=error_json(503, "unavailable", "Spanwise is not answering; try again."),
         too_large=error_json(413, "too_large", "The body is too large."),
     )
-    failures_for_people = _failures(
+    failures_as_sentences = _failures(
         "page",
         "text/plain",
         headers,
@@ -302,7 +302,7 @@ http {{
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
         }}{pages}{plans}{of_uavs}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
-{failures_for_people}
+{failures_as_sentences}
 {failures_for_programs}{_too_many(headers)}
     }}{plain_server(site)}{beside}
 }}
