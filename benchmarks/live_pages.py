@@ -41,10 +41,10 @@ from benchmarks.live_clients import PER_DEGREE  # noqa: E402
 from benchmarks.live_fleet import GROUND_M, SPEED_MPS, UAVS_A_MISSION, Line, make_site, own_database, put_under_way  # noqa: E402
 from benchmarks.report import machine, table, write_section  # noqa: E402
 from mavlink.signing import FrameWriter  # noqa: E402
+from scripts.installation.system_packages import find_program  # noqa: E402
 from scripts.places import Places  # noqa: E402
-from scripts.programs import web_programs  # noqa: E402
-from scripts.proxy import configuration  # noqa: E402
-from scripts.system_packages import find_program  # noqa: E402
+from scripts.proxy.proxy import configuration  # noqa: E402
+from scripts.supervision.programs import web_programs  # noqa: E402
 from telemetry.models import Alert, TelemetryRecord, UavWatch  # noqa: E402
 from workspace.models import User  # noqa: E402
 

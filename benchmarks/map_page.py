@@ -27,8 +27,8 @@ import osmium
 from playwright.sync_api import Browser, Page, Request, sync_playwright
 
 from benchmarks.large_region import tile_of, write_region
+from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from scripts.system_packages import BROWSERS
 from tests.browser.conftest import CHROMIUM_FLAGS
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]

@@ -29,8 +29,8 @@ import numpy as np
 from playwright.sync_api import Browser, CDPSession, Page, sync_playwright
 
 from benchmarks.report import machine, table, write_section
+from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from scripts.system_packages import BROWSERS
 from tests.browser.conftest import CHROMIUM_FLAGS
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]

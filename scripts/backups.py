@@ -27,11 +27,11 @@ from psycopg import sql
 
 from config.private_servers import DATABASE_NAME, private_database_url, state_directory
 from operation.version import VERSION
-from scripts import database_cluster
+from scripts.installation import database_cluster
+from scripts.installation.postgresql_installations import installed_servers, server_for
 from scripts.places import CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
-from scripts.postgresql_installations import installed_servers, server_for
-from scripts.programs import database_server
-from scripts.supervision import Supervisor
+from scripts.supervision.programs import database_server
+from scripts.supervision.supervision import Supervisor
 
 REFERENCE_SYSTEMS = "spatial_ref_sys"
 DUMP, MANIFEST, SUMS, KEY, LOGS = "database.dump", "manifest.json", "SHA256SUMS", "secret_key", "flight-logs"

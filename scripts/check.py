@@ -1,6 +1,6 @@
 """./check: private servers, then the tests, the browser's tests and the other checks side by side, and a summary.
 
-All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.second_try).
+All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.test_run.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
 python -m scripts.check --sitl BINARY [PYTEST ARGUMENT...]      (the link's scenarios on a real firmware)
@@ -23,14 +23,14 @@ from typing import NoReturn
 import pytest
 
 from config.private_servers import private_database_url, private_redis_url, state_directory
-from scripts import database_cluster
+from scripts.installation import database_cluster
+from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR, CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
-from scripts.programs import SERVERS_STAGE, Program, database_server, queue_server
-from scripts.second_try import cache_arguments, failed_tests, late_passes_file, note_late_passes, second_command
-from scripts.supervision import Supervisor
-from scripts.system_packages import find_program
+from scripts.supervision.programs import SERVERS_STAGE, Program, database_server, queue_server
+from scripts.supervision.supervision import Supervisor
 from scripts.test_run.lanes import Result, Step, run_all
 from scripts.test_run.reports import Report, allowed_skips, read_report, read_tap, summary
+from scripts.test_run.second_try import cache_arguments, failed_tests, late_passes_file, note_late_passes, second_command
 
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 2)  # many of their tests mostly wait
@@ -111,7 +111,7 @@ def steps(arguments: list[str]) -> list[Step]:
         *_javascript_tests(),
         Step("JavaScript lint", _node("@biomejs/biome/bin/biome", "check", "static/js", "tests/javascript")),
         Step("JavaScript types", [str(PROGRAMS / "node"), TYPE_CHECKER, "--project", "jsconfig.json"]),
-        Step("API types", _python("-m", "scripts.api_types", "--check")),
+        Step("API types", _python("-m", "scripts.development.api_types", "--check")),
     ]
 
 

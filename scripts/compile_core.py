@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled, numba_settings
-from scripts import user_cache
+from scripts.installation import user_cache
 
 POLL_S = 0.05
 SHARED_KIND = "compiled"

@@ -20,11 +20,12 @@ from types import FrameType
 from typing import Any, NoReturn
 
 from config.private_servers import socket_directory
-from scripts import database_cluster, proxy
+from scripts.installation import database_cluster
 from scripts.options import parse, port_problem
 from scripts.places import DEMO_USER, PROJECT_DIR, WEB_PROGRAMS, CannotStart, Places, prepare_sockets, prepare_state, remove_sockets
-from scripts.programs import Program, database_server, queue_server, web_programs
-from scripts.supervision import ProgramState, Supervisor
+from scripts.proxy import proxy
+from scripts.supervision.programs import Program, database_server, queue_server, web_programs
+from scripts.supervision.supervision import ProgramState, Supervisor
 
 READY_TIMEOUT_S = 120.0
 EXIT_NOT_RUNNING = 3

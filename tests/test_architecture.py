@@ -13,7 +13,7 @@ import networkx as nx
 import pytest
 from django.core.management import get_commands
 
-from scripts import texts
+from scripts.development import texts
 from workspace.api import api_document
 
 ROOT = Path(__file__).resolve().parents[1]

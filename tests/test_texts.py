@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts import texts
+from scripts.development import texts
 
 PLACEHOLDER = re.compile(r"\{(\w+)\}|%\((\w+)\)[sd]")
 NOT_FOR_PEOPLE = re.compile(

@@ -33,11 +33,11 @@ from deploy.load.certificates import make_authority, make_certificate
 from deploy.load.name_server import NameServer
 from deploy.load.replicas import KINDS, at_address, free_port, kind_of, name_of, ports_of_simulations, replicas
 from deploy.load.usage import Usage, usage
-from scripts import database_cluster
+from scripts.installation import database_cluster
 from scripts.places import PROJECT_DIR, prepare_sockets, prepare_state, remove_sockets
-from scripts.processes import is_alive
-from scripts.programs import PROGRAM_STAGE, SERVERS, Program, database_server, queue_server
-from scripts.supervision import ProgramState, Supervisor
+from scripts.supervision.processes import is_alive
+from scripts.supervision.programs import PROGRAM_STAGE, SERVERS, Program, database_server, queue_server
+from scripts.supervision.supervision import ProgramState, Supervisor
 
 TIMEOUT_S = 600.0  # the first start of a checkout that has not been set up compiles the core
 ANSWERS_WITHIN_S = 10.0
@@ -253,7 +253,7 @@ class Installation:
         }
         if self.name_server:
             environment |= {"SPANWISE_PROXY_RESOLVES": "1", "SPANWISE_PROXY_NAME_SERVER": self.name_server.address}
-        command = [sys.executable, "-m", "scripts.container", "proxy"]
+        command = [sys.executable, "-m", "scripts.container.container", "proxy"]
         return Program("proxy", PROGRAM_STAGE, command, self.places.process("proxy"), patience_s=20, environment=environment)
 
     def _addresses(self, kind: str, most: Mapping[str, int]) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from scripts import commands
 from scripts.places import Places, health_socket
-from scripts.programs import Program, web_programs
+from scripts.supervision.programs import Program, web_programs
 
 KINDS = (
     "web",

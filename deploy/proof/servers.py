@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from scripts.installation.postgresql_installations import installed_servers
+from scripts.installation.system_packages import find_program
 from scripts.places import DATABASE_USER, PROJECT_DIR
-from scripts.postgresql_installations import installed_servers
-from scripts.system_packages import find_program
 
 TIMEOUT_S = 60.0
 

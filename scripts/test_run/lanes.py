@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from scripts.places import PROJECT_DIR
-from scripts.processes import end_session
+from scripts.supervision.processes import end_session
 
 POLL_S = 0.2
 STOP_S = 60

@@ -10,8 +10,8 @@ from typing import TypeVar
 
 import pytest
 
-from scripts.second_try import WAITING_TESTS
 from scripts.test_run.reports import Report, allowed_skips
+from scripts.test_run.second_try import WAITING_TESTS
 
 Item = TypeVar("Item")
 

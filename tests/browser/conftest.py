@@ -20,8 +20,8 @@ from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, e
 from playwright.sync_api import Error as PlaywrightError
 
 from accounts.login import REAUTHENTICATION_S
+from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
-from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES, save_picture
 from tests.browser.regions import region
 

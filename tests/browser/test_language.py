@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-from scripts import texts
+from scripts.development import texts
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.page_lists import FOR_OPERATORS, FOR_STRANGERS

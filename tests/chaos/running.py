@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scripts.places import PROJECT_DIR
-from scripts.processes import end_session
+from scripts.supervision.processes import end_session
 from tests.chaos.figures import Figure, TargetResult, written
 from tests.chaos.rows import Elsewhere, Experiment, Part, Row, Tests
 

@@ -16,7 +16,7 @@ from typing import Any
 from config.private_servers import state_directory
 from deploy.load.installation import Installation
 from scripts.places import PROJECT_DIR, CannotStart, Places
-from scripts.supervision import Supervisor
+from scripts.supervision.supervision import Supervisor
 from tests.chaos.asking import Client
 
 DEMO = (

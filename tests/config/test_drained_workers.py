@@ -35,7 +35,7 @@ class Queue:
 
     @contextmanager
     def worker(self, *, warm_up_s: float = 0.0) -> Iterator[subprocess.Popen[bytes]]:
-        """As scripts/programs.py starts one: TERM says the same as QUIT."""
+        """As scripts/supervision/programs.py starts one: TERM says the same as QUIT."""
         environment = os.environ | {"SLOW_QUEUE": self.name, "SLOW_WARM_UP_S": str(warm_up_s), "REDIS_URL": settings.REDIS_URL}
         environment |= {
             "REMAP_SIGTERM": "SIGQUIT",

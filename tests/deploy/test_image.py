@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from scripts import container, container_health, container_proxy, sbom
+from scripts.container import container, container_health, container_proxy
+from scripts.development import sbom
+from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR
-from scripts.proxy import site_configuration
-from scripts.served_certificate import ServedCertificate
-from scripts.system_packages import find_program
+from scripts.proxy.proxy import site_configuration
+from scripts.proxy.served_certificate import ServedCertificate
 from tests.deploy.conftest import DEPLOY
 
 

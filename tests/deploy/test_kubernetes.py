@@ -8,9 +8,9 @@ import jsonschema
 import pytest
 import yaml
 
-from scripts import container
+from scripts.container import container
 from scripts.places import Places
-from scripts.programs import web_programs
+from scripts.supervision.programs import web_programs
 from tests.deploy.conftest import DEPLOY, rendered
 
 Objects = tuple[dict[str, Any], ...]

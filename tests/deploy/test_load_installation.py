@@ -11,7 +11,7 @@ from deploy.load.certificates import make_authority, make_certificate
 from deploy.load.replicas import at_address, kind_of, name_of, replicas
 from deploy.load.usage import usage
 from scripts.places import WEB_PROGRAMS, Places
-from scripts.programs import web_programs
+from scripts.supervision.programs import web_programs
 
 SOCKETS = Path("/sockets")
 OWN = ("SPANWISE_GATEWAY", "SPANWISE_ESTIMATOR", "SPANWISE_SIMULATOR")  # names and ports that ./run leaves to chance

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from django.conf import settings
 
-from scripts import container
+from scripts.container import container
 from scripts.places import PROJECT_DIR
 from tests.telemetry.gateway.program import free_port
 from tests.workspace.live.proxied_site import environment_of
@@ -43,7 +43,7 @@ def started(name: str, folder: Path) -> Iterator[tuple[subprocess.Popen[bytes], 
     }
     with (folder / "lines").open("wb") as lines:
         process = subprocess.Popen(
-            [sys.executable, "-m", "scripts.container", name],
+            [sys.executable, "-m", "scripts.container.container", name],
             cwd=folder, env=os.environ | environment_of(folder) | own, stdout=lines, stderr=lines, start_new_session=True,
         )  # fmt: skip
         try:
@@ -98,7 +98,7 @@ def test_a_program_that_has_hardly_begun_ends_in_time(name: str, tmp_path: Path)
     """While it imports what it needs, or warms up."""
     with started(name, tmp_path) as (process, _):
         end_s = time.monotonic() + TIMEOUT_S
-        while b"-m\0scripts.container" in Path(f"/proc/{process.pid}/cmdline").read_bytes():
+        while b"-m\0scripts.container.container" in Path(f"/proc/{process.pid}/cmdline").read_bytes():
             assert time.monotonic() < end_s
             time.sleep(0.02)
         time.sleep(1.0)

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from scripts import install, system_packages
-from scripts.install import Step, about_s, carry_out
-from scripts.python_libraries import CannotInstall
+from scripts.installation import install, system_packages
+from scripts.installation.install import Step, about_s, carry_out
+from scripts.installation.python_libraries import CannotInstall
 
 
 def test_steps_without_an_order_run_side_by_side(capsys):
@@ -84,7 +84,13 @@ def test_a_failed_step_ends_with_one(monkeypatch):
 
 @pytest.fixture
 def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name in ("package.json", "package-lock.json", "scripts/install.py", "scripts/build_icons.py", "static/img/icons/one.svg"):
+    for name in (
+        "package.json",
+        "package-lock.json",
+        "scripts/installation/install.py",
+        "scripts/development/build_icons.py",
+        "static/img/icons/one.svg",
+    ):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(name)
     (tmp_path / "node_modules").mkdir()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from scripts.places import PROJECT_DIR
-from scripts.processes import end_processes, is_alive, processes_in
+from scripts.supervision.processes import end_processes, is_alive, processes_in
 
 SLEEPER = [sys.executable, "-c", "import time; print('up', flush=True); time.sleep(60)"]
 DEAF_SLEEPER = [
@@ -78,7 +78,7 @@ def test_a_dead_process_that_nobody_has_collected_is_not_alive(start: Start, tmp
 
 
 def _through_start_program(folder: Path, *options: str) -> list[str]:
-    return [sys.executable, "-m", "scripts.start_program", str(folder), *options, "--", *SLEEPER]
+    return [sys.executable, "-m", "scripts.supervision.start_program", str(folder), *options, "--", *SLEEPER]
 
 
 def test_a_program_ends_its_predecessors_leftovers_and_lock_before_it_starts(start: Start, tmp_path: Path) -> None:

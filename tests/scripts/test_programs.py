@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from scripts.places import PROGRAMS_WITH_METRICS, Places
-from scripts.programs import web_programs
+from scripts.supervision.programs import web_programs
 
 
 @pytest.mark.parametrize(("of_the_site", "given"), [(None, "2"), ("8", "8")])

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from scripts import python_libraries
-from scripts.python_libraries import CannotInstall, find_uv, is_installed, settings_of_pip
+from scripts.installation import python_libraries
+from scripts.installation.python_libraries import CannotInstall, find_uv, is_installed, settings_of_pip
 
 PROJECT_DIR = Path(__file__).resolve().parent.parent.parent
 BASES = {  # each lock adds to one

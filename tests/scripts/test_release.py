@@ -2,7 +2,7 @@
 
 import pytest
 
-from scripts.release import CannotRelease, numbers, released_changelog, released_project
+from scripts.development.release import CannotRelease, numbers, released_changelog, released_project
 
 CHANGELOG = """# Changelog
 

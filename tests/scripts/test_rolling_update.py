@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR, WEB_PROGRAMS, Places
-from scripts.programs import web_programs
-from scripts.proxy import configuration
-from scripts.system_packages import find_program
+from scripts.proxy.proxy import configuration
+from scripts.supervision.programs import web_programs
 from tests.scripts.ports import free_port
 
 TIMEOUT_S = 120.0

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from scripts.check import with_second_try
-from scripts.second_try import COUNTED_RUNS, WAITING_TESTS, cache_arguments, note_late_passes
 from scripts.test_run.lanes import Result, Step, run_all
+from scripts.test_run.second_try import COUNTED_RUNS, WAITING_TESTS, cache_arguments, note_late_passes
 from tests.scripts.test_skips import NO_OTHER_PLUGINS
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]

@@ -13,12 +13,12 @@ import psycopg
 import pytest
 
 from config.private_servers import DATABASE_NAME, DATABASE_ROLE
-from scripts import supervision
-from scripts.database_cluster import create_database, database_exists, prepare_cluster, wait_for_database, wait_for_queue
+from scripts.installation.database_cluster import create_database, database_exists, prepare_cluster, wait_for_database, wait_for_queue
 from scripts.places import Places, prepare_sockets, prepare_state, remove_sockets
-from scripts.processes import processes_in
-from scripts.programs import SERVERS_STAGE, Program, database_server, queue_server, web_programs
-from scripts.supervision import Supervisor
+from scripts.supervision import supervision
+from scripts.supervision.processes import processes_in
+from scripts.supervision.programs import SERVERS_STAGE, Program, database_server, queue_server, web_programs
+from scripts.supervision.supervision import Supervisor
 
 
 @pytest.fixture

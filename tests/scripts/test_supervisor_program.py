@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from supervisor.loggers import FileHandler, LogRecord
 
-from scripts.supervisor_program import Forgiving
+from scripts.supervision.supervisor_program import Forgiving
 
 FULL = Path("/dev/full")  # Linux's own full disk
 pytestmark = pytest.mark.skipif(not FULL.exists(), reason="there is no /dev/full here")

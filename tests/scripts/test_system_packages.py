@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from scripts import install, postgresql_installations, system_packages
+from scripts.installation import install, postgresql_installations, system_packages
 from scripts.places import PROJECT_DIR
 
 
 def test_without_apt_the_line_for_root_is_printed_and_the_exit_code_is_3(tmp_path: Path) -> None:
     environment = {"PATH": str(tmp_path), "PYTHONPATH": str(PROJECT_DIR), "DATABASE_URL": "postgis://elsewhere/spanwise"}
     answer = subprocess.run(
-        [sys.executable, "-m", "scripts.install", "check-fast"], env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-m", "scripts.installation.install", "check-fast"], env=environment, capture_output=True, text=True, check=False
     )
     assert answer.returncode == 3
     line = answer.stderr.splitlines()[-1]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from scripts import user_cache
+from scripts.installation import user_cache
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from typing import Any
 from uuid import uuid4
 
-from scripts.processes import end_processes
+from scripts.supervision.processes import end_processes
 from tests.chaos.asking import Askers, Client
 from tests.chaos.day import Day, working_day
 from tests.chaos.experiment import Course, main

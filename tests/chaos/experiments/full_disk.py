@@ -15,7 +15,7 @@ from pathlib import Path
 from uuid import uuid4
 
 from config.private_servers import state_directory
-from scripts.system_packages import find_program
+from scripts.installation.system_packages import find_program
 from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main
 from tests.chaos.jobs import job_of, large_plan_body, one_of, states_at_the_end

@@ -14,9 +14,9 @@ from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 
 from deploy.load.replicas import replicas
+from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR
-from scripts.processes import end_processes
-from scripts.system_packages import find_program
+from scripts.supervision.processes import end_processes
 from tests.chaos.day import Day, working_day
 from tests.chaos.experiment import Course, main
 from tests.chaos.jobs import job_of, large_plan_body, states_at_the_end

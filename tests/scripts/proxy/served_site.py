@@ -17,9 +17,9 @@ from socketserver import ThreadingUnixStreamServer
 
 import pytest
 
+from scripts.installation.system_packages import find_program
 from scripts.places import Places
-from scripts.proxy import configuration
-from scripts.system_packages import find_program
+from scripts.proxy.proxy import configuration
 
 ANSWER = json.dumps({"name": "mission " * 200}).encode()
 

@@ -17,10 +17,10 @@ from tempfile import mkdtemp
 import pytest
 
 from scripts.commands import web
-from scripts.inner_tls import CERTIFICATE, KEY, InnerCertificate, inner_certificate
-from scripts.proxy import site_configuration
-from scripts.proxy_site import Site
-from scripts.system_packages import find_program
+from scripts.installation.system_packages import find_program
+from scripts.proxy.inner_tls import CERTIFICATE, KEY, InnerCertificate, inner_certificate
+from scripts.proxy.proxy import site_configuration
+from scripts.proxy.proxy_site import Site
 from tests.scripts.proxy.test_over_http import TIMEOUT_S, free_port
 
 PROJECT_DIR = Path(__file__).resolve().parents[3]
@@ -173,7 +173,7 @@ def test_whoever_looks_after_the_certificate_tells_the_program_and_ends_with_it(
         path.write_text("old")
     lines = f"""
 import os, pathlib, time
-from scripts import inner_tls
+from scripts.proxy import inner_tls
 found = inner_tls.InnerCertificate(*map(pathlib.Path, {[str(tmp_path / "copies"), str(certificate), str(key)]!r}))
 found.copy()
 inner_tls.look_after(found, pause=lambda seconds: time.sleep(0.05))

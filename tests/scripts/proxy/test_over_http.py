@@ -14,9 +14,9 @@ from tempfile import mkdtemp
 
 import pytest
 
-from scripts.proxy import site_configuration
-from scripts.proxy_site import Site
-from scripts.system_packages import find_program
+from scripts.installation.system_packages import find_program
+from scripts.proxy.proxy import site_configuration
+from scripts.proxy.proxy_site import Site
 
 TIMEOUT_S = 60
 

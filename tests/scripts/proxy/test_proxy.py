@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from scripts.page_headers import content_security_policy
+from scripts.installation.system_packages import find_program
 from scripts.places import PROGRAMS_WITH_METRICS, CannotStart, Places
-from scripts.programs import web_programs
-from scripts.proxy import BASE_MAP_TILES, configuration
-from scripts.system_packages import find_program
+from scripts.proxy.page_headers import content_security_policy
+from scripts.proxy.proxy import BASE_MAP_TILES, configuration
+from scripts.supervision.programs import web_programs
 
 
 def test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path: Path) -> None:

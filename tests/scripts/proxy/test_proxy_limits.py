@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from scripts.places import WEB_PROGRAMS, CannotStart, Places
-from scripts.proxy import configuration
+from scripts.proxy.proxy import configuration
 from tests.scripts.proxy.served_site import application_at, fetch, served_site
 
 MISSION = "/api/v1/missions/0b0c6f6c-7a53-4d0e-a6a6-0a4c3d6b0c11"

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from scripts import proxy_lines
+from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR, Places
-from scripts.proxy import configuration
-from scripts.system_packages import find_program
+from scripts.proxy import proxy_lines
+from scripts.proxy.proxy import configuration
 from tests.telemetry.gateway.program import free_port
 
 FAULT = (
@@ -43,7 +43,7 @@ def test_nginx_writes_requests_and_faults_without_queries(form: str, tmp_path: P
     path = tmp_path / "nginx.conf"
     path.write_text(configuration(places, tmp_path, port))
     with (tmp_path / "log").open("wb") as log:
-        command = [sys.executable, "-m", "scripts.proxy_lines", nginx, "-e", "stderr", "-p", str(tmp_path), "-c", str(path)]
+        command = [sys.executable, "-m", "scripts.proxy.proxy_lines", nginx, "-e", "stderr", "-p", str(tmp_path), "-c", str(path)]
         process = subprocess.Popen(command, stdout=log, stderr=log)
         end_s = time.monotonic() + 60
         while time.monotonic() < end_s:

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from scripts.places import WEB_PROGRAMS, Places
-from scripts.programs import web_programs
+from scripts.supervision.programs import web_programs
 from telemetry.models import TelemetryRecord
 from tests.telemetry.links.uav_clients import UavClient, linked_uav, report
 from tests.workspace.live.proxied_site import Endpoint, front_endpoint, redis_at, running, wait_until

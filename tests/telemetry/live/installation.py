@@ -14,8 +14,8 @@ from pathlib import Path
 from django.conf import settings
 
 from scripts.places import WEB_PROGRAMS, Places
-from scripts.programs import Program, web_programs
-from scripts.proxy import configuration
+from scripts.proxy.proxy import configuration
+from scripts.supervision.programs import Program, web_programs
 from tests.telemetry.gateway.program import free_port
 from tests.workspace.live.proxied_site import environment_of, redis_at
 

@@ -13,10 +13,10 @@ import pytest
 
 from missions.models import Uav
 from scripts import commands
+from scripts.installation.system_packages import find_program
 from scripts.places import Places
-from scripts.proxy import site_configuration
-from scripts.proxy_site import Site
-from scripts.system_packages import find_program
+from scripts.proxy.proxy import site_configuration
+from scripts.proxy.proxy_site import Site
 from telemetry.services import store_records
 from tests.accounts.users import a_user
 from tests.missions.commands.outbox import a_uav

@@ -15,7 +15,7 @@ from django.core.management import call_command
 from django.test import Client
 from openapi_spec_validator import validate
 
-from scripts.api_types import GENERATOR, NODE
+from scripts.development.api_types import GENERATOR, NODE
 from workspace.api import api_document
 
 pytestmark = pytest.mark.django_db

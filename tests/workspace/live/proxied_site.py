@@ -21,10 +21,10 @@ from django.conf import settings
 from django.db import connection
 from websocket import WebSocket, create_connection
 
+from scripts.installation.system_packages import find_program
 from scripts.places import Places
-from scripts.programs import web_programs
-from scripts.proxy import configuration
-from scripts.system_packages import find_program
+from scripts.proxy.proxy import configuration
+from scripts.supervision.programs import web_programs
 from tests.accounts.users import client_of
 from workspace.models import User
 

@@ -19,10 +19,10 @@ import django
 from django.core.management import call_command
 from django.db import Error, connection
 
-from scripts.database_cluster import wait_for_database
+from scripts.installation.database_cluster import wait_for_database
 from scripts.places import Places
-from scripts.processes import end_processes
-from scripts.programs import database_server
+from scripts.supervision.processes import end_processes
+from scripts.supervision.programs import database_server
 
 KILLS, UAVS = 3, 5
 BEFORE_KILL_S, AWAY_S = 5.0, 2.0

@@ -12,7 +12,7 @@ from urllib.parse import quote
 import pytest
 
 from config.private_servers import DATABASE_ROLE
-from scripts.database_cluster import prepare_cluster
+from scripts.installation.database_cluster import prepare_cluster
 from scripts.places import prepare_sockets, prepare_state, remove_sockets
 from tests.telemetry.gateway.program import PROJECT_DIR
 

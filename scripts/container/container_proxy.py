@@ -10,11 +10,11 @@ from pathlib import Path
 from types import FrameType
 
 from config.private_servers import state_directory
-from scripts import proxy_lines
-from scripts.proxy import is_https_asked_for, site_configuration
-from scripts.proxy_site import Site
-from scripts.served_certificate import ServedCertificate
-from scripts.system_packages import find_program
+from scripts.installation.system_packages import find_program
+from scripts.proxy import proxy_lines
+from scripts.proxy.proxy import is_https_asked_for, site_configuration
+from scripts.proxy.proxy_site import Site
+from scripts.proxy.served_certificate import ServedCertificate
 
 POLL_INTERVAL_S = 5.0
 ENDS_WITHIN_S = 8.0

@@ -1,6 +1,6 @@
 """Become one of the supervised programs: end what an earlier instance left behind, follow the supervisor into death, exec.
 
-python -m scripts.start_program FOLDER [--user NAME] [--stale FILE]... [--stop-signal NAME] -- COMMAND...
+python -m scripts.supervision.start_program FOLDER [--user NAME] [--stale FILE]... [--stop-signal NAME] -- COMMAND...
 
 A server that is ended by kill -9 leaves its workers behind, with the port or the data folder still in their hands; they are
 found by their working folder, which belongs to this program alone. Should the supervisor itself be killed, the kernel asks the
@@ -15,7 +15,7 @@ import resource
 import signal
 from pathlib import Path
 
-from scripts.processes import end_processes
+from scripts.supervision.processes import end_processes
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 

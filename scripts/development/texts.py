@@ -1,8 +1,8 @@
 """Texts of pages and answers in other languages: which there are, and from .po to the .mo that the program reads.
 
-python -m scripts.texts compile     make the .mo files; ./run and ./check do it themselves
-python -m scripts.texts update      take new texts of the program into the .po files, and take those off that are gone
-python -m scripts.texts missing     name the texts that a language has not yet, those of the pages' scripts included
+python -m scripts.development.texts compile     make the .mo files; ./run and ./check do it themselves
+python -m scripts.development.texts update      take new texts of the program into the .po files, and take those off that are gone
+python -m scripts.development.texts missing     name the texts that a language has not yet, those of the pages' scripts included
 """
 
 import ast
@@ -22,7 +22,7 @@ from django.template import Engine, Template
 from django.template.base import Node
 from django.templatetags.i18n import BlockTranslateNode, TranslateNode
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 LANGUAGES = ("de",)
 LOCALE = ROOT / "locale"
 TEMPLATES = ROOT / "templates"

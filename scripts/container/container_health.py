@@ -6,7 +6,7 @@ import urllib.error
 import urllib.request
 from pathlib import Path
 
-from scripts.proxy_site import ALIVE
+from scripts.proxy.proxy_site import ALIVE
 
 FIRST_PROCESS = Path("/proc/1/cmdline")
 TIMEOUT_S = 5.0

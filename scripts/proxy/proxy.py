@@ -7,9 +7,9 @@ from pathlib import Path
 
 from operation.address_limits import COSTLY
 from operation.json_lines import is_asked_for
-from scripts import page_headers, proxy_limits
 from scripts.places import PROGRAMS_WITH_METRICS, WEB_PROGRAMS, CannotStart, Places, health_socket
-from scripts.proxy_site import (
+from scripts.proxy import page_headers, proxy_limits
+from scripts.proxy.proxy_site import (
     ALIVE,
     Site,
     came_over_http,

@@ -1,7 +1,7 @@
 """A bill of materials (CycloneDX 1.5): what an image is made of, from what is installed.
 
-python -m scripts.sbom --python --node package-lock.json --out sbom.cdx.json
-python -m scripts.sbom --debian LIST --add-to sbom.cdx.json          (LIST: "name version architecture" a line)
+python -m scripts.development.sbom --python --node package-lock.json --out sbom.cdx.json
+python -m scripts.development.sbom --debian LIST --add-to sbom.cdx.json          (LIST: "name version architecture" a line)
 """
 
 import argparse

@@ -2,7 +2,7 @@
 
 from operation.address_limits import COSTLY, CostlyKind, operators_per_address, requests_per_minute, sockets_per_address
 from scripts.places import CannotStart
-from scripts.proxy_site import error_json
+from scripts.proxy.proxy_site import error_json
 
 TOO_MANY = error_json(429, "throttled", "Too many requests from this network address; see Retry-After.")
 RETRY_AFTER_S = 5

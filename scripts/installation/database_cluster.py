@@ -10,8 +10,8 @@ import psycopg
 import redis
 
 from config.private_servers import DATABASE_NAME, DATABASE_ROLE
+from scripts.installation.postgresql_installations import server_for
 from scripts.places import CannotStart, Places, database_user_id
-from scripts.postgresql_installations import server_for
 
 START_TIMEOUT_S = 60.0
 

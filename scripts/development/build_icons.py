@@ -4,7 +4,7 @@ import re
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 LUCIDE = ROOT / "node_modules" / "lucide-static" / "icons"
 OWN = ROOT / "static" / "img" / "icons"
 SPRITE = ROOT / "node_modules" / ".spanwise" / "icons.svg"

@@ -1,6 +1,6 @@
 """supervisord that goes on where nothing can be written: on a full disk it would end over its own words about lines that it cannot keep.
 
-python -m scripts.supervisor_program [OPTION OF supervisord]...
+python -m scripts.supervision.supervisor_program [OPTION OF supervisord]...
 """
 
 import sys

@@ -1,6 +1,6 @@
 """Figures of the code base's structure: modules, folders, import chains, names, functions, sizes.
 
-python -m scripts.house_figures [COMMIT...]      (of the working tree; commits are checked out beside it and follow as columns)
+python -m scripts.development.house_figures [COMMIT...]      (of the working tree; commits are checked out beside it and follow as columns)
 """
 
 import argparse
@@ -17,7 +17,7 @@ from pathlib import Path
 
 import networkx as nx
 
-PROJECT_DIR = Path(__file__).resolve().parent.parent
+PROJECT_DIR = Path(__file__).resolve().parents[2]
 APP_FOLDERS = (
     "accounts", "config", "inspection", "mavlink", "missions", "operation", "planning", "results", "simulation", "telemetry", "workspace"
 )  # fmt: skip
@@ -183,7 +183,7 @@ def _figures_of(commit: str) -> dict[str, int]:
 
 
 def main(arguments: list[str]) -> None:
-    parser = argparse.ArgumentParser(prog="python -m scripts.house_figures", description=(__doc__ or "").split("\n", 1)[0])
+    parser = argparse.ArgumentParser(prog="python -m scripts.development.house_figures", description=(__doc__ or "").split("\n", 1)[0])
     parser.add_argument("commits", nargs="*", metavar="COMMIT", help="commits to compare the working tree with")
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
     options = parser.parse_args(arguments)

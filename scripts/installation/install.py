@@ -1,6 +1,6 @@
 """Install what is missing: Debian packages, .venv, the pages' libraries; compile what is compiled. Needs Python alone.
 
-python -m scripts.install run|check|check-fast|image      (scripts/setup calls it, one at a time in a checkout)
+python -m scripts.installation.install run|check|check-fast|image      (scripts/setup calls it, one at a time in a checkout)
 
 Steps that do not need each other run side by side. Each says how long it took, and while they run, what is going on.
 """
@@ -17,10 +17,10 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from scripts import python_libraries, system_packages
-from scripts.python_libraries import CannotInstall
+from scripts.installation import python_libraries, system_packages
+from scripts.installation.python_libraries import CannotInstall
 
-PROJECT_DIR = Path(__file__).resolve().parent.parent
+PROJECT_DIR = Path(__file__).resolve().parents[2]
 VENV = PROJECT_DIR / ".venv"
 NODE_MODULES = PROJECT_DIR / "node_modules"
 WORTH_REPORTING_S = 5.0  # shorter than this, nobody is told beforehand
@@ -94,7 +94,11 @@ def steps_to_do(purpose: str, base_python: str) -> list[Step]:
         steps.append(Step("Planners' core", 70.0, _compile_core))
     texts = (PROJECT_DIR / "locale").glob("*/LC_MESSAGES/django.po")
     if any(not text.with_suffix(".mo").exists() or text.with_suffix(".mo").stat().st_mtime < text.stat().st_mtime for text in texts):
-        steps.append(Step("Texts in other languages", 1.0, lambda step: _call([_python(), "-m", "scripts.texts", "compile"]), [libraries]))
+        steps.append(
+            Step(
+                "Texts in other languages", 1.0, lambda step: _call([_python(), "-m", "scripts.development.texts", "compile"]), [libraries]
+            )
+        )
     return steps
 
 
@@ -104,7 +108,7 @@ def _python() -> str:
 
 def _page_stamp(is_check: bool) -> list[str]:
     icons = sorted(str(path.relative_to(PROJECT_DIR)) for path in (PROJECT_DIR / "static/img/icons").iterdir())
-    names = ["package.json", "package-lock.json", "scripts/install.py", "scripts/build_icons.py", *icons]
+    names = ["package.json", "package-lock.json", "scripts/installation/install.py", "scripts/development/build_icons.py", *icons]
     return [*_digests(*names), *(["with what checks need"] if is_check else [])]
 
 
@@ -146,7 +150,7 @@ def _install_page_libraries(is_check: bool) -> None:
         (served / folder).mkdir(parents=True, exist_ok=True)
         for name in names:
             shutil.copy2(NODE_MODULES / folder / name, served / folder)
-    _call([_python(), "scripts/build_icons.py"])
+    _call([_python(), "scripts/development/build_icons.py"])
     shutil.copy2(NODE_MODULES / "lucide-static" / "LICENSE", served / "icons-LICENSE.txt")
     stamp.write_text("\n".join(_page_stamp(is_check)) + "\n")
 

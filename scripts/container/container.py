@@ -17,9 +17,10 @@ from typing import NoReturn
 from config.environment import secret
 from config.private_servers import state_directory
 from operation.json_lines import is_asked_for, write_json_lines
-from scripts import commands, container_health, container_proxy
-from scripts.inner_tls import inner_certificate, look_after
+from scripts import commands
+from scripts.container import container_health, container_proxy
 from scripts.places import PROJECT_DIR
+from scripts.proxy.inner_tls import inner_certificate, look_after
 
 WEB_PORT, LIVE_PORT, UAV_LINK_PORT = 8000, 8001, 8002
 SERVING = ("web", "live", "uav-link")  # behind the proxy

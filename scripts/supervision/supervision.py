@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from scripts.places import PROJECT_DIR, SERVING_PROGRAMS, CannotStart, Places
-from scripts.processes import end_processes, processes_in
-from scripts.programs import SERVERS, SERVERS_STAGE, Program
+from scripts.supervision.processes import end_processes, processes_in
+from scripts.supervision.programs import SERVERS, SERVERS_STAGE, Program
 
 START_TIMEOUT_S = 15.0
 STOP_TIMEOUT_S = 90.0
@@ -149,7 +149,7 @@ class Supervisor:
         log = self.places.logs / "supervisor.log"
         with log.open("a") as words:
             child = subprocess.Popen(
-                [sys.executable, "-m", "scripts.supervisor_program", "--nodaemon", "--configuration", str(path)],
+                [sys.executable, "-m", "scripts.supervision.supervisor_program", "--nodaemon", "--configuration", str(path)],
                 cwd=folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,

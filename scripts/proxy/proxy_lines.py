@@ -1,6 +1,6 @@
-"""nginx, whose lines are JSON: python -m scripts.proxy_lines nginx ARGUMENT...
+"""nginx, whose lines are JSON: python -m scripts.proxy.proxy_lines nginx ARGUMENT...
 
-nginx itself writes requests as JSON (scripts/proxy.py), faults never. Signals are passed on to it. No line has what stands behind the
+nginx itself writes requests as JSON (scripts/proxy/proxy.py), faults never. Signals are passed on to it. No line has what stands behind the
 question mark of an address: people put secrets there.
 """
 

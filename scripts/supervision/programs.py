@@ -7,9 +7,9 @@ from pathlib import Path
 
 from operation.json_lines import is_asked_for
 from scripts import commands
+from scripts.installation.postgresql_installations import server_for
+from scripts.installation.system_packages import find_program
 from scripts.places import DATABASE_USER, PROGRAMS_WITH_METRICS, WEB_PROGRAMS, CannotStart, Places, health_socket
-from scripts.postgresql_installations import server_for
-from scripts.system_packages import find_program
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,13 @@ class Program:
     environment: dict[str, str] = field(default_factory=dict)
 
     def start_command(self) -> list[str]:
-        """The command as the supervisor runs it: through scripts.start_program, which clears up after a killed instance."""
+        """The command as the supervisor runs it: through scripts.supervision.start_program, which clears up after a killed instance."""
         options = [str(self.folder), "--stop-signal", self.stop_signal]
         if self.user:
             options += ["--user", self.user]
         for path in self.stale_files:
             options += ["--stale", str(path)]
-        return [sys.executable, "-m", "scripts.start_program", *options, "--", *self.command]
+        return [sys.executable, "-m", "scripts.supervision.start_program", *options, "--", *self.command]
 
 
 SERVERS_STAGE, PROGRAM_STAGE = 1, 2
@@ -129,7 +129,7 @@ def _programs(places: Places, sockets: Path) -> list[Program]:
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
     if is_asked_for():
-        nginx = [sys.executable, "-m", "scripts.proxy_lines", *nginx]
+        nginx = [sys.executable, "-m", "scripts.proxy.proxy_lines", *nginx]
     return [
         *(_web(places, name, sockets / f"{name}.sock") for name in (*WEB_PROGRAMS, "uav-link")),
         Program(

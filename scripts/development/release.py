@@ -10,7 +10,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-PROJECT_DIR = Path(__file__).resolve().parent.parent  # needs no .venv
+PROJECT_DIR = Path(__file__).resolve().parents[2]  # needs no .venv
 VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
 IN_PROJECT = re.compile(r'^version = "(?P<version>[^"]+)"$', re.MULTILINE)
 UNRELEASED = re.compile(r"^## \[(?P<name>[^\]]+)\](?P<rest>.*unreleased.*)?$", re.MULTILINE | re.IGNORECASE)

@@ -12,7 +12,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from scripts import user_cache
+from scripts.installation import user_cache
 
 SHARED_KIND = "uv"
 

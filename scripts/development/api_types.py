@@ -1,6 +1,6 @@
 """The TypeScript types of the API's shapes, static/js/api_types.d.ts, made from the OpenAPI document.
 
-python -m scripts.api_types [--check]      (--check only says whether the file is current)
+python -m scripts.development.api_types [--check]      (--check only says whether the file is current)
 """
 
 import json
@@ -9,11 +9,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-PROJECT_DIR = Path(__file__).resolve().parent.parent
+PROJECT_DIR = Path(__file__).resolve().parents[2]
 TYPES = PROJECT_DIR / "static" / "js" / "api_types.d.ts"
 GENERATOR = PROJECT_DIR / "node_modules" / "openapi-typescript" / "bin" / "cli.js"
 NODE = Path(sys.executable).with_name("node")
-HEADER = "// Made by `python -m scripts.api_types` from the OpenAPI document: change the serializers, then run it again.\n\n"
+HEADER = "// Made by `python -m scripts.development.api_types` from the OpenAPI document: change the serializers, then run it again.\n\n"
 
 
 def _output(*command: str) -> str:
@@ -51,7 +51,10 @@ def main(arguments: list[str]) -> int:
         return 0
     if TYPES.exists() and TYPES.read_text() == content:
         return 0
-    print(f"{TYPES.relative_to(PROJECT_DIR)} is not what the OpenAPI document says: run python -m scripts.api_types", file=sys.stderr)
+    print(
+        f"{TYPES.relative_to(PROJECT_DIR)} is not what the OpenAPI document says: run python -m scripts.development.api_types",
+        file=sys.stderr,
+    )
     return 1
 
 

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from scripts.postgresql_installations import DEBIAN_PROGRAMS, OLDEST_VERSION, installed_servers
-from scripts.python_libraries import CannotInstall
+from scripts.installation.postgresql_installations import DEBIAN_PROGRAMS, OLDEST_VERSION, installed_servers
+from scripts.installation.python_libraries import CannotInstall
 
 EXIT_MISSING = 3
 FONT_FOLDERS = [Path("/usr/share/fonts"), Path("/usr/local/share/fonts")]

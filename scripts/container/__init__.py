@@ -1,0 +1,1 @@
+"""What a container starts, and how it answers health checks."""

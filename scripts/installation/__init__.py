@@ -1,0 +1,1 @@
+"""What the machine needs: system packages, Python libraries, a database cluster."""

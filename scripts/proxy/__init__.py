@@ -1,0 +1,1 @@
+"""The reverse proxy: its configuration, limits, page headers and certificates."""

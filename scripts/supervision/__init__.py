@@ -1,0 +1,1 @@
+"""Programs that run together: how each is started, watched and stopped."""
