@@ -85,8 +85,8 @@ def leg_taken(
     """
     if start_agl_m != end_agl_m and is_closed(length_m > 0.0, east, north, start_agl_m, end_agl_m, air):
         return np.inf, np.inf
-    east_mps, north_mps = wind_in_table(air.wind, 0.5 * (start_agl_m + end_agl_m))
-    return taken_in_wind(length_m, east, north, rise_m, east_mps, north_mps, density, air)
+    wind_mps = wind_in_table(air.wind, 0.5 * (start_agl_m + end_agl_m))
+    return taken_in_wind(length_m, east, north, rise_m, wind_mps, density, air.own, air.table)
 
 
 @njit(cache=True, nogil=True)
@@ -95,32 +95,33 @@ def taken_in_wind(
     east: float,
     north: float,
     rise_m: float,
-    east_mps: float,
-    north_mps: float,
+    wind_mps: tuple[float, float],
     density: float,
-    air: Air,
+    own: Speeds,
+    table: FloatArray,
 ) -> tuple[float, float]:
     """As leg_taken, all of it in one wind: the air's velocity to east and north."""
+    east_mps, north_mps = wind_mps
     air_2 = east_mps * east_mps + north_mps * north_mps
-    if air_2 > air.own.limit_mps * air.own.limit_mps:
+    if air_2 > own.limit_mps * own.limit_mps:
         return np.inf, np.inf
     along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
     level_s = level_air_mps = 0.0
     if length_m > 0.0:
-        ground_mps, level_air_mps = ground_and_air_speed(air.own.cruise_mps, air.own.limit_mps, along_mps, across_mps)
+        ground_mps, level_air_mps = ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)
         if ground_mps == TOO_STRONG:
             return np.inf, np.inf
         level_s = length_m / ground_mps
-    vertical_s = rise_m / air.own.climb_mps if rise_m > 0.0 else -rise_m / air.own.descent_mps
-    if len(air.table) == 0:
+    vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
+    if len(table) == 0:
         return max(level_s, vertical_s), 0.0
     if vertical_s > level_s:  # the rise takes longer: slower along
         air_mps = math.hypot(length_m / vertical_s - along_mps, across_mps) if length_m > 0.0 else math.sqrt(air_2)
-        return vertical_s, vertical_s * watts(air.table, CLIMBING if rise_m > 0.0 else LEVEL, air_mps, density)
-    level_w = watts(air.table, LEVEL, level_air_mps, density)
+        return vertical_s, vertical_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, air_mps, density)
+    level_w = watts(table, LEVEL, level_air_mps, density)
     joules = level_s * level_w
     if rise_m > 0.0:  # power between level flight and the full climb is a convex function of the climb: this is no less
-        joules += vertical_s * (watts(air.table, CLIMBING, level_air_mps, density) - level_w)
+        joules += vertical_s * (watts(table, CLIMBING, level_air_mps, density) - level_w)
     return level_s, joules
 
 

@@ -138,7 +138,7 @@ def _steps_taken(contracted: ContractedGraph, steps: PathSteps, passed_m: FloatA
     is_known = len(ground_m) > 0
     density = air_density(0.0, temperature_c)
     wind_agl_m = -1.0
-    east_mps = north_mps = 0.0
+    wind_mps = (0.0, 0.0)
     for chain_number in range(len(chain_first) - 1):
         for place in range(chain_first[chain_number] + 1, chain_first[chain_number + 1]):
             before, node = place_node[place - 1], place_node[place]
@@ -148,12 +148,12 @@ def _steps_taken(contracted: ContractedGraph, steps: PathSteps, passed_m: FloatA
             middle_m, is_level = 0.5 * (passed_m[before] + passed_m[node]), passed_m[before] == passed_m[node]
             if middle_m != wind_agl_m:
                 wind_agl_m = middle_m
-                east_mps, north_mps = wind_in_table(air.wind, middle_m)
+                wind_mps = wind_in_table(air.wind, middle_m)
             for way in range(2):
                 sign = 1.0 - 2.0 * way
                 to_east, to_north = sign * east[place], sign * north[place]
                 # As leg_taken: most steps are level, and in the wind of the step before.
-                seconds, joules = taken_in_wind(length_m[place], to_east, to_north, sign * rise_m, east_mps, north_mps, density, air)
+                seconds, joules = taken_in_wind(length_m[place], to_east, to_north, sign * rise_m, wind_mps, density, air.own, air.table)
                 if not is_level and is_closed(True, to_east, to_north, passed_m[before], passed_m[node], air):
                     seconds = joules = np.inf
                 taken[place, way, 0], taken[place, way, 1] = min(seconds, NO_HEADWAY), min(joules, NO_HEADWAY)

@@ -1,7 +1,6 @@
 """Targets put into a plan where they cost least."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -24,12 +23,15 @@ from planning.solver.problem_arrays import ProblemArrays
 
 BLINK_SHARE = 0.01  # how often a place is overlooked
 INSERTION_NEIGHBOURS = 20  # beside which a place is looked for
+METRES = -1  # in place of a power: the price is the metres
 
 
 @njit(cache=True, nogil=True)
 def recreate(problem: ProblemArrays, work: Workspace, waiting: int, kind: int, power: int, scale: float, is_near: bool) -> None:
     """Put in what waits where it costs least: the heavy first, else at random, the far first or the near first."""
     plan = work.plan
+    if not problem.is_makespan:
+        power = METRES
     for number in range(waiting):
         target = work.waiting[number]
         if kind == 0:
@@ -141,31 +143,24 @@ def _next_blink(random: RandomState) -> int:
     return int(-math.log(1.0 - draw(random)) / BLINK_SHARE)
 
 
-class Figures(NamedTuple):
-    """A UAV's route: metres, seconds of service, the most metres, metres a second."""
-
-    length_m: float
-    service_s: float
-    limit_m: float
-    speed_mps: float
-
-
 @njit(cache=True, nogil=True, inline="always")  # a plan handed on costs more than the price, and so does a branch in here
 def _price(problem: ProblemArrays, work: Workspace, uav: int, visit: int, added_m: float, power: int, scale: float) -> float:
     """What a visit costs that makes a route so much longer; inf if the UAV cannot fly as far."""
     length_m, service_s = work.plan.length_m[uav], work.plan.service_s[uav] + work.beside_s[uav]
-    figures = Figures(length_m, service_s, problem.limit_m[uav], problem.speed_mps[uav])
-    return _price_of(figures, added_m, problem.service_s[visit] + work.opened_s[uav], problem.is_makespan, power, scale)
+    limit_m, speed_mps, added_s = problem.limit_m[uav], problem.speed_mps[uav], problem.service_s[visit] + work.opened_s[uav]
+    return _price_of(length_m, service_s, added_m, added_s, limit_m, speed_mps, power, scale)
 
 
 @njit(cache=True, nogil=True)
-def _price_of(route: Figures, added_m: float, added_s: float, is_makespan: bool, power: int, scale: float) -> float:
-    if route.length_m + added_m > route.limit_m and not (route.length_m > NO_LIMIT_M and added_m < 0.0):
+def _price_of(
+    length_m: float, work_s: float, added_m: float, service_s: float, limit_m: float, speed_mps: float, power: int, scale: float
+) -> float:
+    if length_m + added_m > limit_m and not (length_m > NO_LIMIT_M and added_m < 0.0):
         return math.inf
-    if not is_makespan:
+    if power == METRES:
         return added_m
-    now_s = duration_s(route.length_m, route.speed_mps, route.service_s)
-    later_s = now_s + added_m / route.speed_mps + added_s
+    now_s = duration_s(length_m, speed_mps, work_s)
+    later_s = now_s + added_m / speed_mps + service_s
     return raised_to(later_s / scale, power) - raised_to(now_s / scale, power) + 1e-7 * (later_s - now_s) / scale
 
 

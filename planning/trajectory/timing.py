@@ -192,7 +192,7 @@ def _legs(flown: _Flown, air: Air, lands: bool) -> tuple[FloatArray, FloatArray,
             )
             on_leg = Air(air.wind, air.temperature_c, wanted, air.table)
         # As leg_taken: most legs are level, and in the wind of the leg before.
-        seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here[0], wind_here[1], here, on_leg)
+        seconds, joules = taken_in_wind(length_m, east, north, rise_m, wind_here, here, on_leg.own, on_leg.table)
         if before_m != after_m and is_closed(length_m > 0.0, east, north, before_m, after_m, on_leg):
             seconds = joules = np.inf
         leg_s[place], leg_j[place], density[place] = seconds, joules, here
