@@ -8,6 +8,7 @@ from typing import Any
 from pyproj import CRS
 
 from inspection.geodesy.geometry_validator import GeometryFault
+from operation.reasons import Reason
 
 MAX_ROWS = 200_000
 MAX_COLUMNS = 200
@@ -26,7 +27,7 @@ class AssetFileError(ValueError):
         super().__init__("; ".join(str(fault) for fault in self.faults))
 
 
-def refused(place: str, message: str) -> AssetFileError:
+def refused(place: str, message: Reason | str) -> AssetFileError:
     return AssetFileError([GeometryFault(place, message)])
 
 

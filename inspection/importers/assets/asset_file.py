@@ -93,7 +93,7 @@ class AssetFile:
             if is_json:
                 raise
             where = fault.place.removesuffix(".coordinates").replace(".coordinates", ", coordinates ")
-            raise GeometryFault(where, fault.message, fault.position) from fault
+            raise GeometryFault(where, fault.why, fault.position) from fault
         return shape
 
 

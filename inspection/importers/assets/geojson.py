@@ -9,6 +9,7 @@ from typing import Any, TextIO
 from inspection.importers.assets.reference_systems import system_of_code
 from inspection.importers.rows import MAX_ROW_CHARACTERS, Columns, RawRow, Source, plain_cell, refused
 from inspection.importers.strict_json import JsonFault, parse_strict_json
+from operation.reasons import reason_of
 
 _CHUNK = 256 * 1024
 _START = re.compile(r'"features"\s*:\s*\[')
@@ -96,7 +97,7 @@ def _single(text: str) -> Iterator[Any]:
     try:
         value = parse_strict_json(text, max_bytes=MAX_ROW_CHARACTERS)
     except JsonFault as fault:
-        raise refused("", str(fault)) from fault
+        raise refused("", reason_of(fault)) from fault
     kind = value.get("type") if isinstance(value, dict) else None
     if kind == "Feature":
         yield value
