@@ -26,7 +26,7 @@ import numpy as np
 import osmium
 from playwright.sync_api import Browser, Page, Request, sync_playwright
 
-from benchmarks.large_region import tile_of, write_region
+from benchmarks.network.large_region import tile_of, write_region
 from scripts.installation.system_packages import BROWSERS
 from scripts.places import Places
 from tests.browser.conftest import CHROMIUM_FLAGS

@@ -1,7 +1,7 @@
 """The composition root: settings, addresses, servers; it knows every app and no app knows it."""
 
 from config.celery import app as celery_app
-from config.compiled_core import use_compiled_directory
+from config.compiled.compiled_core import use_compiled_directory
 from operation.garbage_collection import collect_rarely
 
 collect_rarely()

@@ -9,7 +9,7 @@ import os
 from celery import Celery
 from celery.signals import beat_init, task_postrun, worker_before_create_process, worker_process_init
 
-from config.task_instrumentation import LoopPulse, watch_tasks
+from config.instrumentation.task_instrumentation import LoopPulse, watch_tasks
 from config.worker_shutdown import SoftEnd
 from operation.garbage_collection import freeze_startup_objects, trim_memory
 from operation.program import program_begins
@@ -51,7 +51,7 @@ def trim_memory_after_task(**_: object) -> None:
 @beat_init.connect
 def report_the_installation(**_: object) -> None:
     """The schedule runs once, so it is the one that tells how long queues are."""
-    from config.system_metrics import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
+    from config.instrumentation.system_metrics import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
     InstallationState(app).snapshot().__enter__()
     program_begins("beat")

@@ -94,7 +94,7 @@ INSTALLED_APPS = [
 ]
 
 MIDDLEWARE = [
-    "config.request_instrumentation.ObservedRequests",
+    "config.instrumentation.request_instrumentation.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
@@ -299,7 +299,7 @@ CELERY_BEAT_SCHEDULE = {
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }
-CELERY_BEAT_SCHEDULER = "config.task_instrumentation:WatchedScheduler"
+CELERY_BEAT_SCHEDULER = "config.instrumentation.task_instrumentation:WatchedScheduler"
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
 # The field's own rules, each with a unit in its name.

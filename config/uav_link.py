@@ -10,7 +10,7 @@ from operation.tracing import begin_tracing
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 settings.ROOT_URLCONF = "config.uav_link_urls"
 settings.MIDDLEWARE = [
-    "config.request_instrumentation.ObservedRequests",
+    "config.instrumentation.request_instrumentation.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
     "workspace.api.query_parameters.KnownQueryParameters",
 ]

@@ -11,7 +11,7 @@ begin_tracing("web")  # before the middleware is put together, of which it is a 
 application = get_wsgi_application()
 
 import config.urls  # noqa: E402, F401 (Django first; before the first request comes in)
-from config.warming import warm_up_beside, warming_faults  # noqa: E402
+from config.compiled.warming import warm_up_beside, warming_faults  # noqa: E402
 from missions.services import warm_up  # noqa: E402
 from operation.garbage_collection import freeze_startup_objects  # noqa: E402
 from operation.program import program_begins  # noqa: E402

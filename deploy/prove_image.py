@@ -25,7 +25,7 @@ PROJECT_DIR = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PROJECT_DIR))
 
 from deploy.load.certificates import make_certificate  # noqa: E402
-from deploy.load.name_server import NameServer  # noqa: E402
+from deploy.load.scaling.name_server import NameServer  # noqa: E402
 from deploy.proof.load import Counted, Proxy, plan_bodies, under_load  # noqa: E402
 from deploy.proof.pods import (  # noqa: E402
     Pod,

@@ -17,7 +17,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled, numba_settings
+from config.compiled.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled, numba_settings
 from scripts.installation import user_cache
 
 POLL_S = 0.05

@@ -19,14 +19,14 @@ def ground_folder(installation: Installation) -> Path:
 
 
 def bring_ground(installation: Installation) -> Path:
-    """The graph of benchmarks/make_graph.py with assets, accounts and requests, unless they are there. Returns their folder."""
+    """The graph of benchmarks/network/make_graph.py with assets, accounts and requests, unless they are there. Returns their folder."""
     folder = ground_folder(installation)
     written = folder / LAST_WRITTEN
     if not written.exists() or time.time() - written.stat().st_mtime > GOOD_FOR_S:
         folder.mkdir(parents=True, exist_ok=True)
         graph = folder / "graph.npz"
         for command in (
-            ["benchmarks/make_graph.py", "--nodes", str(NODES), "--out", str(graph)],
+            ["benchmarks/network/make_graph.py", "--nodes", str(NODES), "--out", str(graph)],
             ["deploy/load/prepare_ground.py", "--graph", str(graph)],
         ):
             subprocess.run([sys.executable, *command], cwd=PROJECT_DIR, env=installation.environment(), check=True)

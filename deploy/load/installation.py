@@ -30,8 +30,8 @@ from typing import Self
 
 from config.private_servers import private_database_url, private_redis_url
 from deploy.load.certificates import make_authority, make_certificate
-from deploy.load.name_server import NameServer
-from deploy.load.replicas import KINDS, at_address, free_port, kind_of, name_of, ports_of_simulations, replicas
+from deploy.load.scaling.name_server import NameServer
+from deploy.load.scaling.replicas import KINDS, at_address, free_port, kind_of, name_of, ports_of_simulations, replicas
 from deploy.load.usage import Usage, usage
 from scripts.installation import database_cluster
 from scripts.places import PROJECT_DIR, prepare_sockets, prepare_state, remove_sockets

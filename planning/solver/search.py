@@ -21,7 +21,8 @@ LOOK_INTERVAL_S = 0.1
 TARGET_ROUNDS_PER_STEP = 40_000  # rounds times targets, some tens of milliseconds
 FIXED_STEPS = 40  # of each chain in a search without a time, a second or less in all
 MAX_ROUNDS_PER_STEP = 600
-# Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by `benchmarks.assignment`.
+# Temperatures at the beginning and the end, in mean arcs of the plan, of one chain and the next. Measured by
+# `benchmarks.planning.assignment`.
 TOTAL_TEMPERATURES = ((4.0, 0.05), (1.5, 0.05))
 MAKESPAN_TEMPERATURES = ((1.0, 0.003), (0.4, 0.003))
 POWERS = (3, 3, 4, 5, 6)  # of 2, one after another: the longest route comes to count more and more

@@ -19,7 +19,7 @@ PLACES = 12
 SPREAD = np.linspace(-2.8, 2.8, 15)
 SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
-# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/estimator.py.
+# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/telemetry/estimator.py.
 SPEED_FACTOR_SD = 0.06  # of a UAV that has not flown yet
 SPEED_FACTOR_DRIFT = 0.008  # in a second
 SUREST_SD = 0.02  # of a speed factor, however long it was observed

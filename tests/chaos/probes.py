@@ -6,7 +6,7 @@ import socket
 from pathlib import Path
 
 from deploy.load.installation import Installation
-from deploy.load.replicas import kind_of
+from deploy.load.scaling.replicas import kind_of
 from scripts.places import health_socket
 
 TIMEOUT_S = 5.0

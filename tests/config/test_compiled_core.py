@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from config import compiled_core
-from config.compiled_core import STAMP, STAMP_LETTERS, compiled_directory, compiled_stamp, is_compiled
+from config.compiled import compiled_core
+from config.compiled.compiled_core import STAMP, STAMP_LETTERS, compiled_directory, compiled_stamp, is_compiled
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def test_the_place_and_the_times_of_the_sources_do_not_count(tmp_path, monkeypat
     """Another checkout of the same content, made later, may use the same code."""
     stamps = set()
     for name in ("one", "another"):
-        for file in ("requirements.txt", "config/compiled_places.py", "core/ways.py"):
+        for file in ("requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"):
             path = tmp_path / name / file
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text("the same")
@@ -76,9 +76,9 @@ def test_the_place_and_the_times_of_the_sources_do_not_count(tmp_path, monkeypat
     assert len(stamps) == 1
 
 
-@pytest.mark.parametrize("file", ["requirements.txt", "config/compiled_places.py", "core/ways.py"])
+@pytest.mark.parametrize("file", ["requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"])
 def test_other_content_has_another_stamp(tmp_path, monkeypatch, file):
-    for name in ("requirements.txt", "config/compiled_places.py", "core/ways.py"):
+    for name in ("requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("the same")
     monkeypatch.setattr(compiled_core, "PROJECT_DIR", tmp_path)

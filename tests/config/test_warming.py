@@ -10,8 +10,8 @@ import pytest
 from django.conf import settings
 from django.test import Client
 
-from config import warming
-from config.warming import WARMING_UP, warm_up_beside, warming_faults
+from config.compiled import warming
+from config.compiled.warming import WARMING_UP, warm_up_beside, warming_faults
 from operation.readiness import Readiness
 from tests.telemetry.gateway.station import wait_for
 
@@ -26,7 +26,7 @@ from missions import services
 is_warm = threading.Event()
 services.warm_up = is_warm.wait
 import config.wsgi
-from config.warming import warming_faults
+from config.compiled.warming import warming_faults
 assert warming_faults()
 print(config.wsgi.application)
 is_warm.set()

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from deploy.load.certificates import make_authority, make_certificate
-from deploy.load.replicas import at_address, kind_of, name_of, replicas
+from deploy.load.scaling.replicas import at_address, kind_of, name_of, replicas
 from deploy.load.usage import usage
 from scripts.places import WEB_PROGRAMS, Places
 from scripts.supervision.programs import web_programs

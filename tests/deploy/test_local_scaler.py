@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 import yaml
 
-from deploy.load.autoscaling import PROGRAMS, Book, Policy, Rules, decide, shipped_rules
-from deploy.load.name_server import answer
+from deploy.load.scaling.autoscaling import PROGRAMS, Book, Policy, Rules, decide, shipped_rules
+from deploy.load.scaling.name_server import answer
 
 RULES = Rules(
     2, 20, 10.0, "planning", up=(Policy(15.0, percent=100),), up_window_s=0.0, down=(Policy(15.0, percent=100),), down_window_s=300.0

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from django.utils import timezone
 
-from config import system_metrics
 from config.celery import app
-from config.system_metrics import InstallationState
+from config.instrumentation import system_metrics
+from config.instrumentation.system_metrics import InstallationState
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.models import GraphSnapshot, Ground

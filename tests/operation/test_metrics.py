@@ -12,7 +12,7 @@ from prometheus_client import REGISTRY
 from prometheus_client.metrics import MetricWrapperBase
 from prometheus_client.parser import text_string_to_metric_families
 
-from config import system_metrics
+from config.instrumentation import system_metrics
 from operation import metrics
 from operation.exposition import metrics_text
 from simulation.simulator import process as simulator_process

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from config.compiled_core import numba_settings
+from config.compiled.compiled_core import numba_settings
 from scripts import compile_core
 from scripts.compile_core import PARTS, index_files, take_over
 

@@ -9,7 +9,7 @@ import time
 from collections import defaultdict
 from datetime import UTC, datetime
 
-from deploy.load.replicas import kind_of
+from deploy.load.scaling.replicas import kind_of
 from tests.chaos.day import Day, working_day
 from tests.chaos.experiment import Course, main, percentile
 from tests.chaos.pages import Pages

@@ -13,7 +13,7 @@ from typing import Any
 
 import orjson
 
-from benchmarks.live_clients import Closed, Socket
+from benchmarks.telemetry.live_clients import Closed, Socket
 from scripts.places import PROJECT_DIR
 from tests.chaos.day import Day, working_day
 from tests.chaos.experiment import Course, main

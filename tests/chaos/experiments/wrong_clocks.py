@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 
-from deploy.load.replicas import replicas
+from deploy.load.scaling.replicas import replicas
 from scripts.installation.system_packages import find_program
 from scripts.places import PROJECT_DIR
 from scripts.supervision.processes import end_processes

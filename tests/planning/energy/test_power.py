@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.energy_model import FLIGHTS, MAX_CALM_ERROR, POWERS_W, Flight, modelled
+from benchmarks.planning.energy_model import FLIGHTS, MAX_CALM_ERROR, POWERS_W, Flight, modelled
 from planning.energy.performance import Performance
 from planning.energy.power import AIRSPEED_STEP_MPS, CLIMBING, LEVEL, ground_speed_mps, power_table, power_w, watts
 

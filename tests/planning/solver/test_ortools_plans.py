@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchmarks.ortools_plans import routes_by_ortools
+from benchmarks.planning.ortools_plans import routes_by_ortools
 from planning.problem import Objective, Problem, UavStart, Visit, merit
 from planning.solver.exact import best_plan
 from planning.solver.reach import needed_range_m, reachable

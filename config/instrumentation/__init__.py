@@ -1,0 +1,1 @@
+"""How programs count and time what they do: requests, tasks, system metrics."""
