@@ -79,7 +79,7 @@ def test_the_place_and_the_times_of_the_sources_do_not_count(tmp_path, monkeypat
 @pytest.mark.parametrize("file", ["requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"])
 def test_other_content_has_another_stamp(tmp_path, monkeypatch, file):
     for name in ("requirements.txt", "config/compiled/compiled_places.py", "core/ways.py"):
-        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("the same")
     monkeypatch.setattr(compiled_core, "PROJECT_DIR", tmp_path)
     monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", ("core",))
