@@ -4,7 +4,7 @@ import { inAir } from "../domain/in_air.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
 import { t } from "../text.js";
 import { prefixOf } from "./call_signs.js";
-import { isHeld } from "./uav_words.js";
+import { isHeld } from "./text/uav_text.js";
 
 /** @import { LiveMission, LiveTarget, LiveUav, Mission, TargetState } from "../api_types.d.ts" */
 

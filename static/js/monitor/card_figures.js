@@ -6,7 +6,7 @@ import { inAir } from "../domain/in_air.js";
 import { MIN_HOLD_S } from "../domain/rtl_check.js";
 import { t } from "../text.js";
 import { clockText, durationText, exactClockText, heightText, lengthText, percentText, speedText } from "../units.js";
-import { ageWords, isHeld } from "./uav_words.js";
+import { ageWords, isHeld } from "./text/uav_text.js";
 
 /** @import { LiveUav, Route } from "../api_types.d.ts" */
 /** @import { Certainty } from "../domain/certainty.js" */

@@ -4,7 +4,7 @@ import { KINDS } from "../domain/flying.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { reasonWords, STATES } from "./board.js";
-import { causeWords } from "./offer_words.js";
+import { causeWords } from "./text/offer_text.js";
 
 /** @import { AlertLevel, CommandKind, MissionEvent, MissionEventKindEnum } from "../api_types.d.ts" */
 

@@ -14,7 +14,7 @@ import { createStore } from "../store.js";
 import { t } from "../text.js";
 import { hasArrived } from "./arrival.js";
 import { missionNumbers } from "./call_signs.js";
-import { createCommanding } from "./commanding.js";
+import { createCommanding } from "./commands/commanding.js";
 import { createEventReading } from "./event_reading.js";
 import { EVERYTHING, isHead, listed } from "./fleet_groups.js";
 import { mountMonitorMap } from "./map/monitor_map.js";

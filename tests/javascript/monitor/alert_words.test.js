@@ -8,15 +8,15 @@ import {
   messageWords,
   overtakenWords,
   SEEN_AFTER_MS,
-} from "../../../static/js/monitor/alert_words.js";
-import { drawnOffer } from "../../../static/js/monitor/offer_words.js";
+} from "../../../static/js/monitor/text/alert_text.js";
+import { drawnOffer } from "../../../static/js/monitor/text/offer_text.js";
 import { createStore } from "../../../static/js/store.js";
 import { positionText } from "../../../static/js/units.js";
 import { ago, estimate, NOW_MS, plain, uav } from "./live_uav.js";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
-const { watchOvertaken } = await import("../../../static/js/monitor/commanding.js");
+const { watchOvertaken } = await import("../../../static/js/monitor/commands/commanding.js");
 
 const anAlert = (change) => ({
   id: 1,

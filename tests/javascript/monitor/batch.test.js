@@ -8,7 +8,7 @@ import {
   returnLinesOf,
   scopeChoices,
   whyNot,
-} from "../../../static/js/monitor/batch.js";
+} from "../../../static/js/monitor/commands/batch.js";
 
 const HEARD = "2026-09-21T14:15:00Z";
 

@@ -5,7 +5,7 @@ import { test } from "node:test";
 import { letterOf, missionNumbers, prefixOf } from "../../../static/js/monitor/call_signs.js";
 import { EVERYTHING, grouped } from "../../../static/js/monitor/fleet_groups.js";
 import { ALONE, clustersOf, spotsOf } from "../../../static/js/monitor/map/marker_layout.js";
-import { windWords } from "../../../static/js/monitor/uav_words.js";
+import { windWords } from "../../../static/js/monitor/text/uav_text.js";
 
 const NOW_MS = Date.parse("2026-11-28T10:00:00Z");
 const SIZE = { width: 1000, height: 800 };

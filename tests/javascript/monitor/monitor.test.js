@@ -6,10 +6,12 @@ import { flyingUavs, inAir } from "../../../static/js/domain/in_air.js";
 import { alertsInOrder, inOrder, newAlerts } from "../../../static/js/domain/order.js";
 import { colourClass, routeNumber } from "../../../static/js/domain/palette.js";
 import { boardRows } from "../../../static/js/monitor/board.js";
+import { unreachableLines } from "../../../static/js/monitor/commands/unreachable.js";
 import { progressOf } from "../../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../../static/js/monitor/map/ellipse.js";
 import { between } from "../../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../../static/js/monitor/mission_details.js";
+import { ofPage, placed } from "../../../static/js/monitor/placed.js";
 import {
   causeWords,
   overWords,
@@ -17,10 +19,8 @@ import {
   targetLines,
   validWords,
   whyNotDecided,
-} from "../../../static/js/monitor/offer_words.js";
-import { ofPage, placed } from "../../../static/js/monitor/placed.js";
-import { ageWords, estimateWords, stateOf } from "../../../static/js/monitor/uav_words.js";
-import { unreachableLines } from "../../../static/js/monitor/unreachable.js";
+} from "../../../static/js/monitor/text/offer_text.js";
+import { ageWords, estimateWords, stateOf } from "../../../static/js/monitor/text/uav_text.js";
 import { ago, EACH_TEN_SECONDS, estimate, NOW_MS, plain, uav } from "./live_uav.js";
 
 test("a UAV with a fresh report is measured, a silent one is estimated, and lost once nobody vouches for it", () => {

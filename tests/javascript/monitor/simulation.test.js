@@ -12,7 +12,7 @@ import {
   vehicleWords,
   WELL,
   windOf,
-} from "../../../static/js/monitor/simulation_words.js";
+} from "../../../static/js/monitor/text/simulation_text.js";
 
 const vehicle = (name, more = {}) => ({
   id: name,

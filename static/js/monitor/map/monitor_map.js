@@ -17,7 +17,7 @@ import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
 import { letterOf, prefixOf } from "../call_signs.js";
-import { mapFact } from "../uav_words.js";
+import { mapFact } from "../text/uav_text.js";
 import { createCloseUp } from "./close_up.js";
 import * as flightLayers from "./flight_layers.js";
 import { createTargetPills } from "./target_pills.js";

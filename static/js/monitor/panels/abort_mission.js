@@ -7,8 +7,8 @@ import { confirmAct } from "../../page/confirm.js";
 import { CHECKING_HOME, returnsNow } from "../../page/present_returns.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { batchScopes } from "../batch.js";
-import { commandBatch } from "../batch_commanding.js";
+import { batchScopes } from "../commands/batch.js";
+import { commandBatch } from "../commands/batch_commanding.js";
 
 /** @import { LiveMission } from "../../api_types.d.ts" */
 /** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */

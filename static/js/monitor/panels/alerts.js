@@ -8,8 +8,8 @@ import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
-import { actsNow, besideWords, createSeenLevels, isMoving, messageWords, SEEN_AFTER_MS } from "../alert_words.js";
 import { isNone } from "../arrival.js";
+import { actsNow, besideWords, createSeenLevels, isMoving, messageWords, SEEN_AFTER_MS } from "../text/alert_text.js";
 import { acknowledge, acknowledgeEnded, close, note, positionActs, takeOver, tried } from "./alert_acts.js";
 
 /** @import { Answer } from "../../api.js" */

@@ -9,7 +9,6 @@ import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
-import { CONTACT_MEANS, messageWords } from "../alert_words.js";
 import { isNone } from "../arrival.js";
 import { numbersOf, pillOf } from "../board.js";
 import { letterOf, prefixOf } from "../call_signs.js";
@@ -17,7 +16,8 @@ import { batteryWords, figuresOf } from "../card_figures.js";
 import { rateOf, rateWords } from "../clock_rate.js";
 import { isHead, listed } from "../fleet_groups.js";
 import { liveStrip, progressOf } from "../live_strip.js";
-import { estimateWords, stateOf, windWords } from "../uav_words.js";
+import { CONTACT_MEANS, messageWords } from "../text/alert_text.js";
+import { estimateWords, stateOf, windWords } from "../text/uav_text.js";
 import { makeHead, refreshHead, UavRow } from "./list_rows.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */

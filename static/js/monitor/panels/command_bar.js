@@ -5,10 +5,10 @@ import { KINDS } from "../../domain/flying.js";
 import { colourClass } from "../../domain/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { t } from "../../text.js";
-import { batchScopes, whyNot } from "../batch.js";
 import { letterOf } from "../call_signs.js";
+import { batchScopes, whyNot } from "../commands/batch.js";
+import { isHeld } from "../text/uav_text.js";
 import { uavMenu } from "../uav_menu.js";
-import { isHeld } from "../uav_words.js";
 
 /** @import { AskedKind } from "../../domain/command_questions.js" */
 /** @import { Binding } from "../../page/keyboard.js" */

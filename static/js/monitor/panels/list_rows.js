@@ -5,7 +5,7 @@ import { alarmOf } from "../../domain/order.js";
 import { t } from "../../text.js";
 import { letterOf } from "../call_signs.js";
 import { UNKNOWN } from "../card_figures.js";
-import { stateOf } from "../uav_words.js";
+import { stateOf } from "../text/uav_text.js";
 
 /** @import { AlertLevel } from "../../api_types.d.ts" */
 /** @import { Figure } from "../card_figures.js" */

@@ -18,7 +18,7 @@ import {
   uavLines,
   validWords,
   whyNotDecided,
-} from "../offer_words.js";
+} from "../text/offer_text.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission } from "../../api_types.d.ts" */

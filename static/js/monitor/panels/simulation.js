@@ -20,11 +20,11 @@ import {
   vehicleWords,
   WELL,
   windOf,
-} from "../simulation_words.js";
+} from "../text/simulation_text.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { SimulatedVehicle, Simulation, SimulationPage } from "../../api_types.d.ts" */
-/** @import { Fault } from "../simulation_words.js" */
+/** @import { Fault } from "../text/simulation_text.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
 /** Sends something, says so, and looks what has become of it. @typedef {(act: () => Promise<unknown>, words?: string) => Promise<void>} Do */

@@ -4,8 +4,8 @@ import { byId, h, icon } from "../../dom.js";
 import { alertsInOrder, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { t } from "../../text.js";
 import { exactClockText } from "../../units.js";
-import { messageWords } from "../alert_words.js";
-import { causeWords, isUndecided } from "../offer_words.js";
+import { messageWords } from "../text/alert_text.js";
+import { causeWords, isUndecided } from "../text/offer_text.js";
 
 /** @import { MonitorStore } from "../types.d.ts" */
 

@@ -1,8 +1,8 @@
 /** What becomes of a command to UAVs of which nothing is heard. */
 
-import { t } from "../text.js";
+import { t } from "../../text.js";
 
-/** @import { CommandKind, LiveUav } from "../api_types.d.ts" */
+/** @import { CommandKind, LiveUav } from "../../api_types.d.ts" */
 
 /** @type {Set<CommandKind>} */
 const SENT = new Set(["hold", "return", "land", "abort"]); // by a gateway to where it was heard; a companion computer asks by itself

@@ -1,22 +1,22 @@
 /** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
 
-import { ApiError, freshKey } from "../api.js";
-import { certaintyOf, MEASURED } from "../domain/certainty.js";
-import { KINDS } from "../domain/flying.js";
-import { commandUav } from "../page/command_uav.js";
-import { confirmAct } from "../page/confirm.js";
-import { presentQuestion } from "../page/present_returns.js";
-import { announce, toast } from "../page/toast.js";
-import { t, tn } from "../text.js";
-import { clockText, lengthText, percentText } from "../units.js";
-import { overtakenWords } from "./alert_words.js";
+import { ApiError, freshKey } from "../../api.js";
+import { certaintyOf, MEASURED } from "../../domain/certainty.js";
+import { KINDS } from "../../domain/flying.js";
+import { commandUav } from "../../page/command_uav.js";
+import { confirmAct } from "../../page/confirm.js";
+import { presentQuestion } from "../../page/present_returns.js";
+import { announce, toast } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
+import { clockText, lengthText, percentText } from "../../units.js";
+import { overtakenWords } from "../text/alert_text.js";
 import { createBatch } from "./batch_commanding.js";
 import { dropSent, markSending } from "./sending.js";
 import { unreachableLines } from "./unreachable.js";
 
-/** @import { AskedKind } from "../domain/command_questions.js" */
-/** @import { CommandKind, LiveMission, LiveUav, Mission } from "../api_types.d.ts" */
-/** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "./types.d.ts" */
+/** @import { AskedKind } from "../../domain/command_questions.js" */
+/** @import { CommandKind, LiveMission, LiveUav, Mission } from "../../api_types.d.ts" */
+/** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "../types.d.ts" */
 
 /**
  * Figures of now in a question: the battery, what is left, the targets that stay open.

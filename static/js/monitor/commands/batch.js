@@ -1,10 +1,10 @@
 /** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
 
-import { inAir } from "../domain/in_air.js";
-import { returnLinesOfAll } from "../domain/rtl_check.js";
-import { t, tn } from "../text.js";
+import { inAir } from "../../domain/in_air.js";
+import { returnLinesOfAll } from "../../domain/rtl_check.js";
+import { t, tn } from "../../text.js";
 
-/** @import { BatchAnswer, LiveMission, LiveUav, PresentReturn } from "../api_types.d.ts" */
+/** @import { BatchAnswer, LiveMission, LiveUav, PresentReturn } from "../../api_types.d.ts" */
 
 /**
  * UAVs of one mission that a batch would reach, and those it would not, with the reason.

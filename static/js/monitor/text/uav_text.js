@@ -1,12 +1,12 @@
 /** What a live page says of one UAV: its state, the age of its report, the estimate. Values in, words out. */
 
-import { ESTIMATED, hasFix, isLate, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
-import { inAir } from "../domain/in_air.js";
-import { t } from "../text.js";
-import { durationText, exactClockText, heightText, lengthText, numberText, speedText } from "../units.js";
+import { ESTIMATED, hasFix, isLate, LOST, MEASURED, reportAge_s, withinOf_m } from "../../domain/certainty.js";
+import { inAir } from "../../domain/in_air.js";
+import { t } from "../../text.js";
+import { durationText, exactClockText, heightText, lengthText, numberText, speedText } from "../../units.js";
 
-/** @import { LiveUav } from "../api_types.d.ts" */
-/** @import { Certainty } from "../domain/certainty.js" */
+/** @import { LiveUav } from "../../api_types.d.ts" */
+/** @import { Certainty } from "../../domain/certainty.js" */
 
 const AMBER = "warning";
 /** @type {[RegExp, string, string][]} */

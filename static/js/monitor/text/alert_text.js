@@ -1,12 +1,12 @@
 /** What an alert says on a live page: words that move with the time, what is said beside them, and acts that still make sense. */
 
-import { inAir } from "../domain/in_air.js";
-import { isOpenAlert } from "../domain/order.js";
-import { t } from "../text.js";
-import { exactClockText } from "../units.js";
-import { contactWords, durationWords, isLanding, isReturning } from "./uav_words.js";
+import { inAir } from "../../domain/in_air.js";
+import { isOpenAlert } from "../../domain/order.js";
+import { t } from "../../text.js";
+import { exactClockText } from "../../units.js";
+import { contactWords, durationWords, isLanding, isReturning } from "./uav_text.js";
 
-/** @import { Alert, LiveUav } from "./types.d.ts" */
+/** @import { Alert, LiveUav } from "../types.d.ts" */
 
 /**
  * When the UAV of an alert of a silent link was last heard [s since 1970]; null for other alerts, and once it is heard again.

@@ -1,7 +1,7 @@
 /** Commands that are on their way to the server, or there and not told by the feed yet: said on the card at once. */
 
-/** @import { CommandKind } from "../api_types.d.ts" */
-/** @import { MonitorStore } from "./types.d.ts" */
+/** @import { CommandKind } from "../../api_types.d.ts" */
+/** @import { MonitorStore } from "../types.d.ts" */
 
 const CLOCKS_APART_MS = 3000;
 const MAX_SENDING_MS = 12_000; // what the feed has not told by then is said by its other parts

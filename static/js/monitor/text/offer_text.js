@@ -1,12 +1,12 @@
 /** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
 
-import { routeLetter } from "../domain/palette.js";
-import { FEED_LOST_MS } from "../live/feed.js";
-import { t, tn } from "../text.js";
-import { clockText, countdownText, lengthText, percentText } from "../units.js";
+import { routeLetter } from "../../domain/palette.js";
+import { FEED_LOST_MS } from "../../live/feed.js";
+import { t, tn } from "../../text.js";
+import { clockText, countdownText, lengthText, percentText } from "../../units.js";
 
-/** @import { LiveOffer, OfferState } from "../api_types.d.ts" */
-/** @import { OfferCause, OfferDifference, OfferFigures } from "./types.d.ts" */
+/** @import { LiveOffer, OfferState } from "../../api_types.d.ts" */
+/** @import { OfferCause, OfferDifference, OfferFigures } from "../types.d.ts" */
 
 /** @type {Record<string, string>} */
 const CAUSES = {

@@ -1,10 +1,10 @@
 /** What the panel of simulated UAVs says, and what its buttons send. */
 
-import { t, tn } from "../text.js";
-import { heightText, numberText, percentText, speedText } from "../units.js";
+import { t, tn } from "../../text.js";
+import { heightText, numberText, percentText, speedText } from "../../units.js";
 
-/** @import { SimulatedVehicle, Simulation } from "../api_types.d.ts" */
-/** @import { Told } from "./types.d.ts" */
+/** @import { SimulatedVehicle, Simulation } from "../../api_types.d.ts" */
+/** @import { Told } from "../types.d.ts" */
 
 /** @type {[number, string][]} */
 export const SPEEDS = [1, 2, 5, 10].map((speed) => [

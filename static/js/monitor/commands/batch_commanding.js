@@ -1,23 +1,23 @@
 /** Commands to several UAVs at once: one question that names them, one request that names their missions. */
 
-import { ApiError, freshKey, post } from "../api.js";
-import { certaintyOf, MEASURED } from "../domain/certainty.js";
-import { LATE } from "../domain/command_questions.js";
-import { KINDS } from "../domain/flying.js";
-import { holdLinesOfAll, separateReturns, togetherLine } from "../domain/rtl_check.js";
-import { confirmAct } from "../page/confirm.js";
-import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
-import { toast } from "../page/toast.js";
-import { t, tn } from "../text.js";
+import { ApiError, freshKey, post } from "../../api.js";
+import { certaintyOf, MEASURED } from "../../domain/certainty.js";
+import { LATE } from "../../domain/command_questions.js";
+import { KINDS } from "../../domain/flying.js";
+import { holdLinesOfAll, separateReturns, togetherLine } from "../../domain/rtl_check.js";
+import { confirmAct } from "../../page/confirm.js";
+import { CHECKING_HOME, returnsNow } from "../../page/present_returns.js";
+import { toast } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { markSending } from "./sending.js";
 import { unreachableLines } from "./unreachable.js";
 
-/** @import { BatchAnswers, PresentReturn } from "../api_types.d.ts" */
-/** @import { Question } from "../domain/command_questions.js" */
-/** @import { Answer } from "../api.js" */
+/** @import { BatchAnswers, PresentReturn } from "../../api_types.d.ts" */
+/** @import { Question } from "../../domain/command_questions.js" */
+/** @import { Answer } from "../../api.js" */
 /** @import { BatchScope } from "./batch.js" */
-/** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
+/** @import { Commanding, MonitorPage, MonitorStore } from "../types.d.ts" */
 
 /** @type {Record<"hold" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
 const ALL = {
