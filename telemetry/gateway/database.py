@@ -21,7 +21,7 @@ P = ParamSpec("P")
 Result = TypeVar("Result")
 
 
-class DatabaseAway(Exception):
+class DatabaseUnavailable(Exception):
     """Worth another try."""
 
 
@@ -33,7 +33,7 @@ class DatabaseThread:
         self._connections: list[Any] = []
 
     async def run(self, do: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Result:
-        """Raises DatabaseAway, or what `do` raises."""
+        """Raises DatabaseUnavailable, or what `do` raises."""
 
         def inside() -> Result:
             close_old_connections()
@@ -43,7 +43,7 @@ class DatabaseThread:
                 return do(*args, **kwargs)
             except DATABASE_UNAVAILABLE as error:
                 connection.close()
-                raise DatabaseAway(str(error)) from error
+                raise DatabaseUnavailable(str(error)) from error
 
         return await asyncio.get_running_loop().run_in_executor(self._executor, inside)
 

@@ -39,7 +39,7 @@ from missions.services.commands.commands import (
     note_sent_unacknowledged,
 )
 from operation.reasons import Reason
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.preparation import (
     CannotCarry,
     DeliveryTask,
@@ -369,7 +369,7 @@ class Delivery:
         while True:
             try:
                 return await self.database.run(do, *values, **named)
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 await asyncio.sleep(DATABASE_RETRY_S)
 
     def _note(self, do: Callable[..., Any], /, *values: Any, **named: Any) -> None:
@@ -378,7 +378,7 @@ class Delivery:
         async def inside() -> None:
             try:
                 await self.database.run(do, *values, **named)
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 logger.debug("not noted: %s", do)
 
         task = asyncio.create_task(inside())

@@ -16,7 +16,7 @@ from django.conf import settings
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands.commands import claim_commands, expire_overdue, note_released, renew_claims
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
@@ -50,7 +50,7 @@ class Dispatcher:
         while True:
             try:
                 await self.poll()
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 await asyncio.sleep(RETRY_S)
             if await wait_for_event(self._woken, POLL_INTERVAL_S):
                 self._woken.clear()

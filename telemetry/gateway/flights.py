@@ -20,7 +20,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.models import Uav
 from missions.services.commands.steering import mission_in_hand
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.session import Session
 from telemetry.models import FlightLog
@@ -168,7 +168,7 @@ class Flights:
         while self._rows:
             try:
                 await database.run(self._rows[0])
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 return
             except Exception:
                 logger.exception("the row of a flight's log could not be written")

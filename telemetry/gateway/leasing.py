@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from mavlink.frames import Frame
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.options import GatewayOptions
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
@@ -44,7 +44,7 @@ class Leasing:
             try:
                 await self._hold()
                 await self._take()
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 await asyncio.sleep(RETRY_S)
             self.wanted.clear()
             await asyncio.sleep(GATHERED_S)

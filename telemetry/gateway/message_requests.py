@@ -6,12 +6,15 @@ from dataclasses import dataclass, field
 from django.conf import settings
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import AutopilotType
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
+from mavlink.parameters import BY_NAME
+from mavlink.rtl import NAMES as RTL_PARAMETER_NAMES
+from mavlink.rtl import PARAMETERS as RTL_PARAMETERS
 from mavlink.vehicle_state import VehicleState
 from telemetry.gateway import heartbeat
-from telemetry.gateway.rtl_parameters import RtlReading
 
 ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
 MISSING_INTERVALS = 3.0  # of a message, after which it does not come
@@ -20,6 +23,57 @@ ASK_SELDOM_S = 60.0
 LISTENS_S = 10.0  # for another ground station, before streams are stopped, which it may live by
 STATION_GONE_S = 60.0  # after its last heartbeat
 LIMIT_REQUESTS = 3  # a vehicle that has no such parameters says nothing
+RTL_REQUEST_INTERVAL_S = 2.0
+MAX_RTL_REQUESTS = 5
+
+
+@dataclass(frozen=True)
+class ReportedRtl:
+    """`at_s` is when the last of them was heard, monotonic."""
+
+    autopilot: str
+    parameters: dict[str, float]
+    at_s: float
+
+
+@dataclass
+class RtlReading:
+    """The parameters by which a vehicle flies home by itself. Times are monotonic seconds."""
+
+    _wanted_since_s: float = 0.0
+    _asked_s: float = -RTL_REQUEST_INTERVAL_S
+    _requests_left: int = MAX_RTL_REQUESTS
+    _reported_s: float = 0.0
+
+    def ask_anew(self, now_s: float) -> None:
+        """Somebody may have set them since."""
+        self._wanted_since_s, self._requests_left = now_s, MAX_RTL_REQUESTS
+
+    def requests(self, state: VehicleState, now_s: float) -> list[Message]:
+        """What is to be sent now: for what was not reported since it was wanted."""
+        groups = RTL_PARAMETERS.get(state.autopilot_type or "", ())
+        if not groups or not self._requests_left or now_s - self._asked_s < RTL_REQUEST_INTERVAL_S:
+            return []
+        missing = [group for group in groups if all(state.parameters_at_s.get(name, -1.0) < self._wanted_since_s for name in group)]
+        if not missing:
+            return []
+        self._asked_s = now_s
+        self._requests_left -= 1
+        names = [name for group in missing for name in group]
+        return [mavlink.MAVLink_param_request_read_message(state.system, AUTOPILOT, name.encode(), BY_NAME) for name in names]
+
+    def news(self, state: VehicleState) -> ReportedRtl | None:
+        """What was reported since `note` was called last, also without having been asked: all that is known."""
+        autopilot_type = state.autopilot_type or ""
+        last_message_s = {
+            name: state.parameters_at_s[name] for name in RTL_PARAMETER_NAMES.get(autopilot_type, ()) if name in state.parameters_at_s
+        }
+        if not last_message_s or max(last_message_s.values()) <= self._reported_s:
+            return None
+        return ReportedRtl(str(autopilot_type), {name: state.parameters[name] for name in last_message_s}, max(last_message_s.values()))
+
+    def note(self, reported: ReportedRtl) -> None:
+        self._reported_s = max(self._reported_s, reported.at_s)
 
 
 @dataclass

@@ -21,7 +21,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.frames import Frame, message_of
 from missions.services.commands.commands import CHANNEL
 from operation import loop_heartbeats
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.dispatcher import Dispatcher
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_INTERVAL_S, Flights
@@ -194,7 +194,7 @@ class Gateway:
         while True:
             try:
                 await do()
-            except DatabaseAway:
+            except DatabaseUnavailable:
                 await asyncio.sleep(RETRY_S)
             await asyncio.sleep(interval_s)
 
@@ -211,7 +211,7 @@ class Gateway:
                 await self.reporter.flown()
                 await self.flights.write_rows(self.reporter.database)
                 await self.database.run(release_leases, holder=self.options.holder)
-        except (DatabaseAway, TimeoutError):
+        except (DatabaseUnavailable, TimeoutError):
             logger.warning("the database is away: %s records are lost, leases run out by themselves", len(self.store.records))
         self.database.close()
         self.reporter.database.close()
@@ -220,7 +220,7 @@ class Gateway:
         try:
             async with asyncio.timeout(DESK_WITHIN_S):
                 await self.desk.close()
-        except (DatabaseAway, TimeoutError):
+        except (DatabaseUnavailable, TimeoutError):
             logger.warning("the database is away: commands are taken up again when their leases run out")
         self.desk.database.close()
         self.desk.notes.close()

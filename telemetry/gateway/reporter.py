@@ -9,7 +9,7 @@ from typing import Any
 
 from missions.services.commands.rtl_check import note_rtl_behaviour
 from missions.services.fleet.credentials import note_mavlink_key_use
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.gateway.session import Session
 from telemetry.services.alerts.alerts import raise_second_sender
 from telemetry.services.flown import note_flown
@@ -99,7 +99,7 @@ class Reporter:
         """What cannot be told of one UAV holds up no other."""
         try:
             await self.database.run(note, uav_id=session.uav.uav_id, **values)
-        except DatabaseAway:
+        except DatabaseUnavailable:
             raise
         except Exception:
             logger.exception("of %s it could not be told: %s", session.uav.name, what, extra={"uav": session.uav.uav_id})

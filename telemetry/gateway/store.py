@@ -5,7 +5,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 
-from telemetry.gateway.database import DatabaseAway, DatabaseThread
+from telemetry.gateway.database import DatabaseThread, DatabaseUnavailable
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links.gateway_messages import ReceivedBatch, ReceivedText, store_received
 from telemetry.services.links.links import LinkState
@@ -51,7 +51,7 @@ class Store:
         try:
             await self._store(received)
             is_stored = True
-        except DatabaseAway as error:
+        except DatabaseUnavailable as error:
             self._notify(is_away=True, why=str(error))
             return False
         finally:
@@ -66,7 +66,7 @@ class Store:
     async def _store(self, received: ReceivedBatch) -> None:
         try:
             counted = await self.database.run(store_received, received=received, holder=self.holder)
-        except DatabaseAway:
+        except DatabaseUnavailable:
             raise
         except Exception:
             await self._store_what_can_be(received)

@@ -7,7 +7,7 @@ from django.contrib.gis.geos import Point
 from django.core.cache import cache
 from django.test import Client
 from django.urls import reverse
-from redis.exceptions import ConnectionError as RedisAway
+from redis.exceptions import ConnectionError as RedisConnectionError
 
 from inspection.services import mark_ground_changed
 from missions.models import InspectionTarget, Mission, MissionUav, Uav
@@ -57,7 +57,7 @@ def test_the_limit_of_one_name_leaves_the_others_alone(client: Client, operator:
 
 def test_sign_in_works_without_the_cache(client: Client, operator: User, monkeypatch: pytest.MonkeyPatch) -> None:
     def away(*_: object, **__: object) -> None:
-        raise RedisAway
+        raise RedisConnectionError
 
     for name in ("get", "add", "incr", "delete"):
         monkeypatch.setattr(cache, name, away)

@@ -24,7 +24,7 @@ from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import MAX_PARAMETERS, VehicleState
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands.commands import claim_commands, queue_command, renew_claims
-from telemetry.gateway.database import DatabaseAway
+from telemetry.gateway.database import DatabaseUnavailable
 from telemetry.gateway.delivery import Delivery
 from telemetry.gateway.dispatcher import MAX_UPLOADS, Dispatcher
 from telemetry.gateway.fleet import KnownUav
@@ -58,7 +58,7 @@ class Database:
     async def run(self, do, *_values, **named):
         self.asked.append((do, named))
         if self.is_away:
-            raise DatabaseAway("away")
+            raise DatabaseUnavailable("away")
         answer = self.answers.get(do.__name__, True)
         return answer() if callable(answer) else answer
 

@@ -1,7 +1,7 @@
 """How often a user may ask, with Redis and without."""
 
 import pytest
-from redis.exceptions import ConnectionError as RedisAway
+from redis.exceptions import ConnectionError as RedisConnectionError
 
 from tests.accounts.users import a_user, client_of
 from tests.workspace.counters import forget_counts
@@ -37,7 +37,7 @@ def test_each_user_is_counted_alone() -> None:
 
 def test_without_redis_nobody_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     def away(*args: object, **options: object) -> None:
-        raise RedisAway("no socket")
+        raise RedisConnectionError("no socket")
 
     monkeypatch.setattr("workspace.api.throttling._count", away)
     assert statuses() == [200] * 5
