@@ -133,12 +133,12 @@ def main(arguments: list[str]) -> int:
     if user_cache.fetch(SHARED_KIND, folder.name, folder) and is_compiled(folder):
         print("taken from another checkout", flush=True)
         return 0
-    shutil.rmtree(folder, ignore_errors=True)
     with tempfile.TemporaryDirectory(prefix=".draft-", dir=folder.parent) as draft:
         new = Path(draft) / "new"
         new.mkdir()
         compile_parts(new, processes=max(1, os.cpu_count() or 1))
         (new / STAMP).write_text(stamp)
+        shutil.rmtree(folder, ignore_errors=True)  # what programs of this checkout have compiled for themselves meanwhile
         new.rename(folder)
     user_cache.publish(folder, SHARED_KIND, folder.name)
     return 0

@@ -75,6 +75,23 @@ def test_a_part_that_fails_fails_the_whole_and_leaves_no_process(tmp_path, monke
     assert [path.name for path in tmp_path.iterdir()] == ["new"]
 
 
+def test_what_programs_have_compiled_meanwhile_is_replaced(tmp_path, monkeypatch):
+    folder = tmp_path / "compiled" / "digest"
+
+    def compile_beside_a_program(new: Path, processes: int) -> None:
+        add(new, "ways._path-1.py311", "whole")
+        add(folder, "ways._path-1.py311", "of the program")
+
+    monkeypatch.setattr(compile_core, "compiled_directory", lambda: folder)
+    monkeypatch.setattr(compile_core, "compiled_stamp", lambda: "stamp")
+    monkeypatch.setattr(compile_core, "is_compiled", lambda path: False)
+    monkeypatch.setattr(compile_core, "compile_parts", compile_beside_a_program)
+    monkeypatch.setattr(compile_core.user_cache, "fetch", lambda *place: False)
+    monkeypatch.setattr(compile_core.user_cache, "publish", lambda *place: None)
+    assert compile_core.main([]) == 0
+    assert files(folder) == {"ways._path-1.py311.nbi": "whole", "stamp": "stamp"}
+
+
 def test_of_older_code_the_newest_is_kept_for_programs_that_run(tmp_path):
     for age, name in enumerate(("newest", "older", "oldest")):
         (tmp_path / name).mkdir()
