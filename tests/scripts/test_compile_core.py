@@ -114,7 +114,7 @@ def test_code_compiled_in_one_checkout_is_read_in_another_one(tmp_path):
         (package / "doubled.py").write_text("from numba import njit\n\n@njit(cache=True)\ndef doubled(x):\n    return 2 * x\n")
     (tmp_path / "program.py").write_text(
         "import sys, pathlib, json\n"
-        "from config import compiled_places\n"
+        "from config.compiled import compiled_places\n"
         "compiled_places.PROJECT_DIR = pathlib.Path(sys.argv[1])\n"
         "sys.path.insert(0, sys.argv[1])\n"
         "from core.doubled import doubled\n"
