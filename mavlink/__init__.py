@@ -1,3 +1,3 @@
-"""MAVLink without sockets, database and clock: frames, missions as items, mission sync, commands and decoding. Pure."""
+"""MAVLink without sockets, database or clock: frames, mission items, mission sync, commands and decoding. Pure."""
 
 from mavlink import reasons as reasons

@@ -1,11 +1,11 @@
-"""Whom messages are addressed to and who sends them: system and component of the vehicle and of the ground station."""
+"""System and component ids of the vehicle and of the ground station that exchange messages."""
 
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-Message: TypeAlias = Any  # a message of pymavlink's, which has no types
+Message: TypeAlias = Any  # a pymavlink message, which is untyped
 Messages: TypeAlias = list[Any]
 
 AUTOPILOT: int = mavlink.MAV_COMP_ID_AUTOPILOT1
@@ -14,7 +14,7 @@ GROUND_STATION: int = mavlink.MAV_COMP_ID_MISSIONPLANNER
 
 @dataclass(frozen=True)
 class Addressing:
-    """Target system and component, and our own."""
+    """The target system and component, and those of this ground station."""
 
     system: int
     component: int = AUTOPILOT
@@ -22,7 +22,7 @@ class Addressing:
     own_component: int = GROUND_STATION
 
     def has_sent(self, message: Message) -> bool:
-        """From the vehicle, to us: what it says to other ground stations is not ours."""
+        """Return whether the vehicle sent the message to this ground station or to all."""
         if message.get_srcSystem() != self.system or message.get_srcComponent() != self.component:
             return False
         return getattr(message, "target_system", 0) in (0, self.own_system) and (

@@ -1,4 +1,4 @@
-"""A route as it was approved, in plain values: what a vehicle is given to fly is made from this and from nothing else."""
+"""An approved route in plain values: the only source of the mission that a vehicle receives."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -13,15 +13,15 @@ END_ACTIONS = (RETURN, LAND, HOVER, BASE)
 
 
 class NotARoute(ValueError):
-    """What was frozen cannot be a route."""
+    """The stored values do not form a valid route."""
 
 
 @dataclass(frozen=True)
 class FrozenWaypoint:
     """A point of a route.
 
-    `sequence` is its place in the stored route. `altitude_relative_m` counts from the route's first take-off. `speed_mps` is flown over
-    ground on the leg that leads here, None: the route's own. `arrival_s` counts from the mission's departure.
+    `sequence` is its place in the stored route. `altitude_relative_m` is measured from the route's first take-off. `speed_mps` is the
+    ground speed on the leg that ends here; None means the route's cruise speed. `arrival_s` is measured from the mission's departure.
     """
 
     sequence: int
@@ -37,13 +37,13 @@ class FrozenWaypoint:
 
     @property
     def ground_relative_m(self) -> float:
-        """The ground below, above the route's first take-off."""
+        """Return the ground height below this waypoint, measured from the route's first take-off."""
         return self.altitude_relative_m - self.altitude_agl_m
 
 
 @dataclass(frozen=True)
 class TakeOff:
-    """Where a flight was planned to begin: the vehicle must stand here. `altitude_amsl_m` is the ground's, None without terrain data."""
+    """The planned place of a take-off, where the vehicle must stand. `altitude_amsl_m` is the ground's; None without terrain data."""
 
     position: LonLat
     altitude_amsl_m: float | None
@@ -51,9 +51,10 @@ class TakeOff:
 
 @dataclass(frozen=True)
 class Flight:
-    """From one take-off to the next landing. The waypoints' `altitude_relative_m` counts from this take-off.
+    """The part of a route from one take-off to the next landing.
 
-    `above_first_m` is how high this take-off lies above the route's first.
+    The waypoints' `altitude_relative_m` is measured from this take-off. `above_first_m` is the height of this take-off above the route's
+    first.
     """
 
     number: int
@@ -65,10 +66,12 @@ class Flight:
 
 @dataclass(frozen=True)
 class FrozenRoute:
-    """One UAV's route. `take_off` is where it begins; `charging_stops` are places of waypoints at which it was planned to charge.
+    """The route of one UAV.
 
-    One with `begun_by` is begun in the air, anywhere on its way to the waypoint of this `sequence`: the UAV is somewhere there when it is
-    given the route. It took off from `take_off` before, and counts its heights from there; it has one flight.
+    `take_off` is where it begins. `charging_stops` are the sequences of waypoints with a planned charging stop.
+
+    With `begun_by` set, the route begins in the air, anywhere before the waypoint of this `sequence`. The UAV took off from `take_off`
+    earlier and measures its heights from there. Such a route has one flight.
     """
 
     uav: str
@@ -90,9 +93,10 @@ class FrozenRoute:
 
     @property
     def flights(self) -> tuple[Flight, ...]:
-        """Divided at its waypoints of kind `base`, where it stands on the ground between two flights; none without waypoints.
+        """Return the flights: the route split at its waypoints of kind `base`, where the UAV stands between two flights.
 
-        Each but the last lands under its last waypoint, however the route ends: there its next battery waits.
+        The result is empty without waypoints. Each flight but the last lands under its last waypoint, where the next battery waits;
+        `end_action` applies to the last one only.
         """
         flights: list[Flight] = []
         take_off, ground_m, begin = self.take_off, 0.0, 0
@@ -112,7 +116,7 @@ class FrozenRoute:
 
 
 def flight_to_json(flight: Flight, route: FrozenRoute) -> dict[str, Any]:
-    """One flight of a route by itself, for a companion computer; heights are those of this flight."""
+    """Return one flight of a route for a companion computer, with heights measured from this flight's take-off."""
     return {
         "flight": flight.number + 1,
         "take_off": {"position": list(flight.take_off.position), "altitude_amsl_m": flight.take_off.altitude_amsl_m},

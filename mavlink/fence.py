@@ -1,8 +1,7 @@
-"""No-fly zones as a fence that an autopilot keeps by itself, and rally points.
+"""No-fly zones as a geofence in the autopilot, and rally points.
 
-A fence is the last line of defence, not the plan: the route has been checked against all zones before. An autopilot's zone has no
-heights and few vertices, so that one that the route passes over or under must be left out, and a detailed one is drawn larger. What is
-left out is told.
+The fence is a last safeguard: the route is checked against all zones before. An autopilot's zone has no heights and few vertices. A zone
+that the route passes over or under is therefore omitted, and a detailed one is enlarged. Omitted zones are reported.
 """
 
 import math
@@ -20,16 +19,17 @@ from mavlink.approved_route import FrozenRoute
 from mavlink.mission_items import RELATIVE, position_e7
 from mavlink.vehicle_plan import MissionItem
 
-SHARP = 2.0  # longest spike at a corner, in widths of what is added
+SHARP = 2.0  # longest spike at a corner, in multiples of the growth
 E7 = 1e7
 
 
 @dataclass(frozen=True)
 class FenceRules:
-    """A zone has at most `most_vertices` (ArduPilot's guide), the fence at most `most_items` (PX4's storage for it).
+    """Limits of a fence.
 
-    A zone is drawn larger by steps up to `most_growth_m`. It stays `keeps_clear_m` from the route, more than the margin at which ArduPilot
-    takes a fence as reached (FENCE_MARGIN, 2 m) and the errors of a position. One beyond `reach_m` of the route is not sent.
+    A zone has at most `most_vertices` (ArduPilot's guide), the fence at most `most_items` (PX4's storage for it). A zone grows in steps up
+    to `most_growth_m`. It stays `keeps_clear_m` from the route: more than ArduPilot's FENCE_MARGIN (2 m) plus position errors. Zones beyond
+    `reach_m` of the route are not sent.
     """
 
     most_vertices: int = 70
@@ -41,7 +41,7 @@ class FenceRules:
 
 @dataclass(frozen=True)
 class FenceZone:
-    """The outline of a no-fly zone, without repeating its first vertex; a zone of several parts is several of these."""
+    """The outline of a no-fly zone, without repeating its first vertex. A zone of several parts is several of these."""
 
     name: str
     outline: tuple[LonLat, ...]
@@ -49,7 +49,7 @@ class FenceZone:
 
 @dataclass(frozen=True)
 class OmittedZone:
-    """`code` names why a zone is not in the fence: crosses-route, too-detailed, no-space or not-simple."""
+    """A zone that is not in the fence. `code` is crosses-route, too-detailed, no-space or not-simple."""
 
     zone: str
     code: str
@@ -63,7 +63,7 @@ class Fence:
 
 
 def fence_of(zones: Sequence[FenceZone], route: FrozenRoute, rules: FenceRules | None = None) -> Fence:
-    """Those nearest to the route first. Each zone lies within its polygon, up to the wire's 1e-7 degrees."""
+    """Return the fence, with the zones nearest to the route first. Each polygon contains its zone, up to the wire's 1e-7 degrees."""
     rules = rules or FenceRules()
     if not route.waypoints:
         return Fence((), ())
@@ -96,7 +96,7 @@ def fence_of(zones: Sequence[FenceZone], route: FrozenRoute, rules: FenceRules |
 
 
 def rally_items(points: Sequence[tuple[LonLat, float]]) -> tuple[MissionItem, ...]:
-    """Places with their altitude above take-off, in whole metres and rounded up: ArduPilot keeps no more."""
+    """Return rally points with their altitude above take-off, rounded up to whole metres as ArduPilot stores them."""
     return tuple(
         MissionItem(mavlink.MAV_CMD_NAV_RALLY_POINT, RELATIVE, (0.0, 0.0, 0.0, 0.0), *position_e7(place), float(math.ceil(relative_m)))
         for place, relative_m in points
@@ -110,7 +110,7 @@ def _line(route: FrozenRoute, frame: LocalFrame) -> BaseGeometry:
 
 
 def _larger(area: Polygon, line: BaseGeometry, most: int, frame: LocalFrame, rules: FenceRules) -> tuple[LonLat, ...] | None:
-    """With at most so many vertices, round the area: grown by some metres, and simplified by no more than these."""
+    """Return an outline of at most `most` vertices that contains the area: grown in steps, and simplified by less than it grew."""
     growth_m = 0.5
     while growth_m <= rules.most_growth_m:
         grown = area.buffer(growth_m, join_style="mitre", mitre_limit=SHARP)

@@ -1,8 +1,7 @@
-"""Bytes of MAVLink 1 and 2 to frames and frames to messages. Nothing in what was received can make it fail.
+"""Converts bytes of MAVLink 1 and 2 to frames and frames to messages. Received bytes cannot make it raise.
 
-Only frames whose checksum is right come out. The checksum covers a seed that belongs to the message, so a message that the dialect does
-not know cannot be checked, and is dropped. After anything that is no frame the search goes on at the next byte: garbage, a cut frame
-or a damaged length costs nothing of what follows it.
+Only frames with a correct checksum are returned. The checksum includes a seed of the message, so a message missing from the dialect cannot
+be checked and is dropped. After a fault the search goes on at the next byte: garbage, a cut frame or a wrong length loses no later frame.
 """
 
 from collections import Counter
@@ -19,14 +18,14 @@ MARKER_V1, MARKER_V2 = 0xFE, 0xFD
 HEADER_V1, HEADER_V2 = 6, 10  # bytes, with the marker
 CHECKSUM = 2
 SIGNATURE = 13  # link id, 6 bytes of time, 6 bytes of hash
-IS_SIGNED = 0x01  # of the incompatibility flags; a frame with any other of them must be dropped
-MAX_FAULTS = 512  # in one datagram or piece of a stream; the rest of it is given up, so that nobody can keep us searching
+IS_SIGNED = 0x01  # incompatibility flag; a frame with any other such flag must be dropped
+MAX_FAULTS = 512  # per datagram or piece of a stream; the rest is dropped, which bounds the work
 MAX_FRAME_LENGTH = HEADER_V2 + 255 + CHECKSUM + SIGNATURE
 _MARKERS = (bytes([MARKER_V1]), bytes([MARKER_V2]))
 
 
 class Damage(StrEnum):
-    """Why bytes were no frame."""
+    """Why bytes were not a frame."""
 
     NOT_MAVLINK = "not-mavlink"
     CUT = "cut"
@@ -37,7 +36,7 @@ class Damage(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One intact frame; `raw` is all its bytes. link_id and timestamp [10 us since 2015] are those of its signature, if it has one."""
+    """One intact frame with all its bytes in `raw`. link_id and timestamp [10 us since 2015] are those of its signature, if any."""
 
     raw: bytes
     version: int
@@ -54,14 +53,14 @@ class Frame:
 
 
 def frames_of_datagram(datagram: bytes, damages: Counter[Damage]) -> list[Frame]:
-    """The intact frames of one datagram, by themselves: no datagram has anything to do with the one before it."""
+    """Return the intact frames of one datagram. Frames never span datagrams."""
     frames, _ = _scan(datagram, damages, is_whole=True)
     return frames
 
 
 @dataclass
 class StreamParser:
-    """The frames of one connection, however its bytes are cut into pieces. Holds at most one unfinished frame."""
+    """Finds the frames of one connection, however its bytes are split. Holds at most one unfinished frame."""
 
     damages: Counter[Damage] = field(default_factory=Counter)
     _rest: bytes = b""
@@ -75,7 +74,7 @@ _decoder = dialect.MAVLink(None)
 
 
 def message_of(frame: Frame) -> Message | None:
-    """None for one whose content the dialect cannot read. Signatures are checked in signing.py, not here."""
+    """Return the message of a frame; None if the dialect cannot decode it. Signatures are checked in signing.py."""
     try:
         message = _decoder.decode(bytearray(frame.raw))
     except dialect.MAVError:
@@ -84,11 +83,11 @@ def message_of(frame: Frame) -> Message | None:
 
 
 def _scan(data: bytes, damages: Counter[Damage], *, is_whole: bool) -> tuple[list[Frame], bytes]:
-    """The frames of data, and what may be the beginning of one more."""
+    """Return the frames of data, and the rest, which may begin another frame."""
     frames: list[Frame] = []
     place = 0
     faults = 0
-    is_lost = False  # in the middle of what was counted already
+    is_lost = False  # within bytes already counted as damage
     for start in _markers(data):
         if start < place:
             continue
@@ -112,7 +111,7 @@ def _scan(data: bytes, damages: Counter[Damage], *, is_whole: bool) -> tuple[lis
 
 
 def _markers(data: bytes) -> Iterator[int]:
-    """Where in data a frame may begin, in order."""
+    """Yield the places in data where a frame may begin, in order."""
     nexts = [data.find(marker) for marker in _MARKERS]
     while max(nexts) >= 0:
         index = min((place, index) for index, place in enumerate(nexts) if place >= 0)[1]

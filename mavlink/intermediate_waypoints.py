@@ -1,4 +1,4 @@
-"""Points put in on the legs of a flight, for vehicles that refuse legs which are longer."""
+"""Adds waypoints on long legs, for vehicles that limit the length of a leg."""
 
 import math
 from dataclasses import replace
@@ -11,18 +11,18 @@ from inspection.geodesy import LonLat, path_length_m
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 FLOWN = frozenset({mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LAND})
-SPHERE_M = 6_371_000.0  # the radius of the earth that PX4 measures on
-MIN_LEG_M = 1.0  # below which points, kept to a centimetre, would lie on each other
+SPHERE_M = 6_371_000.0  # the Earth's radius in PX4
+MIN_LEG_M = 1.0  # below this, points rounded to a centimetre would coincide
 
 
 def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
-    """With waypoints put in on each leg that is longer, so that none is.
+    """Return the load with intermediate waypoints, so that no leg is longer than `most_m`.
 
-    The points lie on the straight line on the chart at heights in between, to the centimetre that items are kept to: the vehicle flies
-    where it was to fly without them. Before a landing, whose altitude is the ground's, it stays as high as it was.
+    The points lie on the straight line on the chart, with interpolated heights rounded to the centimetre like all items, so the flown path
+    stays the same. Before a landing, whose altitude is the ground's, the height stays constant.
 
-    This makes another load with another hash, and a vehicle is ready only by its hash. So it is made when a mission is approved, and
-    frozen, never on the way to the vehicle. Raises ValueError for legs below `MIN_LEG_M`.
+    The result has another hash, and a vehicle is ready only by its hash. The points are therefore added when a mission is approved, never
+    during upload. Raises ValueError if `most_m` is below `MIN_LEG_M`.
     """
     if not most_m >= MIN_LEG_M:
         raise ValueError(f"most_m must be at least {MIN_LEG_M}")
@@ -38,13 +38,13 @@ def with_points_between(load: FlightLoad, most_m: float) -> FlightLoad:
 
 
 def leg_length_m(left: MissionItem, right: MissionItem) -> float:
-    """Over the ground; the longer of what it is on the ellipsoid and on the sphere, which are up to 0.6 % apart."""
+    """Return the length over the ground: the longer of ellipsoid and sphere, which differ by up to 0.6 %."""
     start, end = position_of(left), position_of(right)
     return max(path_length_m(np.array([start, end])), length_on_sphere_m(start, end))
 
 
 def length_on_sphere_m(start: LonLat, end: LonLat) -> float:
-    """As PX4 measures, whose limits are in these metres."""
+    """Return the length as PX4 computes it, whose limits use it."""
     one, other = math.radians(start.lat), math.radians(end.lat)
     east = math.radians(end.lon - start.lon)
     chord = math.sin((other - one) / 2) ** 2 + math.cos(one) * math.cos(other) * math.sin(east / 2) ** 2
@@ -56,7 +56,7 @@ def position_of(item: MissionItem) -> LonLat:
 
 
 def _between(left: MissionItem, right: MissionItem, most_m: float) -> list[MissionItem]:
-    """Parts that are equal on the chart are not quite so on the ground: where one is too long, there is one part more."""
+    """Return the intermediate points. Parts equal on the chart differ on the ground: if one is too long, one more part is used."""
     parts = max(1, math.ceil(leg_length_m(left, right) / most_m))
     while True:
         points = [_point(left, right, number / parts) for number in range(1, parts)]

@@ -1,8 +1,8 @@
-"""From an approved route to the mission items of its flights.
+"""Converts an approved route to the mission items of its flights.
 
-Written so that both autopilots keep what is sent: ArduPilot cuts a waypoint's hold to whole seconds (so it is rounded up) and
-an altitude to centimetres (so it is sent in centimetres), and forgets a waypoint's radius and yaw (so they are left to the autopilot).
-Items without a place have the frame MISSION, in which alone PX4 takes them.
+The items use only what both autopilots store. ArduPilot truncates a waypoint's hold to whole seconds, so it is rounded up, and an altitude
+to centimetres, so it is sent in centimetres. It discards a waypoint's radius and yaw, so they are left to the autopilot. Items without a
+position use the frame MISSION, the only one that PX4 accepts for them.
 """
 
 import math
@@ -20,11 +20,11 @@ RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
 NO_PLACE = mavlink.MAV_FRAME_MISSION
 E7 = 1e7
 GROUND_SPEED, NO_THROTTLE = 1.0, -1.0  # of DO_CHANGE_SPEED
-NOT_BY_THE_CLOCK = -1.0  # of NAV_DELAY: hour, minute and second
+NOT_BY_THE_CLOCK = -1.0  # of NAV_DELAY: no hour, minute and second
 
 
 class CannotBeFlown(ValueError):
-    """A plain autopilot cannot fly this route; `code` names why."""
+    """A plain autopilot cannot fly this route. `code` is the machine-readable reason."""
 
     def __init__(self, code: str, words: str) -> None:
         super().__init__(words)
@@ -33,11 +33,11 @@ class CannotBeFlown(ValueError):
 
 @dataclass(frozen=True)
 class ItemRules:
-    """How tasks become items. A photo is taken after `settle_s` of standing still, then one each `photo_interval_s`."""
+    """How tasks become items. The first photo is taken after hovering for `settle_s`, further ones every `photo_interval_s`."""
 
     settle_s: float = 2.0
     photo_interval_s: float = 2.0
-    speed_step_mps: float = 0.01  # speeds that differ by less are one
+    speed_step_mps: float = 0.01  # smaller differences count as the same speed
 
 
 def flight_loads(
@@ -47,17 +47,16 @@ def flight_loads(
     rally: tuple[MissionItem, ...] = (),
     rules: ItemRules | None = None,
 ) -> tuple[FlightLoad, ...]:
-    """One for each of `route.flights`, in their order; fence and rally points are those of all of them.
+    """Return one load for each of `route.flights`, in order. All share the fence and the rally points. Raises CannotBeFlown.
 
-    Rally points' heights are given above the route's first take-off, and sent above the one of each flight: an autopilot counts from its
-    own home.
+    Rally heights are given above the route's first take-off and sent above that of each flight, as an autopilot measures from its home.
 
-    Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
-    returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
-    through zones. A flight that ends in hovering has no item for it: both autopilots hover after their last waypoint. Raises CannotBeFlown.
+    Each flight consists of the take-off, its waypoints with speeds and tasks, and its end. The RTL path is among the waypoints, so a flight
+    that returns lands under the last one: an autopilot's own RTL would climb to its own height and fly straight, over wires and through
+    zones. Hovering needs no item: both autopilots hover after the last waypoint.
 
-    A route that is begun in the air has no take-off: no vehicle leaves the ground by it. As it may be begun at any waypoint until
-    `begun_by`, the speed is told again after each of these.
+    A route that begins in the air has no take-off. It may begin at any waypoint up to `begun_by`, so the speed is repeated after each of
+    these.
     """
     if route.charging_stops:
         raise CannotBeFlown("charging", "The route charges at towers on its way, which a plain autopilot cannot do.")
@@ -66,7 +65,7 @@ def flight_loads(
 
 
 def _rally_of(flight: Flight, rally: tuple[MissionItem, ...]) -> tuple[MissionItem, ...]:
-    """In whole metres, as ArduPilot keeps them, and rather higher than lower."""
+    """Return the rally points in whole metres, as ArduPilot stores them, rounded up."""
     heights_m = [float(math.ceil(item.altitude_m - flight.above_first_m)) for item in rally]
     if any(height_m <= 0 for height_m in heights_m):
         raise CannotBeFlown("rally-height", "A rally point is not above the take-off of one of the flights.")
@@ -107,7 +106,7 @@ def _waypoint(waypoint: FrozenWaypoint, task: Task | None, *, is_stretch: bool, 
         yield _item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, waypoint, (0.0, 0.0, 0.0, 0.0), waypoint.ground_relative_m)
         yield _hold_at(waypoint, task.hold_s)
         yield _plain(mavlink.MAV_CMD_DO_SET_ROI_NONE, (0.0, 0.0, 0.0, 0.0), waypoint)
-    else:  # hovering, or a stretch: along a line the camera looks where the UAV goes
+    else:  # hovering, or a stretch: there the camera points along the flight direction
         yield _hold_at(waypoint, task.hold_s)
 
 
@@ -125,7 +124,7 @@ def _at(command: int, waypoint: FrozenWaypoint, parameters: tuple[float, float, 
 
 def _item(command: int, waypoint: FrozenWaypoint, parameters: tuple[float, float, float, float], altitude_relative_m: float) -> MissionItem:
     longitude_e7, latitude_e7 = position_e7(waypoint.position)
-    altitude_m = round(altitude_relative_m, 2) + 0.0  # no minus before zero
+    altitude_m = round(altitude_relative_m, 2) + 0.0  # turns -0.0 into 0.0
     return MissionItem(command, RELATIVE, parameters, longitude_e7, latitude_e7, altitude_m, waypoint.sequence)
 
 

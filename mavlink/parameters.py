@@ -1,4 +1,4 @@
-"""Reading a few parameters of a vehicle by name, and setting one."""
+"""Reads parameters of a vehicle by name, and sets one."""
 
 import math
 from collections.abc import Sequence
@@ -15,9 +15,10 @@ BY_NAME = -1  # in place of a parameter's number
 
 
 class ParameterReading:
-    """Asks until each was told or said not to exist; `outcome` has those that were. `state` is to have taken a message before.
+    """Requests parameters until each has a value or is reported missing. `outcome` has those with a value.
 
-    A parameter that a vehicle does not have draws no answer from many: it is missing from the outcome once the tries are used up.
+    `state` must receive each message first. Many vehicles do not answer for a parameter that they do not have: it is missing from the
+    outcome after the last retry.
     """
 
     def __init__(self, names: Sequence[str], state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
@@ -66,9 +67,9 @@ class ParameterReading:
 
 
 class ParameterSetting:
-    """Sets a parameter until the vehicle tells the value, and then reads it once more; `outcome` tells whether it has it.
+    """Sets a parameter until the vehicle reports the value, then reads it back. `outcome` is whether the vehicle has it.
 
-    `state` is to have taken a message before.
+    `state` must receive each message first.
     """
 
     def __init__(self, name: str, value: float, state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
@@ -79,8 +80,8 @@ class ParameterSetting:
         self._addressing = addressing
         self._rules = rules
         self._tries = 0
-        self._is_set = False  # by its own word: it is read back
-        self._other: float | None = None  # that it told instead
+        self._is_set = False  # the vehicle reported the value: it is read back
+        self._other: float | None = None  # the value reported instead
 
     def start(self, now_s: float) -> Messages:
         return self._asked(now_s)

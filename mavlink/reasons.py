@@ -1,4 +1,4 @@
-"""The sentence of each code that tells what became of a command to a vehicle."""
+"""The sentence of each code for the result of a command to a vehicle."""
 
 from operation.reasons import Reason, gettext_noop, register_sentences
 
@@ -22,7 +22,7 @@ SENTENCES = register_sentences({
     "parameter_read_back": gettext_noop("%(parameter)s is %(value)s, read back."),
     "parameter_unanswered": gettext_noop("The vehicle does not answer about %(parameter)s."),
     "parameter_kept": gettext_noop("%(parameter)s stays %(value)s."),
-    # what cannot be sent
+    # refusals to send
     "nothing_sent": gettext_noop("Nothing was sent."),
     "vehicle_unknown": gettext_noop("The vehicle has not said what it is."),
     "missions_to_known_autopilots": gettext_noop(
@@ -40,7 +40,7 @@ SENTENCES = register_sentences({
     "bring_to_start": gettext_noop("Bring the UAV to where its flight begins, or raise %(parameter)s on it."),
     "approve_with_more_points": gettext_noop("Revoke, and approve it again with points put in on longer legs."),
     "limits_unknown": gettext_noop("The UAV has not told how far apart waypoints may be."),
-    # what a vehicle holds
+    # lists on the vehicle
     "holdings_unreadable": gettext_noop("Nothing was sent: what the vehicle holds could not be read."),
     "holds_approved": gettext_noop("The vehicle holds the approved mission: %(items)s items."),
     "holds_no_mission": gettext_noop("The vehicle holds no mission, as was wanted."),
@@ -82,7 +82,7 @@ SENTENCES = register_sentences({
     "value_nothing": gettext_noop("nothing"),
     "value_yes": gettext_noop("yes"),
     "value_no": gettext_noop("no"),
-    # lists, vehicles and steps, as they stand in sentences
+    # lists, vehicles and steps, as inserted into sentences
     "list_mission": gettext_noop("mission"),
     "list_fence": gettext_noop("fence"),
     "list_rally": gettext_noop("rally"),
@@ -116,5 +116,5 @@ SENTENCES = register_sentences({
 
 
 def list_reason(name: str) -> Reason:
-    """The list of this kind, as MissionType names it."""
+    """Return the name of a list; `name` is that of its MissionType."""
     return Reason(f"list_{name.lower()}")

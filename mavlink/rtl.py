@@ -1,9 +1,9 @@
-"""Where and how high an autopilot flies home by itself, as its parameters say. Heights count from where it took off.
+"""RTL behaviour of an autopilot: where it flies and how high, by its parameters. Heights are above its take-off.
 
-Sources, read: ArduPilot/ardupilot ArduCopter/mode_rtl.cpp (compute_return_target) and libraries/AP_Rally/AP_Rally.cpp, both of the years
-in which heights were centimetres; PX4/PX4-Autopilot src/modules/navigator/rtl_params.yaml and geofence_avoidance_params.yaml. Seen in
-parts only: ArduPilot's change to metres of January 2026 (convert_params), libraries/AC_Avoidance/AP_OAPathPlanner.cpp, PX4's rtl.cpp
-(computeReturnAltitude). ArduPilot's RTL_OPTIONS concern the pilot's yaw alone.
+Sources, read: ArduPilot/ardupilot ArduCopter/mode_rtl.cpp (compute_return_target) and libraries/AP_Rally/AP_Rally.cpp, both from before
+heights were in metres; PX4/PX4-Autopilot src/modules/navigator/rtl_params.yaml and geofence_avoidance_params.yaml. Read in parts:
+ArduPilot's change to metres of January 2026 (convert_params), libraries/AC_Avoidance/AP_OAPathPlanner.cpp, PX4's rtl.cpp
+(computeReturnAltitude). ArduPilot's RTL_OPTIONS affect only the pilot's yaw.
 """
 
 import math
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 PX4, ARDUPILOT = "px4", "ardupilot"
-# Of each group a vehicle has one; the first sets the height, the second says whether it flies straight at that height.
+# A vehicle has one parameter of each group. The first group sets the height, the second whether it flies straight at that height.
 PARAMETERS = {
     PX4: (("RTL_RETURN_ALT",), ("RTL_TYPE",), ("RTL_MIN_DIST",), ("RTL_CONE_ANG",), ("NAV_ACC_RAD",), ("GF_AVOID_NODES",), ("GF_ACTION",)),
     ARDUPILOT: (
@@ -22,21 +22,22 @@ PARAMETERS = {
     ),
 }  # fmt: skip
 NAMES = {autopilot: frozenset(name for group in groups for name in group) for autopilot, groups in PARAMETERS.items()}
-BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_TYPE")}  # unless 0: over terrain, round fences, …
+BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_TYPE")}  # unless 0: over terrain, around fences, …
 IN_CENTIMETRES = frozenset({"RTL_ALT", "RTL_CLIMB_MIN"})
-MIN_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
+MIN_CONE_SLOPE = 0.5  # ArduPilot: lower values disable the cone
 FENCES_HEIGHT, FENCES_POLYGONS = 1, 4  # bits of FENCE_TYPE
-HOLDS_AT_FENCE = 2  # PX4's GF_ACTION: from here on it does something; 0 is nothing, 1 a warning alone (geofence_params.yaml)
-# where it is not told
+HOLDS_AT_FENCE = 2  # PX4's GF_ACTION: 0 is no action, 1 only a warning, from 2 on it acts (geofence_params.yaml)
+# defaults of parameters that were not reported
 USUAL = {"RTL_CONE_SLOPE": 3.0, "FENCE_MARGIN": 2.0, "RTL_MIN_DIST": 10.0, "RTL_CONE_ANG": 45.0, "NAV_ACC_RAD": 10.0}
 
 
 @dataclass(frozen=True)
 class RtlBehaviour:
-    """`parameter` sets `height_m`.
+    """RTL as configured on a vehicle. `parameter` sets `height_m`.
 
-    `bends_by` is the parameter by which it does not fly straight at one height, `untold` one that would say whether it does; empty: none.
-    `shuns_home`: it goes to a rally point although home is nearer. `rally_points` are those that it holds; None: it does not tell.
+    `bends_by` is the parameter that makes it deviate from a straight line at one height, `untold` one that was not reported and would
+    decide that; both empty if none. `shuns_home`: it flies to a rally point even if home is nearer. `rally_points` is how many it holds;
+    None if not reported.
     """
 
     parameter: str
@@ -47,23 +48,26 @@ class RtlBehaviour:
     rally_points: int | None = None
 
     def level_m(self, current_m: float, away_m: float, goal_m: float) -> float:
-        """From a place at `current_m`, so far away from where it goes, which is home (0) or a rally point at `goal_m`."""
+        """Return the height of the RTL flight that begins at height `current_m`.
+
+        `away_m` is the distance to the destination: home, with `goal_m` 0, or a rally point at height `goal_m`.
+        """
         raise NotImplementedError
 
     def at_height(self, height_m: float) -> Self:
         return replace(self, height_m=height_m)
 
     def value_for(self, height_m: float) -> str:
-        """As the parameter is to be set, rounded up: "4600 (46 m)" where it counts centimetres."""
+        """Return the parameter value for a height, rounded up: "4600 (46 m)" if the parameter is in centimetres."""
         metres = math.ceil(height_m)
         return f"{metres * 100} ({metres} m)" if self.parameter in IN_CENTIMETRES else f"{metres} m"
 
 
 @dataclass(frozen=True)
 class CopterRtl(RtlBehaviour):
-    """ArduPilot's. `climb_m` it climbs at least; `cone_slope` is the metres that it climbs at most for each metre away.
+    """RTL of ArduPilot. It climbs at least `climb_m`, and at most `cone_slope` metres per metre of distance.
 
-    Its fence lowers it to `ceiling_m`, but never takes it down from where it is.
+    Its fence limits the height to `ceiling_m`, but never makes it descend.
     """
 
     climb_m: float = 0.0
@@ -82,8 +86,10 @@ class CopterRtl(RtlBehaviour):
 
 @dataclass(frozen=True)
 class Px4Rtl(RtlBehaviour):
-    """Within `near_m` of where it goes it stays in a cone of so many degrees beside the plumb line (0: no cone); within `accepted_m` it is
-    as good as there.
+    """RTL of PX4.
+
+    Within `near_m` of the destination it stays in a cone with `cone_deg` from the vertical (0: no cone). Within `accepted_m` it counts as
+    arrived.
     """
 
     near_m: float = USUAL["RTL_MIN_DIST"]
@@ -104,7 +110,7 @@ class Px4Rtl(RtlBehaviour):
 
 
 def rtl_behaviour(autopilot: str, parameters: Mapping[str, float]) -> RtlBehaviour | None:
-    """Of the parameters as the vehicle told them; None where it has not told its height."""
+    """Return the RTL behaviour by the parameters that the vehicle reported; None without its return height."""
     groups = PARAMETERS.get(autopilot)
     if groups is None:
         return None
@@ -135,7 +141,7 @@ def rtl_behaviour(autopilot: str, parameters: Mapping[str, float]) -> RtlBehavio
 
 
 def return_height_parameter(autopilot: str | None, parameters: Mapping[str, float], height_m: float) -> tuple[str, float] | None:
-    """Return the parameter of a vehicle and the value that set its return height, rounded up to whole metres; None where it told none."""
+    """Return the parameter and value that set a vehicle's return height, rounded up to metres; None if it reported no such parameter."""
     known = PARAMETERS.get(autopilot or "", ((),))[0]
     name = next((name for name in known if name in parameters), None)
     metres = float(math.ceil(height_m))
@@ -143,7 +149,7 @@ def return_height_parameter(autopilot: str | None, parameters: Mapping[str, floa
 
 
 def fence_off_by(autopilot: str, parameters: Mapping[str, float]) -> str:
-    """The parameter by which an autopilot ignores the fence that it holds, as "FENCE_ENABLE 0"; empty: it does not, or has not told."""
+    """Return the parameter that disables the vehicle's fence, as "FENCE_ENABLE 0"; empty if none does or it was not reported."""
     if autopilot == PX4 and parameters.get("GF_ACTION", HOLDS_AT_FENCE) < HOLDS_AT_FENCE:
         return f"GF_ACTION {parameters['GF_ACTION']:g}"
     if autopilot != ARDUPILOT or "FENCE_ENABLE" not in parameters:
@@ -155,7 +161,7 @@ def fence_off_by(autopilot: str, parameters: Mapping[str, float]) -> str:
 
 
 def fence_on_by(autopilot: str, parameters: Mapping[str, float]) -> str:
-    """The parameter by which an autopilot minds the fence that it holds, as "FENCE_ENABLE 1"; empty: it does not, or has not told."""
+    """Return the parameter that enables the vehicle's fence, as "FENCE_ENABLE 1"; empty if none does or it was not reported."""
     names = {PX4: ("GF_ACTION",), ARDUPILOT: ("FENCE_ENABLE", "FENCE_AUTOENABLE")}.get(autopilot, ())
     if not names or names[0] not in parameters or fence_off_by(autopilot, parameters):
         return ""
@@ -163,6 +169,6 @@ def fence_on_by(autopilot: str, parameters: Mapping[str, float]) -> str:
 
 
 def _ceiling_m(values: Mapping[str, float]) -> float | None:
-    """Of a fence that is on, or put on at the take-off."""
+    """Return the height limit of a fence that is on, or that is enabled at take-off."""
     is_on = bool(values.get("FENCE_ENABLE") or values.get("FENCE_AUTOENABLE")) and int(values.get("FENCE_TYPE", 0)) & FENCES_HEIGHT
     return values["FENCE_ALT_MAX"] - values["FENCE_MARGIN"] if is_on and "FENCE_ALT_MAX" in values else None

@@ -1,4 +1,4 @@
-"""One conversation after another, written as one course of events."""
+"""Runs protocol state machines one after another, written as one generator."""
 
 from collections.abc import Generator
 from typing import Any, Generic, Protocol, TypeVar
@@ -10,15 +10,15 @@ Result = TypeVar("Result")
 
 
 class Machine(Protocol):
-    """A conversation with a vehicle: every call answers with the messages to be sent."""
+    """A protocol state machine. Each call returns the messages to send."""
 
     @property
     def outcome(self) -> Any:
-        """None while it runs."""
+        """The result; None while it runs."""
 
     @property
     def wake_at_s(self) -> float | None:
-        """When `tick` is wanted; None: not before a message."""
+        """When `tick` is due; None: not before a message."""
 
     def start(self, now_s: float) -> Messages: ...
 
@@ -28,7 +28,7 @@ class Machine(Protocol):
 
 
 class Pause:
-    """Nothing is sent until a time; `outcome` is True then."""
+    """Sends nothing until a time; `outcome` is then True."""
 
     def __init__(self, until_s: float) -> None:
         self.outcome: bool | None = None
@@ -47,9 +47,9 @@ class Pause:
 
 
 class NextHeartbeat:
-    """Nothing is sent until the vehicle's state took a heartbeat after `since_s`, or until a time; `outcome` is True then.
+    """Sends nothing until a heartbeat after `since_s` or until `until_s`; `outcome` is then True.
 
-    `state` is to have taken a message before this gets it.
+    `state` must receive each message first.
     """
 
     def __init__(self, state: VehicleState, since_s: float, until_s: float) -> None:
@@ -75,7 +75,7 @@ Course = Generator[Machine, None, Result]
 
 
 class Steps(Generic[Result]):
-    """Runs a course: a generator that yields one machine after another, each run to its outcome, and returns the outcome of all."""
+    """Runs a generator that yields machines, each run to its outcome, and returns the overall outcome."""
 
     def __init__(self, course: Course[Result]) -> None:
         self.outcome: Result | None = None
@@ -96,7 +96,7 @@ class Steps(Generic[Result]):
         return [] if self.step is None else [*self.step.tick(now_s), *self.go_on(now_s)]
 
     def go_on(self, now_s: float) -> Messages:
-        """To the next step where the present one has ended."""
+        """Start the next step if the current one has ended."""
         return self._onward(now_s) if self.step is not None and self.step.outcome is not None else []
 
     def _onward(self, now_s: float) -> Messages:

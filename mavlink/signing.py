@@ -1,7 +1,7 @@
-"""MAVLink 2 message signing: what a signature says, which ones are believed, and frames signed by us.
+"""MAVLink 2 message signing: reads and checks signatures, and signs frames.
 
-Source: MAVLink developer guide, "Message signing". Beyond it a time of more than a minute ahead is refused: it would move the clock of
-the link, and whatever came after it would be too old. Only a right signature moves anything.
+Source: MAVLink developer guide, "Message signing". In addition, a time more than a minute ahead is refused: it would advance the link's
+clock and make all later frames too old. Only a valid signature changes any state.
 """
 
 import hashlib
@@ -23,7 +23,7 @@ _MAX_TIMESTAMP = 2**48 - 1
 
 
 class Refusal(StrEnum):
-    """Why a frame is not taken for the UAV's whose system id it bears."""
+    """Why a frame is not accepted from the UAV whose system id it has."""
 
     UNSIGNED = "unsigned"
     NO_KEY = "no-key"
@@ -36,17 +36,17 @@ class Refusal(StrEnum):
 
 
 def timestamp_at(unix_s: float) -> int:
-    """In 10 us since 2015, as frames bear it."""
+    """Return the signature timestamp: 10 us units since 2015."""
     return min(max(round((unix_s - EPOCH_UNIX_S) * UNITS_PER_S), 0), _MAX_TIMESTAMP)
 
 
 def unix_s_of(timestamp: int) -> float:
-    """Seconds since 1970, of what frames bear."""
+    """Return a signature timestamp as seconds since 1970."""
     return timestamp / UNITS_PER_S + EPOCH_UNIX_S
 
 
 def stream_of(frame: Frame) -> str:
-    """Component and link: timestamps go on within these."""
+    """Return component and link as "1:0": timestamps increase within each."""
     return f"{frame.component}:{frame.link_id}"
 
 
@@ -56,9 +56,9 @@ def tag_of(raw_without_tag: bytes, key: bytes) -> bytes:
 
 @dataclass
 class SignatureCheck:
-    """Which signed frames of one vehicle are believed. `last` is the newest timestamp by component and link, as "1:0".
+    """Checks signed frames of one vehicle. `last` is the newest timestamp by component and link, as "1:0".
 
-    Frames of before `since`, a timestamp, may have been recorded while nobody here took them: they are refused.
+    Frames from before the timestamp `since` may have been recorded while no gateway received them, and are refused.
     """
 
     key: bytes = field(repr=False)
@@ -66,7 +66,7 @@ class SignatureCheck:
     since: int = 0
 
     def refusal(self, frame: Frame, now_unix_s: float) -> Refusal | None:
-        """None for a frame to be taken; only then is its timestamp the newest of its stream."""
+        """Return why a frame is refused; None accepts it and makes its timestamp the newest of its stream."""
         if frame.timestamp is None:
             return Refusal.UNSIGNED
         if not self.is_signed_right(frame):
@@ -92,7 +92,7 @@ class SignatureCheck:
 
 @dataclass
 class FrameWriter:
-    """Messages of ours to frames. With a key they are signed, each with a later time than the one before, whatever the clock does."""
+    """Converts messages to frames. With a key they are signed, with increasing timestamps even if the clock goes back."""
 
     system: int
     component: int

@@ -1,18 +1,18 @@
-"""How long the ground station waits, and how often it tries again."""
+"""Timeouts and retries of the ground station."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class TransferRules:
-    """Of mission transfers; the first three are those that the MAVLink guide recommends.
+    """Timeouts of mission transfers; the first three values are the MAVLink guide's recommendations.
 
-    A list is asked for or announced every `timeout_s`, an item is sent or asked for again every `item_timeout_s`. What is given up is not a
-    message but the lack of progress: a transfer ends when for `silence_s` nothing new has come, however many items got through before. So
-    an item is tried some thirty times in what the guide grants five tries, and 200 items pass a link that loses 30 % each way; slower
-    links need a longer `item_timeout_s` (on 57 kbit/s 0.25 s repeats what is still under way).
+    A list is requested or announced every `timeout_s`, an item sent or requested again every `item_timeout_s`. A transfer ends when no
+    progress is made for `silence_s`, however many items were transferred before. An item thus gets some thirty tries in the time of the
+    guide's five, and 200 items pass a link with 30 % loss each way. Slower links need a longer `item_timeout_s`: on 57 kbit/s, 0.25 s
+    repeats items still in transmission.
 
-    `attempts` is how often a whole transfer is begun, with reading back in between.
+    `attempts` is how often a whole transfer is tried, with a readback in between.
     """
 
     timeout_s: float = 1.5
@@ -30,22 +30,22 @@ class TransferRules:
 
     @property
     def restart_s(self) -> float:
-        """Without an answer for so long a reading is begun anew: PX4 forgets it after 5 s."""
+        """Return the time without an answer after which a download restarts: PX4 drops it after 5 s."""
         return 3 * self.timeout_s
 
     def longest_s(self, items: int) -> float:
-        """Of one transfer, however steadily it goes on."""
+        """Return the maximum duration of one transfer."""
         return self.silence_s + 2 * self.timeout_s * items
 
 
 @dataclass(frozen=True)
 class CommandRules:
-    """Of commands.
+    """Timeouts of commands.
 
     A command is sent again after `timeout_s` without an answer, at most `retries` times. Its effect must show within `effect_s` after the
-    vehicle said yes, leaving the ground within `lift_off_s`. A refusal counts after `refusal_s`, in case it was the late answer to an
-    earlier command. While the vehicle says that it is at work, it is waited for as long as `in_progress_s` from one report to the next.
-    A state older than `fresh_s` is not taken for the present one.
+    acceptance, the take-off within `lift_off_s`. A refusal counts after `refusal_s`, as it may be the late answer to an earlier command.
+    While the vehicle reports progress, each further report may take `in_progress_s`. A state older than `fresh_s` does not count as
+    current.
     """
 
     timeout_s: float = 1.5

@@ -1,7 +1,7 @@
-"""Which kind of vehicle an autopilot steers, by the MAV_TYPE of its heartbeat, and how ArduPilot's firmware of each kind numbers its modes.
+"""Vehicle classes by the MAV_TYPE of the heartbeat, and the mode numbers of ArduPilot's firmware for each.
 
-Spanwise plans for multicopters, and commands no other kind by ArduPilot: the numbers of its modes mean something else there. PX4
-numbers its modes alike on all kinds, so that one of another kind can at least be held, brought back and landed.
+Spanwise plans for multicopters. It commands no other class on ArduPilot, whose mode numbers differ there. PX4 numbers its modes alike on
+all classes, so those can at least be held, returned and landed.
 """
 
 from enum import StrEnum
@@ -65,6 +65,6 @@ def type_name(mav_type: int) -> str:
 
 
 def refusal_of(vehicle_class: VehicleClass) -> Reason:
-    """Why it is given no mission."""
+    """Return why the vehicle receives no mission."""
     kind = "other" if vehicle_class is VehicleClass.OTHER else vehicle_class.value
     return Reason("only_multicopters", {"kind": Reason(f"kind_{kind}")})

@@ -1,4 +1,4 @@
-"""What a vehicle is given to fly: lists of mission items, a fence and rally points, and the hash that names them."""
+"""The plan that a vehicle receives: mission items, fence and rally points, and their hash."""
 
 import hashlib
 import json
@@ -8,7 +8,7 @@ from enum import IntEnum
 
 
 class MissionType(IntEnum):
-    """MAV_MISSION_TYPE: three lists that a vehicle keeps apart."""
+    """MAV_MISSION_TYPE: the three lists of a vehicle."""
 
     MISSION = 0
     FENCE = 1
@@ -19,8 +19,8 @@ class MissionType(IntEnum):
 class MissionItem:
     """One MISSION_ITEM_INT without its place in the list.
 
-    `command` is a MAV_CMD, `frame` a MAV_FRAME, `parameters` the first four, NaN where the autopilot is to choose. `longitude_e7` and
-    `latitude_e7` are 1e-7 degrees; `altitude_m` is what the frame says. `waypoint` is the waypoint of the route that it belongs to.
+    `command` is a MAV_CMD, `frame` a MAV_FRAME, `parameters` the first four, with NaN for the autopilot's choice. `longitude_e7` and
+    `latitude_e7` are in 1e-7 degrees. The reference of `altitude_m` is that of the frame. `waypoint` is the related waypoint of the route.
     """
 
     command: int
@@ -34,7 +34,7 @@ class MissionItem:
 
 @dataclass(frozen=True)
 class FlightLoad:
-    """All that one flight of one UAV is flown from. Home, where an autopilot wants it, is not among the mission items."""
+    """The lists for one flight of one UAV. Home, where an autopilot expects it, is not among the mission items."""
 
     mission: tuple[MissionItem, ...]
     fence: tuple[MissionItem, ...] = ()
@@ -45,12 +45,12 @@ class FlightLoad:
 
     @property
     def content_sha256(self) -> str:
-        """Names exactly this load; NaN is written as null."""
+        """Return the hash of this load; NaN is written as null."""
         return hashlib.sha256(json.dumps(load_to_json(self), sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
 def load_to_json(load: FlightLoad) -> dict[str, list[list[int | float | None]]]:
-    """By list, each item as [command, frame, p1, p2, p3, p4, longitude_e7, latitude_e7, altitude_m, waypoint]."""
+    """Return the lists by name, each item as [command, frame, p1, p2, p3, p4, longitude_e7, latitude_e7, altitude_m, waypoint]."""
     return {kind.name.lower(): [_item_to_json(item) for item in load.of(kind)] for kind in MissionType}
 
 

@@ -1,4 +1,4 @@
-"""What is known of a vehicle from its own messages."""
+"""State of a vehicle as its messages report it."""
 
 import math
 import struct
@@ -24,10 +24,10 @@ IN_AIR = frozenset({mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TA
 
 @dataclass
 class VehicleState:
-    """Fed by `receive` with every message of one system; None is what it has not told. Times are those of `receive`.
+    """The state of one system, updated by `receive` with each message. None: not reported. Times are those of `receive`.
 
-    `mission_item` counts as the vehicle does: on ArduPilot item 0 is home. A landed state that was not told for `fresh_s` is not known
-    any more: one lost message at a take-off must not keep a UAV on the ground.
+    `mission_item` counts as the vehicle does: item 0 is home on ArduPilot. A landed state older than `fresh_s` is unknown, so that a lost
+    message at take-off does not keep a UAV on the ground.
     """
 
     system: int
@@ -71,7 +71,7 @@ class VehicleState:
 
     @property
     def mode(self) -> str:
-        """In the autopilot's own words; empty before the first heartbeat."""
+        """Return the autopilot's name of its mode; empty before the first heartbeat."""
         return (
             ""
             if self.autopilot_type is None or self.custom_mode is None
@@ -84,7 +84,7 @@ class VehicleState:
 
     @property
     def can_be_stopped(self) -> bool:
-        """Whether the modes that hold it, bring it back and land it are known."""
+        """Return whether the modes for hold, return and land are known."""
         if self.autopilot_type is AutopilotType.ARDUPILOT:
             return self.vehicle_class is VehicleClass.COPTER
         return self.autopilot_type in COMMANDED
@@ -96,7 +96,7 @@ class VehicleState:
 
     @property
     def is_in_air(self) -> bool | None:
-        """As it says itself; ArduPilot, which must be asked to, at least tells in its heartbeat."""
+        """Return whether it flies: by its landed state, else, on ArduPilot, by its heartbeat; None if unknown."""
         if self._knows_landed_state:
             return self.landed_state in IN_AIR
         if self.autopilot_type is AutopilotType.ARDUPILOT and self.system_status is not None:
@@ -111,7 +111,7 @@ class VehicleState:
 
     @property
     def is_held(self) -> bool:
-        """Armed or not, it flies no list: what is sent to it cannot change where it goes."""
+        """Return whether it flies no mission, armed or not, so that new items cannot change its course."""
         if self.autopilot_type is AutopilotType.ARDUPILOT:
             return self.custom_mode in COPTER_HOLDING
         return self.is_in(Mode.HOLD)
@@ -120,7 +120,7 @@ class VehicleState:
         return self.heartbeat_at_s is not None and now_s - self.heartbeat_at_s <= fresh_s
 
     def words_since(self, since_s: float) -> str:
-        """What the vehicle said in words from then on, the newest last."""
+        """Return the vehicle's status texts from then on, the newest last."""
         return "; ".join(text for at_s, _, text in self.texts if at_s >= since_s)
 
 
@@ -177,13 +177,13 @@ def _health(state: VehicleState, message: Message, now_s: float) -> None:
 
 
 def _battery(state: VehicleState, message: Message, now_s: float) -> None:
-    """Of the first battery; empty: not told."""
+    """Store the state of the first battery; empty if not reported."""
     if message.id == 0:
         state.battery_state = BATTERY_STATES.get(getattr(message, "charge_state", 0), "")
 
 
 def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
-    """PX4 sends the bits of a whole number in place of the figure (MAVLink's "bytewise" encoding)."""
+    """Store a parameter. PX4 sends the bits of an integer in place of the float (MAVLink's "bytewise" encoding)."""
     value = float(message.param_value)
     if state.autopilot_type is AutopilotType.PX4 and message.param_type in WHOLE_TYPES:
         value = float(struct.unpack("<i", struct.pack("<f", value))[0])

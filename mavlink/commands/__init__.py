@@ -1,1 +1,1 @@
-"""One command to a vehicle, from its choice to the effect that the vehicle reports. Pure."""
+"""Orders to a vehicle, from the choice of commands to the effect that the vehicle reports. Pure."""

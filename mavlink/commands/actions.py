@@ -1,4 +1,4 @@
-"""What a UAV can be told, and the commands by which each autopilot does it."""
+"""Orders to a UAV, and the MAVLink commands by which each autopilot carries them out."""
 
 import math
 from collections.abc import Mapping
@@ -14,7 +14,7 @@ from mavlink.vehicle_class import VehicleClass, refusal_of
 from mavlink.vehicle_state import VehicleState
 from operation.reasons import Reason
 
-FIRST_PAUSE_S, MAX_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
+FIRST_PAUSE_S, MAX_PAUSE_S = 1.0, 15.0  # short at first, when each second counts; long later, as a pilot may have taken over
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
 ABORT_ROUNDS = 3
@@ -22,7 +22,7 @@ ITEM, SPEED_MPS = "item", "speed_mps"
 
 
 class Order(StrEnum):
-    """As a UAV's commands are called."""
+    """Names of a UAV's commands."""
 
     ARM = "arm"
     DISARM = "disarm"
@@ -41,7 +41,7 @@ STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUS
 
 
 class CannotOrder(ValueError):
-    """This cannot be asked of this vehicle now; `code` names why."""
+    """The order cannot be given to this vehicle now. `code` is the machine-readable reason."""
 
     def __init__(self, code: str, reason: Reason) -> None:
         super().__init__(str(reason))
@@ -51,9 +51,10 @@ class CannotOrder(ValueError):
 
 @dataclass(frozen=True)
 class OrderPlan:
-    """`goal` is what the vehicle's state shows once it is done. `ways` are tried one after the other, each step by step.
+    """How an order is carried out.
 
-    After so many `rounds` in which all of them failed it is given up; each is planned from the state as it is then.
+    `goal` is the vehicle state that shows success. `ways` are alternatives, tried in order, each a sequence of steps. After `rounds` rounds
+    in which all alternatives failed the order fails. Each round is planned from the vehicle's current state.
     """
 
     goal: Effect | None
@@ -62,10 +63,10 @@ class OrderPlan:
 
 
 def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
-    """For the vehicle as it is now. Raises CannotOrder.
+    """Return the plan of an order for the vehicle's current state. Raises CannotOrder.
 
-    parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
-    home. A return with an `item` goes on with the list from there, at `speed_mps`: the rest of it is the way home.
+    parameters: `altitude_relative_m` of a take-off, `speed_mps` to fly at, and `item`, the mission item of a mid-air start, counted from 0
+    without home. A return with an `item` continues the mission from there at `speed_mps`: the rest of the mission is the RTL path.
     """
     if state.autopilot_type not in COMMANDED:
         raise CannotOrder("autopilot", Reason("only_known_autopilots"))
@@ -124,7 +125,7 @@ def _is_in(mode: Mode) -> Effect:
 
 
 def _or_on_ground(effect: Effect) -> Effect:
-    """A UAV that stands disarmed holds, has returned, and has landed."""
+    """Return an effect that a UAV disarmed on the ground also shows: it holds, has returned and has landed."""
     return lambda state: effect(state) or _is_down(state)
 
 
@@ -138,7 +139,7 @@ _MISSION_START = CommandStep(Reason("step_start_mission"), mavlink.MAV_CMD_MISSI
 
 
 def mode_numbers(autopilot_type: AutopilotType | None, mode: Mode) -> Seven:
-    """Of MAV_CMD_DO_SET_MODE. Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
+    """Return the parameters of MAV_CMD_DO_SET_MODE. Source for PX4: main mode and sub mode are the second and third parameter."""
     if autopilot_type is AutopilotType.PX4:
         return (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
     return (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -151,15 +152,16 @@ def _mode(state: VehicleState, mode: Mode) -> CommandStep:
 
 
 def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
-    """ArduCopter cannot be armed in AUTO and others, and is by GUIDED."""
+    """Return the change to GUIDED that ArduCopter needs before arming in AUTO and other modes; else nothing."""
     is_barred = state.autopilot_type is AutopilotType.ARDUPILOT and not state.is_armed and state.custom_mode in COPTER_NOT_ARMABLE
     return (_mode(state, Mode.GUIDED),) if is_barred else ()
 
 
 def _start(state: VehicleState) -> OrderPlan:
-    """The first item; PX4: the mission's mode, then arming. ArduCopter: GUIDED, arming, AUTO, and then it must be told to start.
+    """Start the mission from its first item.
 
-    ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
+    PX4: mission mode, then arming. ArduCopter: GUIDED, arming, AUTO and MISSION_START. A disarmed ArduCopter accepts a start and does
+    nothing, so only flying counts as started.
     """
     if _is_ordered_to_fly(state):
         return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
@@ -171,14 +173,14 @@ def _start(state: VehicleState) -> OrderPlan:
 
 
 def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
-    """Of a UAV that is held: it is on its way to the item. Told again while it flies its list, nothing is sent."""
+    """Start the mission at an item, for a UAV that holds on its way there. Sends nothing to a UAV that already flies its mission."""
     if not _is_ordered_to_fly(state):
         raise CannotOrder("not-flying", Reason("mid_air_start_on_ground"))
     return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
 
 
 def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
-    """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
+    """Continue the mission at an item or past it. The speed is sent first, because items that set it may be skipped."""
     if state.vehicle_class is not VehicleClass.COPTER:
         raise CannotOrder("vehicle-class", refusal_of(state.vehicle_class))
     if not _is_ordered_to_fly(state):
@@ -193,19 +195,21 @@ def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> Ord
 
 
 def _is_ordered_to_fly(state: VehicleState) -> bool:
-    """Raises CannotOrder where it is not known."""
+    """Return whether the UAV is in the air. Raises CannotOrder if that is unknown."""
     if state.is_in_air is None:
         raise CannotOrder("not-told", Reason("in_air_unknown"))
     return state.is_in_air
 
 
 def _first_item(state: VehicleState) -> CommandStep:
-    """Else a list that was flown before goes on where it was left, by a leg from here that nobody checked. ArduPilot's item 0 is home."""
+    """Select the first item. Otherwise a mission flown before would resume where it stopped, over an unchecked leg. ArduPilot's item 0 is
+    home.
+    """
     return _item(state, 0)
 
 
 def _item(state: VehicleState, place: int) -> CommandStep:
-    """place: from 0 without home."""
+    """Select an item. place: counted from 0 without home."""
     item = _number_of(state, place)
     return CommandStep(
         Reason("step_first_item") if place == 0 else Reason("step_item", {"item": place + 1}),
@@ -218,12 +222,12 @@ def _item(state: VehicleState, place: int) -> CommandStep:
 
 
 def _number_of(state: VehicleState, place: int) -> int:
-    """Of an item, as the vehicle counts."""
+    """Return the item's number as the vehicle counts."""
     return place if state.autopilot_type is AutopilotType.PX4 else place + 1
 
 
 def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
-    """PX4 wants the height above sea level, and is armed afterwards; ArduCopter wants it above home, armed in GUIDED before."""
+    """Plan a take-off. PX4 expects the altitude AMSL, and arming after it; ArduCopter the height above home, after GUIDED and arming."""
     relative_m = _positive(parameters, "altitude_relative_m")
     if state.autopilot_type is AutopilotType.PX4:
         ground_m = state.altitude_amsl_m if state.home_amsl_m is None else state.home_amsl_m
@@ -238,7 +242,7 @@ def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan
 
 
 def _abort(state: VehicleState) -> OrderPlan:
-    """Return, and land where that is refused. On the ground: disarm; it may be about to leave it, so the others are left to try."""
+    """Return, or land if that is refused. On the ground: disarm first, then the same, as the UAV may be about to take off."""
     down = ((_mode(state, Mode.RETURN),), (_mode(state, Mode.LAND),))
     if state.is_in_air is False:
         return OrderPlan(_is_down, ((_STAY_DOWN,), *down), ABORT_ROUNDS)
@@ -246,7 +250,7 @@ def _abort(state: VehicleState) -> OrderPlan:
 
 
 def _speed(parameters: Mapping[str, float]) -> CommandStep:
-    """Over ground; no message of every vehicle shows it, so its yes has to be enough."""
+    """Set the ground speed. No message that all vehicles send shows it, so the acknowledgement has to suffice."""
     numbers = (1.0, _positive(parameters, SPEED_MPS), -1.0, 0.0, 0.0, 0.0, 0.0)
     return CommandStep(Reason("step_change_speed"), mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
 
@@ -262,7 +266,10 @@ MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RET
 
 
 def unacknowledged_message(order: Order, autopilot_type: AutopilotType, addressing: Addressing, sent: int) -> Message:
-    """The same again after it was sent so often. `order` is one of MODES, `autopilot_type` one that is commanded."""
+    """Return the command to send again without waiting for an acknowledgement.
+
+    `order` is one of MODES, `autopilot_type` one that is commanded, `sent` the number of sends so far.
+    """
     numbers = mode_numbers(autopilot_type, MODES[order])
     return mavlink.MAVLink_command_long_message(
         addressing.system, addressing.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers
@@ -270,5 +277,5 @@ def unacknowledged_message(order: Order, autopilot_type: AutopilotType, addressi
 
 
 def pause_s(sent: int) -> float:
-    """After so many."""
+    """Return the pause after this many sends [s]."""
     return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), MAX_PAUSE_S)

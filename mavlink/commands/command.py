@@ -1,4 +1,4 @@
-"""One command to a vehicle: sent, answered, and seen to have had its effect."""
+"""One command to a vehicle: sent, acknowledged, and confirmed by the state that the vehicle reports."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class CommandEnd(StrEnum):
 
 @dataclass(frozen=True)
 class CommandOutcome:
-    """`code` is short and stable: already, denied, no-effect, silent, …"""
+    """`code` is short and stable, such as already, denied, no-effect or silent."""
 
     state: CommandEnd
     code: str = ""
@@ -31,14 +31,16 @@ class CommandOutcome:
 
 @dataclass(frozen=True)
 class CommandStep:
-    """`effect` tells whether the vehicle's state shows it; without one its yes is the end. What `is_slow` is waited for longer, once.
+    """One MAVLink command and the effect that confirms it.
 
-    The effect shows in what was told since, by `sent_at_s`. `is_too_late` tells that the step can do nothing any more. `instead` is sent
-    to a vehicle that does not know the command.
+    `effect` returns whether the vehicle's state shows it. Without an effect the acknowledgement ends the step. A step that `is_slow` is
+    sent once and waited for longer. `sent_at_s` returns the time of the message that shows the effect; only messages after the start of the
+    step count. `is_too_late` returns whether the step has become pointless. `instead` is sent to a vehicle that does not support the
+    command.
     """
 
     name: Reason
-    command: int | None  # MAV_CMD; None: nothing is sent, its effect is waited for
+    command: int | None  # MAV_CMD; None: send nothing, wait for the effect
     parameters: Seven = (0.0,) * 7
     effect: Effect | None = None
     is_slow: bool = False
@@ -48,11 +50,11 @@ class CommandStep:
 
 
 class CommandMachine:
-    """Sends a step's command until its effect shows, or the vehicle says no.
+    """Sends a step's command until its effect shows or the vehicle refuses it.
 
-    `state` is to have taken a message before the machine gets it. What the vehicle says is believed only so far: a yes is waited on for
-    the effect and asked for again, an effect without a yes is enough, and a no may have been the late answer to an earlier command, so
-    that a yes or the effect within `refusal_s` overrules it.
+    `state` must have received a message before the machine does. After an acceptance the machine waits for the effect and then sends again.
+    An effect without an acknowledgement suffices. A refusal may be the late answer to an earlier command: an acceptance or the effect
+    within `refusal_s` overrules it.
     """
 
     def __init__(self, step: CommandStep, state: VehicleState, addressing: Addressing, rules: CommandRules) -> None:
@@ -65,7 +67,7 @@ class CommandMachine:
         self._rules = rules
         self._begun_s = 0.0
         self._sent = 0
-        self._is_unknown = False  # to the vehicle: it is told by the message instead
+        self._is_unknown = False  # the vehicle does not support the command: `instead` is sent
         self._no: int | None = None
 
     def start(self, now_s: float) -> Messages:
@@ -101,7 +103,7 @@ class CommandMachine:
 
     @property
     def _own_words(self) -> tuple[Reason, ...]:
-        """What the vehicle itself said since the beginning."""
+        """Return the vehicle's status texts since the start."""
         words = self._state.words_since(self._begun_s)
         return (text_reason(words),) if words else ()
 
@@ -110,7 +112,7 @@ class CommandMachine:
         return self._rules.lift_off_s if self._step.is_slow else self._rules.effect_s
 
     def _shows_effect(self) -> bool:
-        """By what was heard since the beginning."""
+        """Return whether messages received since the start show the effect."""
         last_message_s = self._step.sent_at_s(self._state)
         return (
             self._step.effect is not None

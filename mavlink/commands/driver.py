@@ -1,4 +1,4 @@
-"""One order to one vehicle, carried out and seen in what the vehicle reports."""
+"""Carries out one order to one vehicle and confirms it by what the vehicle reports."""
 
 from collections.abc import Mapping
 
@@ -14,12 +14,12 @@ UNDONE_ROUNDS = 3
 
 
 class CommandDriver:
-    """Drives an order to its goal. `state` is to have taken each message before the keeper gets it.
+    """Drives an order to its goal.
 
-    Where the vehicle is already so, it ends as applied, and nothing is sent. That is told by a heartbeat that came after the order was
-    given, within `fresh_s`, and, where something else was sent to the vehicle shortly before, after `unsettled_until_s`: one of before the
-    order may be of before somebody else told the vehicle otherwise. What makes a UAV
-    safe must still show then: a start that was sent before it, and arrives after it, would take it back.
+    `state` must have received each message before the driver does. If the vehicle already is in the goal state, the order ends as applied
+    and nothing is sent. That needs a heartbeat after the order, within `fresh_s`, because an earlier one may be older than another sender's
+    command. If another command was sent shortly before, the heartbeat must also be after `unsettled_until_s`. A safety order must still
+    show its effect then: a start sent before it may arrive after it and undo it.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class CommandDriver:
         unsettled_until_s: float | None = None,
     ) -> None:
         self.order = order
-        self.is_acknowledged = False  # the vehicle said yes to a command of it
+        self.is_acknowledged = False  # the vehicle has accepted a command of this order
         self._state = state
         self._addressing = addressing
         self._rules = rules
@@ -82,7 +82,7 @@ class CommandDriver:
             if self._is_already(plan) and (self._state.heartbeat_at_s or 0.0) > self._begun_s:
                 return CommandOutcome(CommandEnd.APPLIED, "already", (Reason("done_already"),))
             if plan.goal is None and self._unsettled_until_s is not None:
-                yield Pause(self._unsettled_until_s)  # else a late yes to an earlier one would be taken for the answer
+                yield Pause(self._unsettled_until_s)  # or a late acceptance of an earlier command would count as the answer
             outcome = yield from self._tried(plan)
             done += 1
             if outcome.state is CommandEnd.APPLIED and self.order in STOPS and self._unsettled_until_s is not None:
@@ -95,7 +95,7 @@ class CommandDriver:
                 return outcome
 
     def _tried(self, plan: OrderPlan) -> Course[CommandOutcome]:
-        """All ways, one after the other."""
+        """Try the alternatives in order."""
         failure = CommandOutcome(CommandEnd.FAILED)
         for way in plan.ways:
             for step in way:
@@ -110,7 +110,7 @@ class CommandDriver:
                 self.is_acknowledged = True
             else:
                 return CommandOutcome(CommandEnd.APPLIED)
-            if failure.code == "silent":  # it may have been heard: another way could undo it
+            if failure.code == "silent":  # the vehicle may have received it: an alternative could undo it
                 break
         return failure
 

@@ -1,4 +1,4 @@
-"""Asking a vehicle where its home is now: it may have got another one since it told, by a boot, or where it was armed."""
+"""Requests a vehicle's home position, which a boot or arming may have changed since it was reported."""
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -8,7 +8,7 @@ from mavlink.vehicle_state import VehicleState
 
 
 class HomeReading:
-    """`outcome` is whether it was told. `state` is to have taken a message before."""
+    """Requests the home position until it arrives. `outcome` is whether it did. `state` must receive each message first."""
 
     def __init__(self, state: VehicleState, addressing: Addressing, rules: TransferRules) -> None:
         self.outcome: bool | None = None
@@ -32,7 +32,7 @@ class HomeReading:
         return [] if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s else self._asked(now_s)
 
     def _asked(self, now_s: float) -> Messages:
-        """The older command in turn: not every vehicle knows the newer one."""
+        """Send the newer and the older command alternately, as some vehicles support only the older."""
         if self._tries > self._rules.retries:
             self.outcome, self.wake_at_s = False, None
             return []

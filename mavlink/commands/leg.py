@@ -1,4 +1,4 @@
-"""Where a vehicle is beside the leg that it would fly on: a way to that leg was looked at by nobody."""
+"""Position of a vehicle relative to the mission leg that it would resume. The way to that leg is unchecked."""
 
 from dataclasses import dataclass
 
@@ -12,16 +12,19 @@ from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 @dataclass(frozen=True)
 class BesideLeg:
-    """`away_m` from the leg over the ground; `above_m` the higher of its ends, below 0: under the lower one; 0 between them."""
+    """Offset from a leg.
+
+    `away_m` is the distance over the ground. `above_m` is the height above the higher end, negative below the lower end, 0 in between.
+    """
 
     away_m: float
     above_m: float
 
 
 def beside_leg(load: FlightLoad, item: int, take_off: LonLat, position: LonLat, relative_m: float) -> BesideLeg | None:
-    """Of a vehicle at `position`, `relative_m` above home, that goes on with the item of this place in the mission.
+    """Return the offset of a vehicle at `position`, `relative_m` above home, from the leg to the mission item `item`.
 
-    The leg comes from the place before, which is the take-off's where there is none. None: there is nothing to go on with.
+    The leg begins at the previous item with a position, else at the take-off. Returns None if no such item is left.
     """
     flown = [(place, position_of(one), one.altitude_m) for place, one in enumerate(load.mission) if one.command in FLOWN]
     ahead = next((number for number, (place, _, _) in enumerate(flown) if place >= item), None)
@@ -35,7 +38,7 @@ def beside_leg(load: FlightLoad, item: int, take_off: LonLat, position: LonLat, 
 
 
 def beside_place(item: MissionItem, position: LonLat, relative_m: float) -> BesideLeg:
-    """The same of a place in the air that is all of the leg."""
+    """Return the offset from a single place in the air."""
     at = position_of(item)
     return BesideLeg(_away_m(position, at, at), relative_m - item.altitude_m)
 

@@ -1,1 +1,1 @@
-"""What MAVLink messages say, in the log's terms; and whose clock says when. Pure."""
+"""Decodes MAVLink messages to the log's fields, with their time of measurement. Pure."""

@@ -1,7 +1,7 @@
-"""Which boot of a vehicle a time since boot belongs to, and when that was.
+"""Assigns a time since boot to a boot of the vehicle, and converts it to the server's clock.
 
-A time that lies behind the one before is of a new boot, or of what the vehicle has kept while the link was lost: of a new boot only if
-the vehicle could have started it since it was last heard, unless its own clock of the day, where it has one, says otherwise.
+A time before the previous one comes from a new boot, or was recorded while the link was lost. It counts as a new boot only if the vehicle
+could have started since its last message, unless the vehicle's time of day, where known, shows otherwise.
 """
 
 from dataclasses import dataclass, field
@@ -9,18 +9,18 @@ from typing import Any
 
 from mavlink.decoding.clock import ON_TIME_S, VehicleClock
 
-OUT_OF_ORDER_S = 1.0  # of the vehicle's time; so far back a message may come late without any question
+OUT_OF_ORDER_S = 1.0  # of the vehicle's time: a message this much older than the newest counts as out of order
 SAME_EPOCH_S = 5.0
 REBOOT_SLACK_S = 2.0
-FIRST_DAY_S = 1_420_070_400.0  # 2015: a clock that shows less has not been set
+FIRST_DAY_S = 1_420_070_400.0  # 2015: an earlier time of day means a clock that was never set
 BOOTS_KEPT = 3
 LEAP_S = 10.0
-LEAPS_BELIEVED = 5  # one after the other
+LEAPS_BELIEVED = 5  # in a row
 
 
 @dataclass
 class Boot:
-    """One run of a vehicle's clock. `epoch_s` is its day's time at boot as it says itself, `live_at_s` when it was last heard on time."""
+    """One run of a vehicle's clock. `epoch_s` is the reported time of day at boot, `live_at_s` the receipt of the last message on time."""
 
     key: str
     clock: VehicleClock
@@ -31,7 +31,7 @@ class Boot:
 
 @dataclass(frozen=True)
 class Stamp:
-    """When a message was measured, by the server's clock, and what names it for ever: the boot and its time in it."""
+    """When a message was measured, by the server's clock, and its permanent key: the boot and the time in it."""
 
     stream: str
     sequence: int
@@ -40,9 +40,9 @@ class Stamp:
 
 @dataclass
 class VehicleTime:
-    """Fed with every time since boot that a vehicle tells. All times of ours are seconds since 1970."""
+    """Converts each time since boot that a vehicle reports. All server times are seconds since 1970."""
 
-    boots: list[Boot] = field(default_factory=list)  # the present one last
+    boots: list[Boot] = field(default_factory=list)  # the current one last
     _leaps: int = 0
 
     @property
@@ -50,9 +50,12 @@ class VehicleTime:
         return self.boots[-1].clock if self.boots else None
 
     def receive(self, boot_ms: int, now_s: float, *, unix_s: float | None = None) -> Stamp:
-        """unix_s: the vehicle's day time, where the message tells it (SYSTEM_TIME).
+        """Return the stamp of a message.
 
-        A time far ahead of all before it is a fault until several in a row say so: it is stamped with its receipt and teaches nothing.
+        unix_s: the vehicle's time of day, if the message has it (SYSTEM_TIME).
+
+        A time far ahead of all earlier ones counts as a fault until several in a row agree. Until then a message is stamped with its
+        receipt and does not update the clock.
         """
         boot_s = boot_ms / 1000.0
         epoch_s = unix_s - boot_s if unix_s is not None and unix_s >= FIRST_DAY_S else None
@@ -84,7 +87,7 @@ class VehicleTime:
         return present if started_s < present.live_at_s - REBOOT_SLACK_S else self._new(boot_s, now_s)
 
     def _former(self, boot_s: float, now_s: float) -> Boot | None:
-        """A boot before the present one, if the time cannot be of the present one yet but was reached then."""
+        """Return an earlier boot that reached this time if the current boot cannot have reached it, else None."""
         if not self._is_leap(self.boots[-1], boot_s, now_s):
             return None
         reached = (boot for boot in reversed(self.boots[:-1]) if boot_s <= boot.highest_s + LEAP_S)
@@ -92,7 +95,7 @@ class VehicleTime:
 
     @staticmethod
     def _is_leap(boot: Boot, boot_s: float, now_s: float) -> bool:
-        """Whether the vehicle's clock would have run far more than ours since it was last heard."""
+        """Return whether the vehicle's clock would have run far more than the server's since its last message."""
         since_s = max(now_s - boot.live_at_s, 0.0) * boot.clock.rate
         return boot_s - boot.highest_s > LEAP_S + 3 * since_s
 

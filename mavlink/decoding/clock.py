@@ -1,7 +1,7 @@
-"""What the server's clock showed when a vehicle's clock showed a time since its boot.
+"""Converts a vehicle's time since boot to the server's clock.
 
-A message takes some time to arrive, never less than none: the earliest arrivals tell. A simulated vehicle's clock may run faster than
-ours, or slower, and change its rate; what a vehicle has kept while the link was lost arrives late, and faster than it was measured.
+Transmission takes an unknown, positive time, so the earliest arrivals determine the offset. A simulated vehicle's clock may run faster or
+slower than the server's and change its rate. Messages stored during a lost link arrive late, and faster than they were measured.
 """
 
 from collections import deque
@@ -10,22 +10,22 @@ from itertools import pairwise
 from statistics import median
 from typing import NamedTuple
 
-WINDOW_S = 20.0  # of receipt, from which the rate is learnt
+WINDOW_S = 20.0  # of receipt, from which the rate is fitted
 MIN_WINDOW_S = 4.0
 MIN_POINTS = 8
 POINT_INTERVAL_S = 0.2
 REFIT_INTERVAL_S = 1.0
-ON_TIME_S = 1.0  # later than the earliest arrivals
-STEADY = 0.1  # by which the rate of both halves of the window may differ
-REAL_TIME = 0.05  # as near to 1 a rate is 1: clocks are better than this window
+ON_TIME_S = 1.0  # delay after the earliest arrivals
+STEADY = 0.1  # allowed difference between the rates of both halves of the window
+REAL_TIME = 0.05  # a rate this near to 1 counts as 1: clocks are more accurate than this window
 SAME_RATE = 0.03
-CREEP = 0.2  # of a small lateness that is taken for drift, each time
-SLOWEST = 0.5  # no later record is put nearer to the one before it than so much of the time between them, unless it was here sooner
-EARLY_SHARE = 0.5  # of how much too early messages come if the vehicle's clock has become faster
+CREEP = 0.2  # share of a small delay that each fit takes for drift
+SLOWEST = 0.5  # minimum distance from the previous record, as a share of the vehicle's time between them, unless received sooner
+EARLY_SHARE = 0.5  # share of the expected earliness that confirms a faster vehicle clock
 
 
 class Point(NamedTuple):
-    """One message; early_s: by how much all until then, and this one, came earlier than was thought possible."""
+    """One message. early_s: the sum of all corrections to the offset for early arrivals until then, this one included."""
 
     received_s: float
     boot_s: float
@@ -34,23 +34,23 @@ class Point(NamedTuple):
 
 @dataclass
 class VehicleClock:
-    """offset_s is the server's time at the vehicle's boot, rate the vehicle's seconds a second."""
+    """offset_s is the server's time at the vehicle's boot, rate the vehicle's seconds per server second."""
 
     offset_s: float | None = None
     rate: float = 1.0
     _points: deque[Point] = field(default_factory=deque)
-    _base: Point | None = None  # an early point of the present rate, as long ago as it is
+    _base: Point | None = None  # an early point of the current rate, as old as possible
     _fitted_at_s: float = 0.0
     _early_s: float = 0.0
     _last: tuple[float, float] | None = None  # since boot, measured
 
     def measured_s(self, boot_s: float) -> float:
-        """By the server's clock. Only after the first `receive`."""
+        """Return the server's time of a vehicle time. Only valid after the first `receive`."""
         assert self.offset_s is not None  # noqa: S101 - as the docstring asks
         return self.offset_s + boot_s / self.rate
 
     def lateness_s(self, boot_s: float, now_s: float) -> float:
-        """How much later than the earliest possible a message arrives; negative where the clock is not understood yet."""
+        """Return how much later than the earliest possible a message arrives; negative before the clock is fitted."""
         return 0.0 if self.offset_s is None else now_s - self.measured_s(boot_s)
 
     def receive(self, boot_s: float, now_s: float) -> None:
@@ -69,7 +69,7 @@ class VehicleClock:
             self._fit()
 
     def stamp_s(self, boot_s: float, now_s: float) -> float:
-        """measured_s, kept in the order of the vehicle's clock while ours is still being learnt; not later than now_s."""
+        """Return measured_s, kept in the order of the vehicle's clock while the fit improves, and not after now_s."""
         measured_s = self.measured_s(boot_s)
         if self._last is not None and boot_s <= self._last[0]:
             return min(measured_s, self._last[1])
@@ -91,14 +91,14 @@ class VehicleClock:
         elif rate < self.rate or self._has_become_faster(points, rate):
             self.rate, self._base = rate, None
             self.offset_s = _earliest(points, rate)[1]
-        # else it only catches up: a replay of what was kept
+        # else stored messages arrive faster than they were measured: the rate is unchanged
 
     def _has_become_faster(self, points: list[Point], rate: float) -> bool:
         took_s = points[-1].received_s - points[0].received_s
         return points[-1].early_s - points[0].early_s > EARLY_SHARE * took_s * (rate / self.rate - 1.0)
 
     def _refine(self, points: list[Point]) -> None:
-        """The longer a rate has been kept, the better it is known."""
+        """Improve the rate: the longer it has held, the more precisely it is known."""
         assert self.offset_s is not None  # noqa: S101 - there are points
         point, offset_s = _earliest(points, self.rate)
         if self._base is None:
@@ -112,13 +112,13 @@ class VehicleClock:
 
 
 def _earliest(points: list[Point], rate: float) -> tuple[Point, float]:
-    """The point that took least time, and the offset that it tells."""
+    """Return the point with the shortest transmission, and the offset that follows from it."""
     point = min(points, key=lambda point: point.received_s - point.boot_s / rate)
     return point, point.received_s - point.boot_s / rate
 
 
 def _steady_rate(points: list[Point]) -> float | None:
-    """Seconds a second, 1 where it is as good as 1; None while there are too few points, or it changes."""
+    """Return the rate, 1 if close to 1; None with too few points or a changing rate."""
     if len(points) < MIN_POINTS or points[-1].received_s - points[0].received_s < MIN_WINDOW_S:
         return None
     if any(later.boot_s < earlier.boot_s for earlier, later in pairwise(points)):
@@ -131,7 +131,7 @@ def _steady_rate(points: list[Point]) -> float | None:
 
 
 def _rate(points: list[Point]) -> float:
-    """The median slope of pairs that lie half the points apart: single late ones do not matter."""
+    """Return the median slope of pairs half the points apart, which single late points do not affect."""
     half = len(points) // 2
     pairs = zip(points, points[half:], strict=False)
     slopes = [

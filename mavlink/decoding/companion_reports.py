@@ -1,4 +1,4 @@
-"""Reports of companion computers, as they come over the HTTP link: read, checked, each fault named. Pure."""
+"""Reads and checks reports of companion computers from the HTTP link, and names each fault. Pure."""
 
 import math
 import re
@@ -8,9 +8,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 MAX_SEQUENCE = 2**63 - 1
-EARLIEST_YEAR, LATEST_YEAR = 1970, 9998  # what a clock that was never set says, and what the database and Python both keep
+EARLIEST_YEAR, LATEST_YEAR = 1970, 9998  # 1970: the time of a clock that was never set; 9998: within the range of Python and PostgreSQL
 MAX_MODE_LENGTH = 30
-NEAR_KM, FAR_KM = 50.0, 500.0  # a place that is far as it stands and near with its two numbers changed over was sent the wrong way round
+NEAR_KM, FAR_KM = 50.0, 500.0  # a position this far away that is near with its numbers swapped was sent latitude first
 EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
 
 NUMBERS: Mapping[str, tuple[float, float]] = {  # inclusive
@@ -41,7 +41,7 @@ BARE_HEIGHTS = ("altitude", "altitude_m", "height", "height_m")
 
 @dataclass(frozen=True)
 class CompanionReport:
-    """One report. `position` is longitude, latitude [deg]; `values` are the other fields that were sent, by the log's own names."""
+    """One report. `position` is longitude, latitude [deg]; `values` are the other fields sent, under their names in the log."""
 
     sequence: int
     measured_at: datetime
@@ -51,7 +51,7 @@ class CompanionReport:
 
 
 class FaultyReport(Exception):
-    """`faults` are words by field."""
+    """The report is invalid. `faults` holds a text for each field."""
 
     def __init__(self, faults: dict[str, str]) -> None:
         super().__init__("; ".join(f"{name}: {words}" for name, words in faults.items()))
@@ -59,7 +59,7 @@ class FaultyReport(Exception):
 
 
 def read_report(sent: Any, *, known_place: tuple[float, float] | None = None) -> CompanionReport:
-    """A report as it was sent, as decoded JSON. `known_place` is where the UAV was last (longitude, latitude). Raises FaultyReport."""
+    """Return the report in decoded JSON. `known_place` is the UAV's last position (longitude, latitude [deg]). Raises FaultyReport."""
     if not isinstance(sent, dict):
         raise FaultyReport({"": "A record is an object."})
     faults = {str(name): _unknown(str(name)) for name in sent if name not in KNOWN}
@@ -105,7 +105,7 @@ def _value(name: str, value: Any, known_place: tuple[float, float] | None) -> An
 
 
 def instant(value: Any) -> datetime:
-    """A time of RFC 3339 with its zone, in UTC. Raises ValueError."""
+    """Return an RFC 3339 time with a zone as UTC. Raises ValueError."""
     fault = "A time with its zone is needed, such as 2026-11-22T09:30:00.250Z."
     if not isinstance(value, str):
         raise ValueError(fault)
@@ -119,7 +119,7 @@ def instant(value: Any) -> datetime:
 
 
 def whole_number(value: Any, lowest: int, highest: int) -> int:
-    """Raises ValueError."""
+    """Return the value if it is a whole number within the limits. Raises ValueError."""
     if isinstance(value, bool) or not isinstance(value, int) or not lowest <= value <= highest:
         raise ValueError(f"A whole number from {lowest} to {highest} is needed.")
     return value
@@ -167,7 +167,7 @@ def _is_turned_round(place: tuple[float, float], known: tuple[float, float]) -> 
 
 
 def _distance_km(a: tuple[float, float], b: tuple[float, float]) -> float:
-    """On a sphere: to tell 50 km from 500."""
+    """Return the distance on a sphere, accurate enough to separate 50 km from 500 km."""
     (lon_a, lat_a), (lon_b, lat_b) = ((math.radians(lon), math.radians(lat)) for lon, lat in (a, b))
     half = math.sin((lat_b - lat_a) / 2) ** 2 + math.cos(lat_a) * math.cos(lat_b) * math.sin((lon_b - lon_a) / 2) ** 2
     return 2 * EARTH_RADIUS_KM * math.asin(min(1.0, math.sqrt(half)))

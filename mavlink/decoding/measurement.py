@@ -1,12 +1,12 @@
-"""What one report of a UAV tells, whichever door it came by, and what of it can be believed."""
+"""The values of one report of a UAV, from either link, and their plausibility check."""
 
 import math
 from dataclasses import dataclass, field, fields, replace
 
 from mavlink.frames import Message
 
-KEPT_FRAMES = 200.0  # over which the mean runs
-MAX_GAP = 128  # of numbers that wrap at 256; more is a repetition, another order, or a new start
+KEPT_FRAMES = 200.0  # length of the running mean
+MAX_GAP = 128  # of numbers that wrap at 256; a larger step is a duplicate, a reordered frame or a restart
 RADIO_FULL = 254
 RADIO_UNKNOWN = 255
 RADIO_KEPT_S = 10.0
@@ -17,7 +17,7 @@ _COUNTED = (("mission_item", _MAX_INT), ("waypoint_sequence", _MAX_INT))
 
 @dataclass
 class LinkQuality:
-    """Of one vehicle."""
+    """Link quality of one vehicle."""
 
     _last: dict[int, int] = field(default_factory=dict)  # by component
     _received: float = 0.0
@@ -36,7 +36,7 @@ class LinkQuality:
         self._sent = self._sent * kept + step
 
     def receive_radio(self, message: Message, now_s: float) -> None:
-        """RADIO_STATUS: the weaker end counts."""
+        """Take a RADIO_STATUS; the weaker end counts."""
         ends = [rssi for rssi in (message.rssi, message.remrssi) if rssi != RADIO_UNKNOWN]
         if ends:
             self._radio_percent, self._radio_at_s = 100.0 * min(*ends, RADIO_FULL) / RADIO_FULL, now_s
@@ -49,9 +49,9 @@ class LinkQuality:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Values of one moment; None is not known. Speeds go north, east and down, the wind where the air moves to.
+    """Values of one moment; None is unknown. Velocities point north, east and down; the wind is where the air moves to.
 
-    `mission_item` is the autopilot's own count, which only MAVLink has; `waypoint_sequence` the waypoint of the approved route.
+    `mission_item` is the autopilot's own count, which only MAVLink reports; `waypoint_sequence` is the waypoint of the approved route.
     """
 
     longitude_deg: float | None = None
@@ -86,7 +86,7 @@ _FLOATS = tuple(field.name for field in fields(Measurement) if field.name.endswi
 
 
 def believable(measurement: Measurement) -> Measurement:
-    """The same without what cannot be: no number, no place on Earth, a battery fuller than full. A heading is brought into 0 to 360."""
+    """Return the measurement without impossible values: NaN, places off the Earth, batteries above 100 %. Headings become 0 to < 360."""
     wrong: dict[str, float | int | str | None] = {
         name: None for name in _FLOATS if (value := getattr(measurement, name)) is not None and not math.isfinite(value)
     }
@@ -100,12 +100,12 @@ def believable(measurement: Measurement) -> Measurement:
             wrong[name] = None
     heading_deg = measurement.heading_deg
     if heading_deg is not None and math.isfinite(heading_deg) and not 0 <= heading_deg < 360:
-        wrong["heading_deg"] = heading_deg % 360.0 % 360.0  # twice: of a tiny negative angle the first gives 360
+        wrong["heading_deg"] = heading_deg % 360.0 % 360.0  # twice: the first gives 360 for a tiny negative angle
     if "\0" in measurement.mode or len(measurement.mode) > MAX_MODE_LENGTH:
         wrong["mode"] = measurement.mode.replace("\0", "")[:MAX_MODE_LENGTH]
     return replace(measurement, **wrong) if wrong else measurement  # type: ignore[arg-type]
 
 
 def _is_place(longitude_deg: float | None, latitude_deg: float | None) -> bool:
-    """NaN compares with nothing, so it is none."""
+    """Return whether this is a place on Earth; false for NaN, which compares false."""
     return longitude_deg is not None and latitude_deg is not None and -180 <= longitude_deg <= 180 and -90 <= latitude_deg <= 90

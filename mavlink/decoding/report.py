@@ -1,4 +1,4 @@
-"""What a vehicle's messages tell, put together: one measurement for each position that it reports."""
+"""Combines a vehicle's messages into one measurement for each position that it reports."""
 
 import math
 from collections.abc import Callable
@@ -10,11 +10,11 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.decoding.measurement import Measurement, believable
 from mavlink.frames import Message
 
-PIECE = 50  # characters of a whole piece; a shorter one is the last
+PIECE = 50  # characters of a full piece; a shorter one is the last
 TIMEOUT_S = 3.0
 MAX_OPEN = 8
 MAX_TEXT_LENGTH = 500
-KEPT_S = 10.0  # a value that was not told for so long is not known any more
+KEPT_S = 10.0  # older values count as unknown
 E7 = 1e7
 UNKNOWN_U16 = 65_535
 UNKNOWN_SATELLITES = 255
@@ -45,7 +45,7 @@ class _Open:
 
 @dataclass
 class TextCollector:
-    """Texts of one vehicle. What lacks a piece is given out with a gap when its time is over."""
+    """Assembles the status texts of one vehicle. A text that misses a piece after the timeout is returned with a gap."""
 
     _open: dict[tuple[int, int], _Open] = field(default_factory=dict)
 
@@ -82,7 +82,7 @@ def _clean(text: str | bytes) -> str:
 
 @dataclass(frozen=True)
 class FlownState:
-    """What the vehicle's own state says; see mavlink/vehicle_state.py."""
+    """The vehicle's own state; see mavlink/vehicle_state.py."""
 
     mode: str = ""
     is_armed: bool | None = None
@@ -93,7 +93,7 @@ class FlownState:
 
 @dataclass
 class MeasurementDecoder:
-    """Of one vehicle. Fed with every message of its autopilot."""
+    """Decodes the measurements of one vehicle from every message of its autopilot."""
 
     _values: dict[str, tuple[float, Values]] = field(default_factory=dict)
 
@@ -103,9 +103,9 @@ class MeasurementDecoder:
             self._values[message.get_type()] = (now_s, values)
 
     def measurement(self, message: Message, flown: FlownState, now_s: float) -> Measurement:
-        """message: GLOBAL_POSITION_INT, joined by the latest of everything else."""
+        """Return the position of a GLOBAL_POSITION_INT joined with the latest other values."""
         known: Values = {}
-        for name in _READ:  # the later ones go before the earlier
+        for name in _READ:  # later names override earlier ones
             at_s, values = self._values.get(name, (-math.inf, {}))
             if now_s - at_s <= KEPT_S:
                 known |= {field: value for field, value in values.items() if value is not None}
@@ -123,7 +123,7 @@ class MeasurementDecoder:
 
 
 def is_place(latitude_e7: int, longitude_e7: int, gps_fix: int | None = None) -> bool:
-    """Whether it is one on Earth, and not the zeros of a vehicle that does not know where it is."""
+    """Return whether this is a place on Earth, and not the zeros of a vehicle without a position."""
     if latitude_e7 == 0 and longitude_e7 == 0 and (gps_fix is None or gps_fix < FIX_2D):
         return False
     return abs(latitude_e7) <= 900_000_000 and abs(longitude_e7) <= 1_800_000_000
@@ -167,7 +167,7 @@ def _system_status(message: Message) -> Values:
 
 
 def _battery(message: Message) -> Values | None:
-    """Of the first battery. A voltage above 65.5 V is told in two cells."""
+    """Decode the first battery. A voltage above 65.5 V is split over two cells."""
     if message.id != 0:
         return None
     cells = [cell for cell in message.voltages if cell != UNKNOWN_U16]
@@ -188,7 +188,7 @@ def _gps(message: Message) -> Values:
 
 
 def _wind(message: Message) -> Values | None:
-    """ArduPilot's: from where it blows. Exactly 0 m/s is what it sends where it neither measures nor estimates wind."""
+    """Decode ArduPilot's wind, which names where it blows from. Exactly 0 m/s means neither measured nor estimated."""
     if not (math.isfinite(message.direction) and math.isfinite(message.speed)) or message.speed == 0.0:
         return None
     from_rad = math.radians(message.direction)
@@ -196,7 +196,7 @@ def _wind(message: Message) -> Values | None:
 
 
 def _wind_estimate(message: Message) -> Values:
-    """PX4's: to where the air moves."""
+    """Decode PX4's wind, which names where the air moves to."""
     return {"wind_north_mps": _finite(message.wind_x), "wind_east_mps": _finite(message.wind_y)}
 
 
@@ -212,6 +212,6 @@ _READ: dict[str, Callable[[Message], Values | None]] = {
 
 
 def is_vehicle(message: Message) -> bool:
-    """Whether a HEARTBEAT is of an autopilot that flies something: not of a ground station, a camera or a radio."""
+    """Return whether a HEARTBEAT comes from the autopilot of a vehicle, not from a ground station, camera or radio."""
     not_flying = {mavlink.MAV_TYPE_GCS, mavlink.MAV_TYPE_ANTENNA_TRACKER, mavlink.MAV_TYPE_ADSB}
     return message.autopilot != mavlink.MAV_AUTOPILOT_INVALID and message.type not in not_flying

@@ -1,1 +1,1 @@
-"""Lists of mission items, fences and rally points brought onto a vehicle and read back, as state machines."""
+"""State machines that upload mission items, fences and rally points to a vehicle and read them back."""

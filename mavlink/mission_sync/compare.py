@@ -1,11 +1,11 @@
-"""Whether a vehicle holds what was approved, item by item.
+"""Compares a vehicle's readback with the approved list, item by item.
 
-What an autopilot is known to change is no difference; everything else is, and is named. ArduPilot (seen in ArduCopter 4.6.0-dev and read in
-its AP_Mission.cpp) cuts an altitude to whole centimetres and some parameters to whole numbers, gives items without a place the frame
-GLOBAL, and forgets parameters: that is no difference where 0 or "as you choose" was asked for, but one where a figure was. It may have
-been given DO_SET_ROI in place of newer commands (see known_items). PX4 (read in its mavlink_mission.cpp) forgets some of them likewise and
-keeps a yaw in radians. Fence and rally items have no `autocontinue`: ArduPilot gives them back with 0. On the wire all figures are 32 bits
-long.
+Known conversions by an autopilot are not differences; everything else is, and is named. ArduPilot (observed in ArduCopter 4.6.0-dev, read
+in its AP_Mission.cpp) truncates altitudes to centimetres and some parameters to whole numbers, uses the frame GLOBAL for items without a
+position, and discards some parameters. A discarded parameter is a difference only where a value other than 0 or "autopilot's choice" was
+sent. ArduPilot may have received DO_SET_ROI in place of newer commands (see supported_items). PX4 (read in its mavlink_mission.cpp) also
+discards some parameters and stores a yaw in radians. Fence and rally items have no `autocontinue`: ArduPilot returns 0. All values are 32
+bits on the wire.
 """
 
 import math
@@ -24,7 +24,7 @@ from mavlink.vehicle_plan import MissionItem
 from operation.reasons import Reason
 
 CENTIMETRE_M = 0.01
-YAW_DEG = 0.001  # by way of radians in 32 bits
+YAW_DEG = 0.001  # after conversion to radians in 32 bits
 NOT_FLOWN = frozenset({
     mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
@@ -47,15 +47,18 @@ VALUES = {value: Reason(f"value_{value}") for value in ("missing", "nothing", "y
 class ReadbackMatch(StrEnum):
     NOTHING = "nothing"
     APPROVED = "approved"  # the list that is wanted
-    KNOWN = "known"  # another whole list that was approved
-    MIXED = "mixed"  # of parts of these
-    FOREIGN = "foreign"  # with an item of none of these
+    KNOWN = "known"  # another complete approved list
+    MIXED = "mixed"  # parts of approved lists
+    FOREIGN = "foreign"  # includes an item of none of these
 
 
 def found(
     held: OnboardList, wanted: Sequence[MissionItem], known: Sequence[Sequence[MissionItem]], autopilot_type: AutopilotType
 ) -> ReadbackMatch:
-    """known: other lists that were approved for this vehicle. Lists of one mission often begin alike, so a mix is told only by them."""
+    """Return how the readback relates to the approved lists.
+
+    known: other lists approved for this vehicle. Lists of one mission often begin alike, so these are needed to detect a mix.
+    """
     if not differences(wanted, held, autopilot_type):
         return ReadbackMatch.APPROVED
     if not held:
@@ -70,13 +73,13 @@ def found(
 
 
 def mix_of(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList | None, autopilot_type: AutopilotType) -> Reason:
-    """Which items are whose: "0-2 are new, 3-6 are of the list before"; `before` is None where it is not known."""
+    """Return where each item comes from: "0-2 are new, 3-6 are of the list before". `before` is None if unknown."""
     new = _of_list(held, wanted, autopilot_type)
     whose: list[str] = []
     for place, there in enumerate(held):
         is_old = before is not None and place < len(before) and is_identical(before[place], there)
         if place in new and is_old and whose:
-            whose.append(whose[-1])  # the lists agree here
+            whose.append(whose[-1])  # both lists have this item
         elif place in new:
             whose.append("new")
         elif is_old:
@@ -96,18 +99,18 @@ def mix_of(held: OnboardList, wanted: Sequence[MissionItem], before: OnboardList
 
 
 def _of_list(held: OnboardList, items: Sequence[MissionItem], autopilot_type: AutopilotType) -> set[int]:
-    """The places at which it holds the item of this list."""
+    """Return the places at which the vehicle holds this list's item."""
     return {place for place, (item, there) in enumerate(zip(items, held, strict=False)) if is_same(item, there.item, autopilot_type)}
 
 
 class Keeps(Enum):
-    """What becomes of a parameter."""
+    """How an autopilot stores a parameter."""
 
     ALL = auto()
-    WHOLE = auto()  # its whole part
+    WHOLE = auto()  # truncated to a whole number
     NOTHING = auto()
     YAW = auto()
-    NOT_YAW = auto()  # overwritten, where no yaw was asked for
+    NOT_YAW = auto()  # overwritten if no yaw was sent
 
 
 ALL, WHOLE, NOTHING, YAW, NOT_YAW = Keeps
@@ -142,7 +145,7 @@ KEEPS = {AutopilotType.ARDUPILOT: ARDUPILOT_KEEPS, AutopilotType.PX4: PX4_KEEPS}
 
 @dataclass(frozen=True)
 class ItemDifference:
-    """`item` is the place in the approved list, from 0; `field` what is otherwise there."""
+    """One difference. `item` is the place in the approved list, counted from 0; `field` names what differs."""
 
     item: int
     field: str
@@ -157,7 +160,7 @@ class ItemDifference:
 
 
 def differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_type: AutopilotType) -> tuple[ItemDifference, ...]:
-    """All of them, in the order of the list; empty where the vehicle holds what is wanted. `held` without home (see `onboard_list`)."""
+    """Return all differences in list order; empty if the lists match. `held` excludes home (see `onboard_list`)."""
     return tuple(_differences(wanted, held, autopilot_type))
 
 
@@ -174,7 +177,7 @@ def _differences(wanted: Sequence[MissionItem], held: OnboardList, autopilot_typ
 
 
 def is_identical(one: OnboardItem, other: OnboardItem) -> bool:
-    """Two items that were read, figure by figure; NaN is NaN."""
+    """Return whether two items that were read have the same values; NaN equals NaN."""
     left, right = one.item, other.item
     return (
         (left.command, left.frame, left.longitude_e7, left.latitude_e7, one.goes_on)

@@ -1,4 +1,4 @@
-"""Reading a list of items back from a vehicle."""
+"""Reads a list of items back from a vehicle."""
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
@@ -10,10 +10,10 @@ from mavlink.vehicle_plan import MissionType
 
 
 class Download:
-    """A list on its way from a vehicle: `read` once the outcome is `done`.
+    """A list being read from a vehicle; complete in `read` once the outcome is `done`.
 
-    PX4 breaks a reading off when an old request reaches it late. It is then begun anew, and each request waits for `item_timeout_s`, so
-    that whatever is late arrives before it. ArduPilot needs no beginning anew: its items can be read in any order.
+    PX4 aborts a transfer when an old request arrives late. The download then restarts, and each request waits for `item_timeout_s`, so that
+    late messages arrive first. ArduPilot needs no restart: it answers requests in any order.
     """
 
     def __init__(self, kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
@@ -101,7 +101,7 @@ class Download:
             self.wake_at_s = now_s + self._rules.timeout_s
             return []
         if self._count is None:
-            return []  # busy: it is asked again in time
+            return []  # busy: the next tick asks again
         self._restarts += 1
         if self._restarts > self._rules.retries * self._rules.attempts:
             return self._end(TransferState.REFUSED, result_name(result))

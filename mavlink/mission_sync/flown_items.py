@@ -1,4 +1,4 @@
-"""What a vehicle has flown of the list that it holds, as its messages show it."""
+"""Derives which items of its mission a vehicle has flown, from its messages."""
 
 from dataclasses import dataclass
 
@@ -8,14 +8,15 @@ from mavlink.autopilot_type import AutopilotType, Mode
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
 
-RESET_S = 5.0  # within which a vehicle that has landed tells that it is disarmed, also when some of its messages are lost
+RESET_S = 5.0  # by then a landed vehicle has reported that it is disarmed, even if some messages are lost
 
 
 @dataclass(frozen=True)
 class FlownMissionItem:
-    """`item` counts from 0 without home. `is_down`: it has landed and is disarmed; `item` is then the last one it was at or on its way to.
+    """Progress of a flight. `item` counts from 0 without home.
 
-    `is_reached` tells which of the two.
+    `is_down`: the vehicle has landed and is disarmed; `item` is then the last one that it reached or flew towards. `is_reached` is whether
+    it reached `item`.
     """
 
     item: int
@@ -23,7 +24,7 @@ class FlownMissionItem:
     is_down: bool = False
 
     def is_whole(self, load: FlightLoad) -> bool:
-        """Whether the flight was flown to its end: on its way to the landing everything before is behind it, else the last is reached."""
+        """Return whether the whole flight was flown: the last item was reached, or is the landing."""
         last = len(load.mission) - 1
         if not self.is_down or self.item != last or last < 0:
             return False
@@ -32,30 +33,31 @@ class FlownMissionItem:
 
 @dataclass
 class FlightWatch:
-    """Asked after each message that the vehicle's state has taken. One flight lasts from being seen in the air until it is down.
+    """Tracks one flight, from the first report in the air until the vehicle is down. Check it after each message that the state has
+    received.
 
-    ArduPilot's list is at the beginning again as soon as it has landed, before or after it tells that it is disarmed and on the ground: the
-    item that it was on its way to is remembered, and given up for the first one only where that is told for longer than `RESET_S`.
+    ArduPilot resets its list to the beginning on landing, before or after it reports disarmed and on the ground. The item that it flew
+    towards is therefore kept, and replaced by the first one only if that is reported for longer than `RESET_S`.
     """
 
     has_flown_list: bool = False
     _reached: int = -1
-    _bound_for: int = -1  # as the vehicle counts
-    _back_at_s: float | None = None  # since when its list is at the beginning again
+    _bound_for: int = -1  # counted as the vehicle does
+    _back_at_s: float | None = None  # when its list was reset to the beginning
 
     def take_up(self, *, was_in_mission: bool, mission_item: int | None) -> None:
-        """What the gateway before has seen of a vehicle in the air; it may be down by now."""
+        """Adopt what the previous gateway observed of a vehicle in the air, which may have landed since."""
         if was_in_mission:
             self.has_flown_list = True
             if self._bound_for < 0 and mission_item is not None:
                 self._bound_for = mission_item
 
     def forget(self) -> None:
-        """Another list was put on it: nothing of that one is flown yet."""
+        """Reset after another list was uploaded: none of it is flown yet."""
         self.has_flown_list, self._reached, self._bound_for, self._back_at_s = False, -1, -1, None
 
     def check(self, state: VehicleState, kind: str) -> list[FlownMissionItem]:
-        """kind: the message's type."""
+        """Return the progress that a message of this type shows."""
         if state.is_armed and state.is_in_air and state.is_in(Mode.MISSION):
             self.has_flown_list = True
         if not self.has_flown_list:

@@ -1,4 +1,4 @@
-"""What a vehicle cannot take: lists that are too long, and legs longer than its parameters allow."""
+"""Limits of a vehicle: the length of lists, and the length of legs by its parameters."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from mavlink.reasons import list_reason
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from operation.reasons import Reason
 
-# ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
-# the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
+# ArduPilot: 650 with home, observed on its simulator. PX4's dataman.h and navigation.h: a board's space is set at build time, so the usual
+# numbers only cause a warning. A vehicle with less space refuses at once and keeps its list.
 MAX_ITEMS = {(AutopilotType.ARDUPILOT, MissionType.MISSION): 649}
 USUAL_ITEMS = {
     (AutopilotType.PX4, MissionType.MISSION): 500,
@@ -26,7 +26,7 @@ PARAMETERS = (FIRST_LEG, ANY_LEG)
 
 @dataclass(frozen=True)
 class LimitWarning:
-    """`code` is short and stable; `item` the place in the mission."""
+    """`code` is short and stable; `item` is the place in the mission."""
 
     code: str
     reason: Reason
@@ -34,12 +34,12 @@ class LimitWarning:
 
 
 def too_many(load: FlightLoad, autopilot_type: AutopilotType) -> LimitWarning | None:
-    """The first list that no vehicle of the autopilot takes."""
+    """Return the first list that is too long for every vehicle of this autopilot, else None."""
     return next(_longer(load, autopilot_type, MAX_ITEMS, "too_many_items", "too-many-items"), None)
 
 
 def count_warnings(load: FlightLoad, autopilot_type: AutopilotType) -> tuple[LimitWarning, ...]:
-    """Lists that are longer than most vehicles of the autopilot take."""
+    """Return warnings for lists that are too long for most vehicles of this autopilot."""
     return tuple(_longer(load, autopilot_type, USUAL_ITEMS, "many_items", "many-items"))
 
 
@@ -54,7 +54,7 @@ def _longer(
 
 
 def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: LonLat | None) -> tuple[LimitWarning, ...]:
-    """Legs that the vehicle would refuse to fly; parameters as it reported them. `stands_at` is where it would take off."""
+    """Return warnings for legs that the vehicle would refuse, by the parameters that it reported. `stands_at` is its take-off place."""
     warnings = []
     flown = [(place, item) for place, item in enumerate(load.mission) if item.command in FLOWN]
     most_m = parameters.get(FIRST_LEG, 0.0)

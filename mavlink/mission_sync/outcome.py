@@ -1,4 +1,4 @@
-"""What became of bringing a load onto a vehicle."""
+"""Outcome of bringing a load onto a vehicle."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,16 +10,16 @@ from operation.reasons import Reason
 
 
 class SyncState(StrEnum):
-    READY = "ready"  # it holds what was approved
-    INTACT = "intact"  # it failed, and all lists are as they were before
-    CLEARED = "cleared"  # it failed, and the mission was taken off
-    MIXED = "mixed"  # it holds what nobody approved, and could not be rid of it
-    UNREAD = "unread"  # it failed, and what it holds could not be read
+    READY = "ready"  # the vehicle holds what was approved
+    INTACT = "intact"  # failed; all lists are as before
+    CLEARED = "cleared"  # failed; the mission was cleared
+    MIXED = "mixed"  # the vehicle holds an unapproved list that could not be cleared
+    UNREAD = "unread"  # failed; the vehicle's lists could not be read
 
 
 @dataclass(frozen=True)
 class Mix:
-    """A list that was found to be neither the approved one nor the one before."""
+    """A readback that matches neither the approved list nor the previous one."""
 
     kind: MissionType
     what: Reason
@@ -27,11 +27,11 @@ class Mix:
 
 @dataclass(frozen=True)
 class SyncOutcome:
-    """`code` names why it failed; `sha256` is of the load that the vehicle holds, empty unless it is ready.
+    """`code` is the reason of a failure. `sha256` is the hash of the load that the vehicle holds; empty unless ready.
 
-    `mixes` tells of every mixed list that was found on the way, those that were put right among them; `is_critical` whether one is still
-    there, or may be. `left_alone` tells what of the vehicle's own was kept beside the load, `left_sha256` names these
-    lists, by kind (see wire.onboard_sha256).
+    `mixes` are all mixed lists found, including those repaired. `is_critical` is whether the vehicle holds one, or may hold one.
+    `left_alone` describes lists of the vehicle that were kept beside the load; `left_sha256` are their hashes by kind (see
+    wire.onboard_sha256).
     """
 
     state: SyncState
@@ -47,7 +47,7 @@ class SyncOutcome:
 
 @dataclass(frozen=True)
 class SyncProgress:
-    """Of the list that is under way; `stage` is reading, sending, clearing or restoring."""
+    """Progress of the current list; `stage` is reading, sending, clearing or restoring."""
 
     kind: MissionType
     stage: str

@@ -1,7 +1,7 @@
-"""Which mission items the firmware of a vehicle knows, and what it is sent in place of those that it does not.
+"""Mission items that a vehicle's firmware supports, and substitutes for those that it does not.
 
-ArduPilot takes DO_SET_ROI_LOCATION and DO_SET_ROI_NONE as mission items since 4.7 (its pull request 29567), IMAGE_START_CAPTURE since 4.4
-(23147), and DO_SET_ROI in every version; one with neither position nor altitude ends the looking there (its AC_AutoYaw::set_roi).
+ArduPilot accepts DO_SET_ROI_LOCATION and DO_SET_ROI_NONE as mission items since 4.7 (its pull request 29567), IMAGE_START_CAPTURE since 4.4
+(23147), and DO_SET_ROI in every version. A DO_SET_ROI without position and altitude ends the region of interest (its AC_AutoYaw::set_roi).
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,14 +20,14 @@ NAMES = {AutopilotType.ARDUPILOT: "ArduPilot", AutopilotType.PX4: "PX4"}
 
 @dataclass(frozen=True)
 class UnknownItem:
-    """An item of a mission, by its place from 0, that the firmware refuses."""
+    """A mission item that the firmware refuses; `place` counts from 0."""
 
     place: int
     item: MissionItem
 
 
 def as_old_roi(item: MissionItem) -> MissionItem:
-    """The same by DO_SET_ROI; other items as they are."""
+    """Return the item as DO_SET_ROI; other items unchanged."""
     if item.command == mavlink.MAV_CMD_DO_SET_ROI_LOCATION:
         return replace(item, command=mavlink.MAV_CMD_DO_SET_ROI, parameters=(float(mavlink.MAV_ROI_LOCATION), 0.0, 0.0, 0.0))
     if item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
@@ -37,14 +37,14 @@ def as_old_roi(item: MissionItem) -> MissionItem:
 
 
 def as_known(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> tuple[MissionItem, ...]:
-    """The items as this firmware takes them. A version that is not told is taken for an old one."""
+    """Return the items as this firmware accepts them. An unknown version counts as an old one."""
     if autopilot_type is not AutopilotType.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
         return tuple(items)
     return tuple(map(as_old_roi, items))
 
 
 def unknown_items(items: Sequence[MissionItem], autopilot_type: AutopilotType, firmware: Version | None) -> list[UnknownItem]:
-    """Those that this firmware refuses; none while its version is not told."""
+    """Return the items that this firmware refuses; none while its version is unknown."""
     if firmware is None:
         return []
     since = KNOWN_SINCE.get(autopilot_type, {})
@@ -64,7 +64,7 @@ def command_words(command: int) -> str:
 
 
 def version_of(words: str) -> Version | None:
-    """Of "4.6.0"; None for anything else."""
+    """Parse "4.6.0"; None for anything else."""
     parts = words.split(".")
     if len(parts) != 3 or not all(part.isdecimal() for part in parts):
         return None

@@ -1,4 +1,4 @@
-"""Bringing one flight's load onto one vehicle, whole or not at all."""
+"""Brings the load of one flight onto one vehicle, completely or not at all."""
 
 from collections.abc import Generator, Sequence
 from typing import Any
@@ -25,20 +25,20 @@ SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "resto
 
 
 class MissionSync:
-    """Reads what the vehicle holds, sends what differs, reads it back, and compares; what fails is put back or taken off, and read again.
+    """Reads the vehicle's lists, sends those that differ, reads them back and compares. A failed list is restored or cleared, and read
+    again.
 
-    Ready means: all three lists were read back and are the approved ones. A vehicle that is armed is only sent anything while it is held
-    (see `VehicleState.is_held`): ArduPilot flies a new item as soon as it has it, even of an upload that it then refuses, and PX4 flies a
-    new mission from its first item. Of one that leaves its hold meanwhile `is_endangered` says whether to go on.
+    Ready means that all three lists were read back and match the approved ones. An armed vehicle receives lists only while it holds (see
+    `VehicleState.is_held`): ArduPilot flies a new item at once, even from an upload that it then refuses, and PX4 flies a new mission from
+    its first item. If the vehicle leaves its hold, `is_endangered` says whether to cancel.
 
-    A load without a fence or without rally points leaves those that somebody else gave the vehicle; those of `known` loads are taken off.
+    If the load has no fence or no rally points, lists from another sender stay on the vehicle, and those of `known` loads are cleared.
 
-    After a failure fence and rally points are put back as they were. The mission is left alone where it is the one from before, whole;
-    anything else is taken off, for the vehicle would fly it. `mixes` tells at once what was found, while the keeper still works on it.
+    After a failure, fence and rally points are restored. The mission is kept if it is unchanged and complete; otherwise it is cleared,
+    because the vehicle would fly it. `mixes` lists each mixed readback at once, while the sync goes on.
 
-    `known` are other loads that were approved for this vehicle: what it holds and nobody knows is named from the beginning. Messages that
-    are late or come twice change nothing: requests for a list are answered as long as the keeper lives, and a difference counts when a
-    second reading shows it.
+    `known` are other loads approved for this vehicle, so that unknown lists are named from the beginning. Late and duplicate messages are
+    harmless: the sync answers requests for a list during its whole lifetime, and a difference counts after a second reading.
     """
 
     def __init__(
@@ -52,11 +52,11 @@ class MissionSync:
         self._addressing = addressing
         self._rules = rules
         self._known = tuple(known)
-        self._now: dict[MissionType, OnboardList | None] = {}  # as last read; None: it was touched since
+        self._now: dict[MissionType, OnboardList | None] = {}  # as last read; None: changed since
         self._sent: dict[MissionType, ListUpload] = {}
         self._touched: list[MissionType] = []
         self._reason = ""
-        self._why: tuple[Reason, ...] = ()  # what the vehicle refused, or keeps otherwise than it was sent
+        self._why: tuple[Reason, ...] = ()  # what the vehicle refused, or stores differently
         self._is_cancelled = self._is_restoring = False
         self._kind = MissionType.FENCE
         self._stage = READING
@@ -72,7 +72,7 @@ class MissionSync:
 
     @property
     def progress(self) -> SyncProgress:
-        """Of what is under way now."""
+        """Return the progress of the current list."""
         total = len(self.load.of(self._kind))
         step = self._steps.step
         done = min(step.items_done, total) if isinstance(step, ListUpload | Download) else 0
@@ -93,10 +93,10 @@ class MissionSync:
 
     @property
     def is_endangered(self) -> bool:
-        """Whether the vehicle has left its hold, so that this is to be cancelled.
+        """Return whether the vehicle has left its hold, so that the sync is to be cancelled.
 
-        One that flies its list while that is replaced gets the rest: half a list would be worse, and ArduPilot lets none be taken off
-        then. PX4 keeps the old list until the new one is whole.
+        A vehicle that flies its mission while it is being replaced receives the rest: half a list would be worse, and ArduPilot refuses to
+        clear it then. PX4 keeps the old list until the new one is complete, so there the upload is cancelled.
         """
         state = self._state
         if not state.is_armed or state.is_held:
@@ -106,7 +106,7 @@ class MissionSync:
         return state.autopilot_type is AutopilotType.PX4 and isinstance(self._steps.step, ListUpload) and self._kind is MissionType.MISSION
 
     def cancel(self, now_s: float) -> Messages:
-        """Ends by a failure like others: what was begun is put back."""
+        """Cancel the sync as a failure: changed lists are restored or cleared."""
         if self.outcome is not None or self._is_restoring:
             return []
         self._is_cancelled, self._reason = True, "left-hold" if self.is_endangered else "cancelled"
@@ -115,7 +115,7 @@ class MissionSync:
         messages = step.cancel(now_s) if isinstance(step, ListUpload | Download) else []
         return messages + self._steps.go_on(now_s)
 
-    # the course of events
+    # sequence
 
     def _course(self) -> Course[SyncOutcome]:
         refused = self._cannot_begin()
@@ -166,7 +166,7 @@ class MissionSync:
         return self._state.autopilot_type or AutopilotType.OTHER
 
     def _bring(self, kind: MissionType) -> Generator[Machine, None, bool]:
-        """Whether the vehicle holds the approved list of this kind."""
+        """Return whether the vehicle holds the approved list of this kind, after sending it if needed."""
         wanted = self.load.of(kind)
         if self._is_cancelled:
             return False
@@ -180,7 +180,7 @@ class MissionSync:
                 return False
             held = yield from self._read(kind)
             if held is not None and self._differs(kind, held):
-                held = yield from self._read(kind)  # it may have been a late answer
+                held = yield from self._read(kind)  # the first reading may be a late answer
             if held is not None and not self._differs(kind, held):
                 return True
             if held is not None:
@@ -192,7 +192,7 @@ class MissionSync:
         return False
 
     def _is_left_alone(self, kind: MissionType) -> bool:
-        """A fence or rally points of somebody else, where the load has none."""
+        """Return whether the vehicle keeps an unknown fence or unknown rally points because the load has none."""
         if kind is MissionType.MISSION or self.load.of(kind):
             return False
         return self.found_before[kind] is ReadbackMatch.FOREIGN
@@ -203,7 +203,7 @@ class MissionSync:
         return tuple(Reason("list_left_alone", {"list": names[kind], "count": len(self.before[kind])}) for kind in left)
 
     def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
-        """Where no reading got through after the last sending: whether it is there all the same."""
+        """Read once more if no reading succeeded after the last upload; return whether the list is there."""
         if self._is_cancelled or self._now.get(kind) is not None:
             return False
         held = yield from self._read(kind)
@@ -226,7 +226,7 @@ class MissionSync:
         return self._ended(step.outcome)
 
     def _refusal_reasons(self, upload: ListUpload) -> tuple[Reason, ...]:
-        """Which item, by its command, which firmware would not take; empty where none was refused."""
+        """Return which item and command the firmware refused; empty if none."""
         ended: TransferOutcome | None = upload.outcome
         if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
             return ()
@@ -246,7 +246,7 @@ class MissionSync:
         return (*first, *more)
 
     def _read(self, kind: MissionType) -> Generator[Machine, None, OnboardList | None]:
-        """As often as there are attempts. A list that the vehicle does not have at all is empty."""
+        """Read the list, with up to `attempts` attempts. A list that the vehicle does not support counts as empty."""
         self._kind, self._stage = kind, READING
         for _ in range(self._rules.attempts):
             if self._is_cancelled and not self._is_restoring:
@@ -279,7 +279,7 @@ class MissionSync:
         return self._verdict(unread)
 
     def _settle(self, kind: MissionType) -> Generator[Machine, None, OnboardList | None]:
-        """Makes of a list that was touched either the one before or none, and tells what it is now."""
+        """Restore a changed list, or clear it if it is the mission. Return what the vehicle holds then; None if unreadable."""
         held = yield from self._read(kind)
         if held is None or are_identical(held, self.before[kind]):
             return held
@@ -321,7 +321,7 @@ class MissionSync:
         return differences(self.load.of(kind), self._now[kind] or (), self._autopilot_type)
 
     def _note_mix(self, kind: MissionType, held: OnboardList) -> None:
-        """Of what was read while the list was being replaced, or found to be mixed before."""
+        """Record a mixed list that was read during the replacement or before it."""
         if not held or not self._differs(kind, held) or (kind in self._touched and are_identical(held, self.before[kind])):
             return
         mix = Mix(kind, self._mix(kind, held))

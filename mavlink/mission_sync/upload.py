@@ -1,4 +1,4 @@
-"""Sending a list of items to a vehicle, which asks for them one by one."""
+"""Sends a list of items to a vehicle, which requests them one by one."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from mavlink.mission_sync.wire import ack_message, item_message, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
 
-# Acknowledgements that do not tell whether the transfer goes on: a repeated message draws them, too, or the vehicle is busy.
+# Acknowledgements that do not decide the transfer: a duplicate message also causes them, or the vehicle is busy.
 UNCERTAIN = frozenset({
     mavlink.MAV_MISSION_ERROR,
     mavlink.MAV_MISSION_DENIED,
@@ -23,15 +23,15 @@ REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
 
 class TransferState(StrEnum):
     DONE = "done"
-    REFUSED = "refused"  # by the vehicle, which said why
-    UNSURE = "unsure"  # all was sent, and the last answer tells nothing
+    REFUSED = "refused"  # by the vehicle, with a reason
+    UNSURE = "unsure"  # all was sent; the last answer was inconclusive
     SILENT = "silent"
     CANCELLED = "cancelled"
 
 
 @dataclass(frozen=True)
 class TransferOutcome:
-    """`code` is short and stable, `item` the one at which it ended, as counted on the wire."""
+    """`code` is short and stable. `item` is the item at which the transfer ended, counted as on the wire."""
 
     state: TransferState
     code: str = ""
@@ -39,7 +39,7 @@ class TransferOutcome:
 
 
 class Clear:
-    """MISSION_CLEAR_ALL of one list. A vehicle that is busy is asked again; read the list back to know."""
+    """Clears one list by MISSION_CLEAR_ALL, and asks a busy vehicle again. Only a readback confirms the result."""
 
     def __init__(self, kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
         self.kind = kind
@@ -85,28 +85,28 @@ class Clear:
 
 
 class ListUpload:
-    """A list on its way to a vehicle; an empty one takes off what is there.
+    """A list being sent to a vehicle; an empty one clears the vehicle's list.
 
-    Whatever the vehicle asks for it gets, be it again or out of turn. When it is silent, the item that it asked for last is sent again,
-    and where it said INVALID_SEQUENCE (it has that one, its next request was lost) the one after it, too. An acknowledgement is believed
-    only where it fits: a yes after the last item was sent, a definite no when no request follows it within `timeout_s`. What an error
-    like ERROR means is not known (PX4 says so to a repeated MISSION_COUNT and goes on, ArduPilot says so to an item after the end), so the
-    announcement is made again when the vehicle falls silent after it. Therefore even `done` is a claim: read the list back.
+    Each requested item is sent, also repeatedly or out of order. If the vehicle is silent, the item requested last is sent again. After
+    INVALID_SEQUENCE (the vehicle has that item, its next request was lost) the following item is sent as well. An acceptance counts only
+    after the last item was sent, a definite refusal only without a request within `timeout_s`. ERROR and similar results are ambiguous: PX4
+    sends it for a repeated MISSION_COUNT and continues, ArduPilot for an item after the end. The count is therefore sent again if silence
+    follows. Even `done` has to be confirmed by a readback.
     """
 
     def __init__(self, items: Sequence[MissionItem], kind: MissionType, addressing: Addressing, rules: TransferRules) -> None:
-        """items: as they go over the wire (see `sent_list`)."""
+        """items: as on the wire (see `sent_list`)."""
         self.items = tuple(items)
         self.kind = kind
         self.outcome: TransferOutcome | None = None
         self.wake_at_s: float | None = None
-        self.items_done = 0  # the most that were asked for beyond them
+        self.items_done = 0  # highest number requested
         self._addressing = addressing
         self._rules = rules
-        self._at: int | None = None  # the item asked for last
+        self._at: int | None = None  # the item requested last
         self._may_be_ahead = False
         self._has_sent_last = not self.items
-        self._refused: tuple[int, float] | None = None  # by which result, and when
+        self._refused: tuple[int, float] | None = None  # result and time of the refusal
         self._restarts = 0
         self._begun_s = self._progress_s = 0.0
 
@@ -139,7 +139,7 @@ class ListUpload:
         return [self._item(number) for number in ((self._at, self._at + 1) if ahead else (self._at,))]
 
     def cancel(self, now_s: float) -> Messages:
-        """PX4 then forgets what it was sent; ArduPilot keeps what it has, and waits for more for 8 s."""
+        """Cancel the upload. PX4 discards the received items; ArduPilot keeps them and waits 8 s for more."""
         if self.outcome is not None:
             return []
         self._end(TransferState.CANCELLED, "cancelled")
@@ -163,7 +163,7 @@ class ListUpload:
             if self._has_sent_last:
                 self.items_done = len(self.items)
                 self._end(TransferState.DONE, "")
-            elif self._at is not None and self._refused is None:  # it took another, shorter announcement for ours
+            elif self._at is not None and self._refused is None:  # it mistook a repeated, shorter count for this one
                 self._refused = (mavlink.MAV_MISSION_ERROR, now_s)
         elif result == mavlink.MAV_MISSION_INVALID_SEQUENCE:
             self._may_be_ahead = True
@@ -171,7 +171,7 @@ class ListUpload:
             self._refused = (result, now_s)
 
     def _after_refusal(self, result: int, now_s: float) -> Messages:
-        """It said no and has not asked since."""
+        """Handle a refusal that no request followed."""
         if result not in UNCERTAIN:
             return self._end(TransferState.REFUSED, result_name(result))
         if self._at is not None and self._has_sent_last:

@@ -1,4 +1,4 @@
-"""Lists of items as they go over the wire, with home in front where the autopilot wants it."""
+"""Mission lists as sent on the wire, with home first if the autopilot expects it."""
 
 import hashlib
 import math
@@ -18,7 +18,7 @@ NOTHING = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL_INT
 
 @dataclass(frozen=True)
 class OnboardItem:
-    """An item as a vehicle holds it; without `goes_on` it would stop there for good."""
+    """An item as the vehicle holds it. Without `goes_on` (`autocontinue`) the vehicle would stop there."""
 
     item: MissionItem
     goes_on: bool = True
@@ -28,14 +28,14 @@ OnboardList = tuple[OnboardItem, ...]
 
 
 def has_home(kind: MissionType, autopilot_type: AutopilotType) -> bool:
-    """Whether item 0 is home: ArduPilot ignores what is sent there, and a list sent without it loses its first item."""
+    """Return whether item 0 is home. ArduPilot ignores what is sent there; a list without it would lose its first item."""
     return kind is MissionType.MISSION and autopilot_type is AutopilotType.ARDUPILOT
 
 
 def sent_list(
     items: Sequence[MissionItem], kind: MissionType, autopilot_type: AutopilotType, firmware: Version | None = None
 ) -> tuple[MissionItem, ...]:
-    """What is sent for a list, by commands that the firmware knows; nothing for an empty one."""
+    """Return the items to send, by commands that the firmware supports; empty for an empty list."""
     items = as_known(items, autopilot_type, firmware)
     if not items or not has_home(kind, autopilot_type):
         return items
@@ -45,12 +45,12 @@ def sent_list(
 
 
 def onboard_list(read: OnboardList, kind: MissionType, autopilot_type: AutopilotType) -> OnboardList:
-    """What was read, without home."""
+    """Return the items that were read, without home."""
     return read[1:] if has_home(kind, autopilot_type) else read
 
 
 def onboard_sha256(held: OnboardList) -> str:
-    """Names exactly what was read; figures as they are on the wire, where all NaN are one."""
+    """Return the hash of a list as read. Values are hashed as on the wire; all NaN are equal."""
     rows = [
         (
             there.item.command, there.item.frame, there.item.longitude_e7, there.item.latitude_e7, there.goes_on,
@@ -79,7 +79,7 @@ def item_message(item: MissionItem, sequence: int, kind: MissionType, addressing
 
 
 def onboard_item(message: Message) -> OnboardItem:
-    """Of a MISSION_ITEM_INT."""
+    """Return the item of a MISSION_ITEM_INT."""
     item = MissionItem(
         command=message.command,
         frame=message.frame,
@@ -96,6 +96,6 @@ def ack_message(result: int, kind: MissionType, addressing: Addressing) -> Messa
 
 
 def result_name(result: int) -> str:
-    """Of a MAV_MISSION_RESULT, for codes: `no-space`."""
+    """Return the code of a MAV_MISSION_RESULT, such as `no-space`."""
     entry = mavlink.enums["MAV_MISSION_RESULT"].get(result)
     return f"result-{result}" if entry is None else entry.name.removeprefix("MAV_MISSION_").lower().replace("_", "-")
