@@ -1,4 +1,4 @@
-"""The admin's pages for missions and UAVs. Missions are changed on the operator's map; here they can be looked at."""
+"""Admin pages for missions and UAVs. Missions are changed on the operator's map and are read-only here."""
 
 from typing import Any
 
@@ -30,7 +30,7 @@ from workspace.audit import record_change
 
 
 class _FleetAdmin(HistoryAdmin):
-    """What is changed here counts as on the page of the fleet: whoever has seen the row before is told, and the history has it."""
+    """Admin whose changes count as changes on the fleet page: they enter the history and conflict with older open copies of the row."""
 
     def save_model(self, request: HttpRequest, obj: Any, form: Any, change: bool) -> None:
         if change:
@@ -50,13 +50,15 @@ class UavAdmin(_FleetAdmin):
     list_filter = ["state", "link", "is_simulated", "allows_unsigned", "uav_type", "base_name", "end_action", "organisation"]
     list_select_related = ["uav_type", "organisation"]
     search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
-    readonly_fields = [  # the first ones are changed on the page of the fleet, which guards flights
+    readonly_fields = [
         "state", "link", "mavlink_system_id", "allows_unsigned", "is_simulated", "is_demo",
         "autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at",
     ]  # fmt: skip
 
     def get_deleted_objects(self, objs: Any, request: HttpRequest) -> tuple[Any, Any, Any, list[Any]]:
-        """With the reasons why a UAV has to stay among what protects it, so that neither the page nor the action deletes it."""
+        """Return what Django returns, with the reasons why a UAV must stay among the protected objects, so that neither page nor action
+        deletes it.
+        """
         objects, counts, permissions, protected = super().get_deleted_objects(objs, request)
         return objects, counts, permissions, [*protected, *(reason.message for uav in objs for reason in removal_reasons(uav))]
 
@@ -84,7 +86,7 @@ class BaseAdmin(_FleetAdmin):
 
 @admin.register(UavCredential)
 class UavCredentialAdmin(ReadOnlyAdmin):
-    """Made and revoked on the page of the fleet, where the secret can be shown once."""
+    """Credentials, read-only: they are made and revoked on the fleet page, where the secret can be shown once."""
 
     organisation_path = "uav__organisation"
     list_display = ["uav", "kind", "created_by", "created_at", "last_used_at", "revoked_at"]
@@ -172,7 +174,7 @@ class WaypointAdmin(ReadOnlyAdmin):
 
 @admin.register(Approval)
 class ApprovalAdmin(ReadOnlyAdmin):
-    """The document itself is long: the API has it, and its hash names it."""
+    """Approvals without their document, which is long: the API serves it, and its hash names it."""
 
     organisation_path = "mission__organisation"
     list_display = ["mission", "approved_by", "approved_at", "revoke_requested_at", "revoked_at", "content_sha256"]
@@ -192,7 +194,7 @@ class UavCommandEventInline(_ReadOnlyInline):
 
 @admin.register(UavCommand)
 class UavCommandAdmin(ReadOnlyAdmin):
-    """Commands are given on the mission's page, and carried by the links alone."""
+    """Commands, read-only: they are given on the mission's page and delivered by the links only."""
 
     list_display = [
         "created_at",

@@ -1,4 +1,4 @@
-"""What kinds of commands there are to a UAV: how urgent, about what, and how long each is worth delivering."""
+"""Kinds of UAV commands: urgency, axis, and how long each remains worth delivering."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -23,7 +23,7 @@ PRIORITIES = {
 
 
 class Axis(StrEnum):
-    """What a command sets. Of two commands about the same thing only the later one counts."""
+    """What a command sets. Of two commands on one axis only the later counts."""
 
     FLIGHT = "flight"
     MISSION = "mission"
@@ -38,11 +38,11 @@ AXES = {
     "set-return-height": Axis.PARAMETER,
 }
 SAFETY_RANKS = {"hold": 1, "return": 2, "land": 3, "abort": 4}
-THEN_RETURN = "then_return"  # a command's parameter: once it is done its UAV is told to return
-WAIT_S = "wait_s"  # a return's parameter: after so many seconds of holding
-HEIGHT_M = "height_m"  # of a return: above the take-off, set on the UAV before it
-ALONG_ROUTE = "along_route"  # a return's parameter: by the rest of its approved route, not straight
-HAND_OVER = "hand_over"  # a command's parameter: a step of giving its UAV another route
+THEN_RETURN = "then_return"  # a command's parameter: its UAV returns once the command is done
+WAIT_S = "wait_s"  # a return's parameter: seconds to hold first
+HEIGHT_M = "height_m"  # a return's parameter: height above the take-off, set on the UAV before it returns
+ALONG_ROUTE = "along_route"  # a return's parameter: along the rest of the approved route instead of straight
+HAND_OVER = "hand_over"  # a command's parameter: a step of a route swap
 SETS_IN_MOTION = frozenset({"arm", "take-off", "start", "resume"})
 
 
@@ -55,15 +55,15 @@ def axis_of(kind: str) -> Axis:
 
 
 def axes_overtaken_by(kind: str) -> tuple[Axis, ...]:
-    """About which an unfinished command no longer counts once one of this kind is given: an abort is about everything."""
+    """Return the axes on which a command of this kind expires unfinished commands. An abort covers all axes."""
     return tuple(Axis) if kind == "abort" else (axis_of(kind),)
 
 
 def may_overtake(kind: str, unfinished: str) -> bool:
-    """Whether one of this kind takes the place of an unfinished one: of what makes a UAV safe only what does so as firmly.
+    """Whether a command of this kind may replace an unfinished one. A safety command is replaced only by one of at least the same rank.
 
-    An abort that waits for its link is not called off by a hold that is given after it. A pause is called off by going on, and by nothing
-    else that moves a UAV.
+    A hold does not cancel an earlier abort that waits for its link. Of the commands that set a UAV in motion only `resume` replaces a
+    pause.
     """
     if unfinished == "pause" and kind in SETS_IN_MOTION:
         return kind == "resume"
@@ -72,17 +72,18 @@ def may_overtake(kind: str, unfinished: str) -> bool:
 
 @dataclass(frozen=True)
 class CommandLifetimes:
-    """For how long [s] a command that was not delivered is still wanted; None: until it is overtaken.
+    """Seconds for which an undelivered command remains valid; None: until another command replaces it.
 
-    What sets a UAV in motion is soon too old: nobody stands beside it any more. What stops it or brings it back is wanted longer, but not
-    on its next flight. A mission may wait for its UAV to be switched on, and taking one off is wanted whenever the UAV is heard again.
+    Commands that set a UAV in motion expire soonest: nobody may be watching the UAV later. Commands that stop or return it last longer,
+    but not until its next flight. A mission may wait until its UAV is switched on. Clearing a mission stays valid until the UAV connects
+    again.
     """
 
     motion_s: float = 30.0  # arm, take off, start, resume
     stop_s: float = 600.0  # pause, hold, return, land, abort
-    upload_s: float = 3_600.0  # and a return height
+    upload_s: float = 3_600.0  # also for a return height
     speed_s: float = 60.0
-    read_back_s: float = 120.0  # by which a start or resume may be wanted longer, while what is on the UAV is read back before it
+    read_back_s: float = 120.0  # added to a start or resume while the UAV's mission is read back before it
 
     def wanted_for_s(self, kind: str) -> float | None:
         if kind == "clear-mission":

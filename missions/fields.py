@@ -48,7 +48,7 @@ class BetweenField(FiniteFloatField):
 
 
 class AboveZeroField(FiniteFloatField):
-    """A JSON number above 0."""
+    """A JSON number greater than 0."""
 
     above = 0
 
@@ -62,7 +62,7 @@ class AboveZeroField(FiniteFloatField):
 
 
 class ColoursField(serializers.ListField):
-    """Colours of a mission's UAVs on pages of what flies."""
+    """Colours of a mission's UAVs on live pages."""
 
     def __init__(self) -> None:
         super().__init__(

@@ -1,4 +1,4 @@
-"""The pages: HTML shells that say who is there; everything on them comes from the REST API."""
+"""HTML shells of the pages, with the signed-in user; all other content comes from the REST API."""
 
 from typing import Any
 
@@ -18,7 +18,7 @@ class MissionsPage(SignedInPage):
 class MissionPage(SignedInPage):
     """The operator's map, for a new mission or a stored one of the user's organisation.
 
-    One that is approved is shown as to those who cannot plan: nothing of it can be changed. `stage`: what of it stands beside the map.
+    An approved mission is shown read-only, as to users who cannot plan. `stage` is the part of it shown beside the map.
     """
 
     template_name = "mission.html"

@@ -1,6 +1,6 @@
-"""Who has a mission open: each page says so every few seconds, and is forgotten soon after it falls silent.
+"""Which users have a mission open: each page reports every few seconds and expires soon after its last report.
 
-It stands in the cache alone. Of two pages that report at the same moment one may be missed; its next report puts it back.
+The state is kept in the cache only. Of two pages that report at the same moment one may be lost until its next report.
 """
 
 import contextlib
@@ -13,7 +13,7 @@ from django.core.cache import cache
 from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.models import User
 
-FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
+FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is visible
 MAX_PAGES = 20  # of one user, the last that reported
 
 
@@ -30,9 +30,9 @@ def _key(mission_id: UUID) -> str:
 
 
 def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool, is_planning: bool = False) -> list[PresentUser]:
-    """Note that this page is there, and whether it plans the mission, or that it leaves.
+    """Record that this page is open, and whether it plans the mission, or that it leaves.
 
-    Returns the others, each user once, oneself in another window last. A user plans where one of their pages does.
+    Returns the other users, each once, and the same user in another window last. A user plans if one of their pages does.
     """
     now_s = time.time()
     try:

@@ -1,9 +1,9 @@
-"""The sentence of each code that tells what became of commands, offers and plans."""
+"""Texts of the reason codes of commands, offers and plans."""
 
 from operation.reasons import gettext_noop, ngettext_noop, register_sentences
 
 SENTENCES = register_sentences({
-    # what the outbox ends commands with
+    # codes with which the outbox ends commands
     "superseded": gettext_noop("A later command took its place."),
     "not_delivered": gettext_noop("It could not be delivered in time."),
     "not_sent_in_time": gettext_noop("It was not sent in time."),

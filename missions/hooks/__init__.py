@@ -1,1 +1,1 @@
-"""What later apps add: facts that missions ask for, without importing the apps."""
+"""Registries through which later apps supply facts to missions without being imported."""

@@ -1,4 +1,4 @@
-"""What happened to missions, as each app has it: the sources of the event log."""
+"""Sources of the event log: what happened to missions, as each app stores it."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -50,7 +50,7 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class EventPlace:
-    """Where an event is stored: its source, the row and what of the row it is. Ordered by `at` and `key`, no two are the same."""
+    """Where an event is stored: its source, the row, and the step of that row. Places are ordered by `at` and `key`, which are unique."""
 
     source: str
     row: str
@@ -65,7 +65,7 @@ class EventPlace:
 
 @dataclass(frozen=True, slots=True)
 class MissionEvent:
-    """`message` is English; `values` are what pages make their own words of. `level` is an alert's: critical, warning, advisory."""
+    """One event. `message` is English; pages build their own text from `values`. `level` is an alert's: critical, warning, advisory."""
 
     kind: EventKind
     message: str
@@ -81,9 +81,9 @@ class MissionEvent:
 class EventSource:
     """Events of one kind of rows.
 
-    `statement` selects row (text), step (text), at and mission_id of the missions `%(missions)s` (uuid[]); `%(names)s` are the same as
+    `statement` selects row (text), step (text), at and mission_id for the missions `%(missions)s` (uuid[]); `%(names)s` are the same as
     text.
-    `read` makes events of places of this source, with one query for all of them; what is gone meanwhile is left out.
+    `read` returns the events at places of this source, with one query for all of them; rows deleted in the meantime are omitted.
     """
 
     name: str
@@ -95,7 +95,7 @@ _registered: list[str] = []
 
 
 def register_sources(name: str) -> None:
-    """The dotted name of a sequence of `EventSource`. It is loaded when events are first read."""
+    """Register a sequence of `EventSource` by its dotted name. It is imported when events are first read."""
     if name not in _registered:
         _registered.append(name)
 

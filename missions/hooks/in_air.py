@@ -1,4 +1,4 @@
-"""What a later app knows of UAVs: which are in the air and where, on the ground, down off their plans, or never connected."""
+"""Registries for what a later app knows of UAVs: in the air and where, on the ground, down off plan, or never connected."""
 
 from collections import defaultdict
 from collections.abc import Collection
@@ -12,25 +12,25 @@ _sources: dict[str, list[str]] = defaultdict(list)
 
 
 def register_source(name: str) -> None:
-    """The dotted name of a function that returns those of the given UAVs, by their ids, that are reported to be in the air.
+    """Register a function by its dotted name. It takes UAV ids and returns those reported in the air, each with its last position.
 
-    With where each was last, None where it has told no place.
+    The position is None where none was reported.
     """
     _register(_IN_THE_AIR, name)
 
 
 def register_ground_source(name: str) -> None:
-    """Of a function that returns those that are reported to stand on the ground and may not have taken off since."""
+    """Register a function that returns the UAVs reported on the ground that cannot have taken off since."""
     _register(_ON_THE_GROUND, name)
 
 
 def register_never_connected_source(name: str) -> None:
-    """Of a function that returns those of which nothing was ever received."""
+    """Register a function that returns the UAVs from which no message was ever received."""
     _register(_NEVER_RECEIVED, name)
 
 
 def register_down_source(name: str) -> None:
-    """Of a function that returns those that crashed, or are down away from their plans, until a person has said what became of them."""
+    """Register a function that returns the UAVs that crashed or are down off plan, until a user has recorded the outcome."""
     _register(_DOWN, name)
 
 
@@ -39,12 +39,12 @@ def uavs_in_the_air(uav_ids: Collection[int]) -> set[int]:
 
 
 def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
-    """Where those of these UAVs that are in the air were last."""
+    """Return the last position of each of these UAVs that is in the air; None where no position was reported."""
     return {uav_id: place for name in _sources[_IN_THE_AIR] for uav_id, place in import_string(name)(uav_ids).items()} if uav_ids else {}
 
 
 def uavs_on_the_ground(uav_ids: Collection[int]) -> set[int]:
-    """One of which nobody knows where it is, is in neither set."""
+    """Return those of these UAVs that are reported on the ground. A UAV whose whereabouts are unknown is neither here nor in the air."""
     return _asked(_ON_THE_GROUND, uav_ids)
 
 

@@ -1,4 +1,4 @@
-"""What is to be flown, by whom, in which order."""
+"""Models of missions, the fleet and commands."""
 
 from missions.models.commands import (
     OPEN_COMMANDS,

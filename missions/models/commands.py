@@ -1,4 +1,4 @@
-"""What UAVs are told: approvals, which freeze what may be flown, and the outbox of commands."""
+"""Approvals, which freeze what may be flown, and the outbox of commands."""
 
 import uuid
 
@@ -13,7 +13,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 
 class Approval(models.Model):
-    """A plan as somebody approved it. `document` is never changed: what is sent to a UAV is read from it and from nothing else."""
+    """A plan as a user approved it. `document` never changes: everything sent to a UAV is read from it."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="approvals")
@@ -35,7 +35,7 @@ class Approval(models.Model):
 
 
 class CommandPriority(models.IntegerChoices):
-    """The smaller goes first."""
+    """Priority of a command; the smallest is delivered first."""
 
     SAFETY = 0, "Safety"
     PAUSE = 1, "Pause"
@@ -81,11 +81,11 @@ OPEN_COMMANDS = (CommandState.QUEUED, CommandState.SENT, CommandState.ACKNOWLEDG
 
 
 class UavCommand(models.Model):
-    """A message to a UAV, and what became of it. The row is the truth; whoever carries it holds it by a lease.
+    """A command to a UAV and its outcome. The row is authoritative; the dispatcher holds it by a lease.
 
-    A command sets a state, so that carrying it twice changes nothing. `sequence` counts the commands of one UAV in the order in which they
-    were given: one that is overtaken by a later command about the same thing expires, and is never carried after it. What has ended stays
-    ended, and of what one axis sets one command is open at most: so an open command is always the latest of its kind.
+    A command sets a state, so delivering it twice changes nothing. `sequence` counts the commands of one UAV in the order in which they
+    were given. A command that a later one on the same axis replaces expires and is never delivered after it. Ended commands stay ended.
+    At most one command of an axis is open, so an open command is always the latest of its kind.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
@@ -142,7 +142,7 @@ class UavCommand(models.Model):
 
 
 class UavCommandEvent(models.Model):
-    """One step of a command's way. Never updated."""
+    """One step in the life of a command. Never updated."""
 
     command = models.ForeignKey(UavCommand, on_delete=models.CASCADE, related_name="events")
     state = models.CharField(max_length=12, choices=CommandState.choices)

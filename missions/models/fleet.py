@@ -1,4 +1,4 @@
-"""What flies: UAVs, their types and bases, and what lets a UAV connect."""
+"""UAVs, their types, bases and credentials."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -19,7 +19,7 @@ END_ACTIONS = [
 
 
 class UavType(models.Model):
-    """What UAVs of one make have in common; a UAV's own values come before these."""
+    """Values common to UAVs of one make; a UAV's own values override them."""
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uav_types")
     name = models.CharField(max_length=100)
@@ -87,7 +87,7 @@ class UavState(models.TextChoices):
 
 
 class LinkKind(models.TextChoices):
-    """The door by which a UAV is told what to do."""
+    """The link by which a UAV receives commands."""
 
     MAVLINK = "mavlink", "MAVLink"
     HTTP = "http", "Companion computer over HTTP"
@@ -96,8 +96,8 @@ class LinkKind(models.TextChoices):
 class Uav(models.Model):
     """An uncrewed aircraft of an organisation.
 
-    `location` is where it stands or was last reported. Without a range, speed, battery, mass, reserve or airspeed of its own it has its
-    type's.
+    `location` is its place on the ground or its last reported position. Its type supplies range, speed, battery, mass, reserve and airspeed
+    where it has no value of its own.
     """
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="uavs")
@@ -191,7 +191,7 @@ class CredentialKind(models.TextChoices):
 
 
 class UavCredential(models.Model):
-    """What a UAV proves itself with. Neither a token nor a key is kept: a token's SHA-256, and the salt that a key is derived from."""
+    """A credential of a UAV. No token or key is stored: only a token's SHA-256, and the salt from which a key is derived."""
 
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="credentials")
     kind = models.CharField(max_length=12, choices=CredentialKind.choices)

@@ -1,4 +1,4 @@
-"""Missions: targets, UAVs, routes and waypoints, and selections kept for later."""
+"""Missions: targets, UAVs, routes and waypoints, and saved selections."""
 
 import uuid
 
@@ -133,7 +133,7 @@ class Mission(models.Model):
 
 
 class MissionUav(models.Model):
-    """A UAV's place in a mission; `sequence` gives its letter, `start` where it takes off."""
+    """A UAV's place in a mission; `sequence` determines its letter, `start` is its take-off position."""
 
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="mission_uavs")
     uav = models.ForeignKey(Uav, on_delete=models.PROTECT, null=True, blank=True, related_name="mission_uavs")
@@ -188,7 +188,7 @@ class TargetPriority(models.TextChoices):
 
 
 class InspectionTarget(models.Model):
-    """What is to be inspected: an asset, a point or stretch on one, or a bare position. It outlives a vanished asset."""
+    """What is to be inspected: an asset, a point or stretch of one, or a bare position. It outlives a deleted asset."""
 
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="targets")
     sequence = models.PositiveIntegerField(help_text="place in the operator's list, from 0")
@@ -310,7 +310,7 @@ class Waypoint(models.Model):
 
 
 class SavedSelection(models.Model):
-    """Targets that somebody picked and will want again; the whole organisation may use them."""
+    """Targets that a user saved for later use by the whole organisation."""
 
     organisation = models.ForeignKey(
         Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="saved_selections"

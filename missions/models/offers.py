@@ -1,4 +1,4 @@
-"""What is offered while a mission flies: another way to do what is left of it."""
+"""Offers of another plan for the rest of a mission that flies."""
 
 import uuid
 
@@ -20,9 +20,9 @@ class OfferState(models.TextChoices):
 
 
 class ReplanOffer(models.Model):
-    """A new assignment of the targets that are left, beside what flies now. Nothing changes until a person confirms it.
+    """A new assignment of the remaining targets, offered beside the flying plan. Nothing changes until a user confirms it.
 
-    Confirmed, it becomes a mission of its own that continues this one: no mission is ever mixed from two plans.
+    A confirmed offer becomes a mission of its own that continues this one: a mission never mixes two plans.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)

@@ -1,4 +1,4 @@
-"""Starts of a mission's UAVs in the order and at the distances in time that its plan has."""
+"""Starts of a mission's UAVs in the order and at the intervals of its plan."""
 
 import uuid
 
@@ -19,7 +19,7 @@ class StartsEnd(models.TextChoices):
 
 
 class PlannedStarts(models.Model):
-    """One run through a mission's starts. `uavs` has an entry for each, in their order: see services/commands/planned_starts.py."""
+    """One run through a mission's starts. `uavs` has an entry for each, in order: see services/commands/planned_starts.py."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="planned_starts")

@@ -1,4 +1,4 @@
-"""What UAVs of a mission that flies have still before them: from which leg on, and when they come there."""
+"""The part of their routes that the UAVs of a flying mission still have ahead, with times."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ from missions.selectors.zones import flown_route
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
-RECEIVED_WITHIN_S = 30.0  # else nobody knows where it is
+RECEIVED_WITHIN_S = 30.0  # an older position counts as unknown
 OFF_ROUTE_M = 100.0
 REACHED = (TargetState.IN_PROGRESS, TargetState.COMPLETE)
 
 
 @dataclass(frozen=True, eq=False)
 class WayAhead:
-    """A route with the times at which it is flown now; what lies before `first_leg` is behind its UAV."""
+    """A route with its current times; the legs before `first_leg` are already flown."""
 
     route: Route
     flown: FlownRoute
@@ -25,10 +25,10 @@ class WayAhead:
 
 
 def ways_ahead(mission: Mission, now: datetime) -> list[WayAhead]:
-    """Of the routes that are flown on; the mission as selectors load it.
+    """Return the remaining routes of a mission as selectors load it.
 
-    A UAV that was heard of lately and is near its route is as late or early as it is there; of others it is known which targets they have
-    reached, and they keep the mission's times.
+    A UAV with a recent position near its route is as late or early as it is there. For others only the targets reached are known, and they
+    keep the mission's times.
     """
     targets = {target.pk: target for target in mission.targets.all()}
     routes = [
@@ -52,13 +52,13 @@ def _way_ahead(mission: Mission, route: Route, targets: Mapping[int, InspectionT
     here = _place(points, uav, now, first)
     if here is not None and all(row.arrival_s is not None for row in rows):
         shifted_s = now.timestamp() - here.at_s(points)
-        began_s = shifted_s if began_s is None or here.ahead > 1 else max(began_s, shifted_s)  # who waits on the ground is not early
+        began_s = shifted_s if began_s is None or here.ahead > 1 else max(began_s, shifted_s)  # a UAV waiting on the ground is not early
     ahead = first if here is None else here.ahead
     return WayAhead(route, flown_route(route, began_s), TAKE_OFF if ahead == 1 else ahead - 1)
 
 
 def _place(points: Sequence[PassedPoint], uav: Uav | None, now: datetime, first: int) -> PlaceOnRoute | None:
-    """None where it is not known."""
+    """Return the UAV's place on its route; None where it is unknown."""
     if uav is None or uav.located_at is None or abs((now - uav.located_at).total_seconds()) > RECEIVED_WITHIN_S:
         return None
     here = place_on_route(points, LonLat(*uav.location.coords[:2]), first=first)
@@ -66,7 +66,7 @@ def _place(points: Sequence[PassedPoint], uav: Uav | None, now: datetime, first:
 
 
 def passed_point(row: Waypoint, targets: Mapping[int, InspectionTarget]) -> PassedPoint:
-    """targets: of the mission, by their keys."""
+    """Return a waypoint as a passed point. targets: of the mission, by their keys."""
     return PassedPoint(
         LonLat(*row.position.coords[:2]),
         row.altitude_agl_m,
@@ -77,7 +77,7 @@ def passed_point(row: Waypoint, targets: Mapping[int, InspectionTarget]) -> Pass
 
 
 def first_ahead(rows: Sequence[Waypoint], targets: Mapping[int, InspectionTarget]) -> int:
-    """The waypoint after the last target that was reached."""
+    """Return the index of the waypoint after the last target reached."""
     reached = [
         place
         for place, row in enumerate(rows)

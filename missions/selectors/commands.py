@@ -10,8 +10,8 @@ _REACHED = Q(state__in=OPEN_COMMANDS) | Q(state=CommandState.APPLIED) | Q(sent_a
 _SENDS_A_ROUTE = _REACHED & (Q(kind__in=[CommandKind.UPLOAD_MISSION, CommandKind.START]) | Q(parameters__has_key=HAND_OVER))
 _TAKES_IT_OFF = Q(kind=CommandKind.CLEAR_MISSION, state=CommandState.APPLIED)
 
-# For statements in which `place` is a row of missions_missionuav: the mission of which its UAV was sent a route last, as `route_commands`
-# has it but for a route that was taken off since.
+# For statements in which `place` is a row of missions_missionuav: the mission whose route was last sent to its UAV. As `route_commands`,
+# but it ignores a route that was removed since.
 SENT_LAST = """LEFT JOIN LATERAL (
         SELECT command.mission_id FROM missions_uavcommand command
         WHERE command.uav_id = place.uav_id AND command.mission_id IS NOT NULL
@@ -34,18 +34,18 @@ def commands_of_uav(uav: Uav) -> QuerySet[UavCommand]:
 
 
 def route_commands(uav: Uav | OuterRef) -> QuerySet[UavCommand]:
-    """Those that decide of which mission a UAV has a route, the newest first: sent or about to be, or taken off."""
+    """Return the commands that decide of which mission a UAV has a route, newest first: uploads sent or about to be sent, and removals."""
     return UavCommand.objects.filter(_SENDS_A_ROUTE | _TAKES_IT_OFF, uav=uav, mission__isnull=False).order_by("-sequence")
 
 
 def upload_of(approval: Approval, uav_id: int | None) -> UavCommand | None:
-    """Upload of this approval to a UAV, whatever its state; None where its last command about missions is another one."""
+    """Return the upload of this approval to a UAV, in any state; None where the UAV's last mission command is a different one."""
     last = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.MISSION).order_by("-sequence").first()
     return last if last is not None and last.kind == CommandKind.UPLOAD_MISSION and last.approval_id == approval.pk else None
 
 
 def places_in_flight(mission: Mission) -> dict[int, int]:
-    """The places in a mission, by UAV, of those that have a route of it sent or in flight, and none of another mission since."""
+    """Return the place in the mission, by UAV id, of each UAV with a route of it sent or in flight and none of another mission since."""
     flown = Route.objects.filter(mission=mission, mission_uav__uav__isnull=False, geometry__isnull=False, continued_by=None)
     places = dict(flown.values_list("mission_uav__uav", "mission_uav__sequence"))
     found = UavCommand.objects.filter(_SENDS_A_ROUTE | _TAKES_IT_OFF, uav__in=places, mission__isnull=False)

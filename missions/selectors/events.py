@@ -1,4 +1,4 @@
-"""The event log of missions: what happened, who did it and when, read from what is stored of it anyway."""
+"""The event log of missions: what happened, by whom and when, read from rows that are stored anyway."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
@@ -77,8 +77,8 @@ _WORDS = {
     "replan-impossible": "No other plan can be flown",
 }
 _OUT, _NOTED = "1-out", "2-noted"
-# Of an offer that expired and was worked out again at once for the same cause, neither is told. A UAV drops out where its
-# flight failed, or where the rest is planned anew because of it: the first of both since it was started last.
+# An offer that expired and was computed again at once for the same cause yields no event for either. A UAV drops out where its flight
+# failed, or where the rest is replanned because of that: the first of both since its last start.
 _HISTORY = f"""
 SELECT entry.id::text, step.name, entry.recorded_at, entry.subject_id::uuid
 FROM workspace_auditentry entry
@@ -108,27 +108,27 @@ WHERE entry.subject_type = 'mission' AND entry.subject_id = ANY(%(names)s) AND e
                     AND command.finished_at BETWEEN earlier.recorded_at AND entry.recorded_at
             )
     ) END
-"""  # noqa: S608 (names of steps, all from here)
+"""  # noqa: S608 (names of steps, all constants of this module)
 
 
 @dataclass(frozen=True, slots=True)
 class LoggedEvent:
-    """One line of the log. No event: it was gone when its words were to be read."""
+    """One line of the log. `event` is None if its row was deleted before it was read."""
 
     place: EventPlace
     event: MissionEvent | None
 
 
 def missions_with_live_events(organisation: Organisation) -> list[UUID]:
-    """Those that live pages show: on their way, or ended within the hour."""
+    """Return the missions that live pages show: those on their way, or ended within the hour."""
     is_live = Q(state__in=[MissionState.DISPATCHED, MissionState.ACTIVE]) | Q(ended_at__gt=timezone.now() - SHOWN_AFTER_END)
     return list(Mission.objects.filter(is_live, organisation=organisation, deleted_at=None).values_list("pk", flat=True))
 
 
 def events_of_missions(mission_ids: Collection[UUID], *, before: tuple[datetime, str] | None, limit: int) -> list[LoggedEvent]:
-    """At most so many, the newest first; `before` is time and key of the last one that is known.
+    """Return at most `limit` events, newest first; `before` is time and key of the last one already known.
 
-    As many queries as there are sources, and one: however many events there are.
+    Uses one query per source and one more, whatever the number of events.
     """
     sources = {source.name: source for source in (*_OWN, *registered_sources())}
     places = _places(list(sources.values()), mission_ids, before, limit) if mission_ids else []
@@ -145,14 +145,14 @@ def _places(
     sources: Sequence[EventSource], mission_ids: Collection[UUID], before: tuple[datetime, str] | None, limit: int
 ) -> list[EventPlace]:
     parts = " UNION ALL ".join(
-        f"SELECT '{source.name}', part.* FROM ({source.statement}) AS part(row, step, at, mission_id)"  # noqa: S608 - texts of ours
+        f"SELECT '{source.name}', part.* FROM ({source.statement}) AS part(row, step, at, mission_id)"  # noqa: S608 - constant texts
         for source in sources
     )
     statement = f"""
         SELECT source, row, step, at, mission_id FROM ({parts}) AS event(source, row, step, at, mission_id)
         WHERE %(at)s::timestamptz IS NULL OR (at, (source || ':' || row || ':' || step) COLLATE "C") < (%(at)s, %(key)s)
         ORDER BY at DESC, (source || ':' || row || ':' || step) COLLATE "C" DESC LIMIT %(limit)s
-    """  # noqa: S608 - texts of ours
+    """  # noqa: S608 - constant texts
     at, key = before or (None, "")
     values: dict[str, Any] = {
         "missions": list(mission_ids), "names": [str(mission_id) for mission_id in mission_ids], "at": at, "key": key, "limit": limit,
@@ -203,7 +203,7 @@ def _read_history(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEv
 
 
 def _uav_of(entry: AuditEntry) -> int | None:
-    """The only UAV that an entry is about."""
+    """Return the only UAV that an audit entry is about, or None."""
     facts: dict[str, Any] = entry.after or {}
     found = facts.get("uav", (facts.get("cause") or {}).get("uav"))
     return found if isinstance(found, int) else None

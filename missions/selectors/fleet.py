@@ -16,17 +16,17 @@ from planning.energy.performance import (
 from workspace.models import AuditEntry, Organisation
 
 EVERY_STATE = "all"
-FIGURES = ("max_range_m", "cruise_speed_mps", *PERFORMANCE_KEYS, "sensors")  # what a mission takes over from a UAV and plans count on
+FIGURES = ("max_range_m", "cruise_speed_mps", *PERFORMANCE_KEYS, "sensors")  # what a mission copies from a UAV and plans use
 
 
 def states_out_of_service(uavs: list[int]) -> dict[int, UavState]:
-    """Of these UAVs the state of each that does not fly at present."""
+    """Return the state of each of these UAVs that is not active, by id."""
     found = Uav.objects.filter(pk__in=uavs).exclude(state=UavState.ACTIVE).values_list("pk", "state")
     return {pk: UavState(state) for pk, state in found}
 
 
 def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
-    """With the type and the base that each belongs to."""
+    """Return the UAVs with their type and base."""
     return Uav.objects.filter(organisation=organisation).select_related("uav_type", "base")
 
 
@@ -41,7 +41,7 @@ def uavs_that_match(
     external_id: str = "",
     twins: bool = False,
 ) -> QuerySet[Uav]:
-    """Without a state all but the retired ones; simulated twins of other UAVs only where they are asked for."""
+    """Return the UAVs that match. Without a state: all but retired ones. Simulated twins of other UAVs are included only if requested."""
     uavs = uavs_of_organisation(organisation)
     if not twins:
         uavs = uavs.filter(twin_of=None)
@@ -75,7 +75,7 @@ else:
 
 
 def with_use(uavs: QuerySet[Uav]) -> QuerySet[UavWithUse]:
-    """With the number of missions that use each, and what it can prove itself with."""
+    """Annotate UAVs with the number of missions that use each, and with the credentials in force."""
     of_today = Q(mission_uavs__mission__deleted_at=None)
     in_force = UavCredential.objects.filter(revoked_at=None).order_by("uav_id", "kind", "-pk").distinct("uav_id", "kind")
     return uavs.annotate(mission_count=Count("mission_uavs__mission", filter=of_today, distinct=True)).prefetch_related(
@@ -110,7 +110,7 @@ def last_change(subject_type: str, subject_id: int) -> AuditEntry | None:
 
 
 def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id: int) -> dict[str, Any] | None:
-    """What was known of a row of the fleet when it was deleted; None where its last change was another one."""
+    """Return the facts of a fleet row when it was deleted; None where its last change is not a deletion."""
     entry = last_change(subject_type, subject_id)
     if entry is None or entry.action != "delete" or entry.organisation_id != organisation.pk:
         return None
@@ -118,7 +118,7 @@ def facts_when_deleted(organisation: Organisation, subject_type: str, subject_id
 
 
 def figures_of(uav: Uav) -> dict[str, Any]:
-    """What plans count on of a UAV, by the names of the API: its own figures, and for the rest its type's. Raises InvalidPerformance."""
+    """Return the values that plans use for a UAV, by API name: its own, else its type's. Raises InvalidPerformance."""
     return {
         "max_range_m": uav.range_m,
         "cruise_speed_mps": uav.speed_mps,
@@ -128,12 +128,12 @@ def figures_of(uav: Uav) -> dict[str, Any]:
 
 
 def performance_of(uav: Uav) -> Performance:
-    """Its own figures, and for the rest its type's; without a battery its energy is not counted. Raises InvalidPerformance."""
+    """Return a UAV's own values, else its type's; without a battery, energy is not computed. Raises InvalidPerformance."""
     return performance_with(uav.uav_type, {name: getattr(uav, name) for name in OWN_PERFORMANCE_KEYS})
 
 
 def performance_with(uav_type: UavType | None, own: Mapping[str, float | None]) -> Performance:
-    """Of a UAV of a type with figures of its own; None is the type's. Raises InvalidPerformance."""
+    """Return the performance of a UAV of a type with own values; None means the type's. Raises InvalidPerformance."""
     figures = {} if uav_type is None else {name: getattr(uav_type, name) for name in PERFORMANCE_KEYS}
     mass_kg = own.get("mass_kg")
     others = {name: value for name, value in own.items() if value is not None and name != "mass_kg"}

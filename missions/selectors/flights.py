@@ -1,4 +1,4 @@
-"""What other missions of an organisation have in the air."""
+"""Flights of an organisation's other missions."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -16,8 +16,8 @@ from planning.request import EndAction
 from planning.separation.separation import TimedRoute
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest of others is another mission's
-NO_TWIN: dict[str, Any] = {"mission_uav__uav__twin_of": None}  # twins fly copies of missions, in simulation: they are in nobody's way
+STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest belongs to another mission
+NO_TWIN: dict[str, Any] = {"mission_uav__uav__twin_of": None}  # twins fly copies of missions in simulation and obstruct no UAV
 COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task", "kind")
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
@@ -25,11 +25,11 @@ _ENDS_AT = ExpressionWrapper(F("mission__departs_at") + _FLOWN, output_field=Dat
 
 
 def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *, but: UUID | str | None = None) -> OtherFlights:
-    """Routes of approved, dispatched and active missions that are in the air at any time of a window, in seconds since the epoch.
+    """Return routes of approved, dispatched and active missions that are in the air during a window, in seconds since the epoch.
 
     Those of a mission without a departure may be in the air at any time.
-    `but` is a mission that does not count. Their own seconds count from from_s.
-    A UAV that hovers at its end is taken to do so until the longest flight is over.
+    `but` is a mission to leave out. The returned times count from from_s.
+    A UAV that hovers at its end is assumed to do so until the longest flight is over.
     """
     window_from, window_to = (datetime.fromtimestamp(moment_s, UTC) for moment_s in (from_s, to_s))
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
@@ -37,7 +37,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
     routes = (
         Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN, **NO_TWIN)
         .alias(ends_at=_ENDS_AT)
-        .filter(ends_at__gt=window_from - longest)  # who hovers stays for so long
+        .filter(ends_at__gt=window_from - longest)  # a hovering UAV stays that long
         .select_related("mission", "mission_uav")
         .order_by("mission__departs_at", "mission_id", "mission_uav__sequence")
     )
@@ -72,13 +72,13 @@ def _routes_without_departure(organisation_id: int, but: UUID | str | None) -> l
 
 
 def routes_of_mission_in_time(mission: Mission) -> list[TimedRoute | None]:
-    """Its routes that are flown, in their order, in seconds after its departure; None for one of whose times nothing is known."""
+    """Return the mission's flown routes in order, in seconds after its departure; None for a route without known times."""
     routes = mission.routes.select_related("mission", "mission_uav").filter(geometry__isnull=False)
     return [route_in_time(route) for route in routes]
 
 
 def route_in_time(route: Route) -> TimedRoute | None:
-    """In seconds after its mission's departure; None where the time of a waypoint is not known. Loaded with its mission and its UAV."""
+    """Return a route in seconds after its mission's departure; None where a waypoint has no time. The route has mission and UAV loaded."""
     lands_s = route.departs_s + route.duration_s if _lands(route) else None
     return _timed_route(route, list(route.waypoints.values_list(*COLUMNS)), 0.0, lands_s=lands_s)
 
@@ -105,7 +105,10 @@ def _in_the_air_s(route: Route) -> float:
 def _timed_route(
     route: Route, points: Sequence[tuple[Any, ...]], departure_s: float, *, lands_s: float | None, mission: str | None = None
 ) -> TimedRoute | None:
-    """departure_s is the mission's; lands_s when the route is over, None for never. None where the time of a waypoint is not known."""
+    """Return a route from its waypoints. departure_s is the mission's; lands_s is when the route is over, None for never.
+
+    Returns None where the time of a waypoint is unknown.
+    """
     if not points or any(point[3] is None for point in points):
         return None
     amsl_m, agl_m = (np.array([point[column] for point in points], dtype=np.float64) for column in (1, 2))
@@ -115,7 +118,7 @@ def _timed_route(
     held_s = np.cumsum(hold_s) - hold_s
     flown_s = np.array([point[3] for point in points], dtype=np.float64) - held_s
     take_off_s = departure_s + route.departs_s
-    # Stored to a tenth of a second: rounded, a short leg may seem to end before it begins.
+    # Times are stored to a tenth of a second: after rounding, a short leg may seem to end before it begins.
     arrival_s = np.maximum(departure_s + held_s + np.maximum.accumulate(flown_s), take_off_s)
     ground_m = amsl_m - agl_m
     return TimedRoute(

@@ -1,4 +1,4 @@
-"""What an import would change about missions that are flown, or that UAVs already have on board."""
+"""What an import would change for missions that are flown, or that are already onboard UAVs."""
 
 from datetime import timedelta
 
@@ -12,15 +12,15 @@ from missions.selectors.flights import STILL_FLOWN
 from operation.reasons import Reason
 
 ON_UAVS = (MissionState.DISPATCHED, MissionState.ACTIVE)
-TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and from what stands tall
+TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and tall obstacles
 
 
 def flown_missions_touched(written: WrittenGround) -> list[AutoApplyRefusal]:
-    """Why an import that nobody has looked at is not to be applied; empty where it touches no mission of any organisation.
+    """Return why an import may not be applied automatically; empty where it touches no mission of any organisation.
 
-    A mission that is over counts while its UAVs are in the air: those of an aborted one are on their way home. Assets count within 200 m
-    of a route, or as target or waypoint of it; zones anywhere a UAV may come on a straight way back from its route to where it took off,
-    whatever their heights and hours.
+    An ended mission counts while its UAVs are in the air: those of an aborted one are returning. Assets count within 200 m of a route, or
+    as
+    its target or waypoint. Zones count anywhere on a straight return from the route to its take-off, at any height and time.
     """
     touched = {route.mission_id for route in _routes() if _touches(written, route)}
     if not touched:

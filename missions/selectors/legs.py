@@ -1,4 +1,4 @@
-"""A single leg against zones and heights, while it is being dragged."""
+"""Checks of a single leg against zones and heights, while it is dragged."""
 
 from collections.abc import Sequence
 from datetime import datetime
@@ -30,7 +30,7 @@ AT_DEG = 1e-5  # a metre
 
 
 class LegEnd(NamedTuple):
-    """arrival_s counts from the departure; None: at any time of the flight."""
+    """An end of a leg. arrival_s counts from the departure; None: at any time of the flight."""
 
     position: LonLat
     agl_m: float
@@ -38,7 +38,7 @@ class LegEnd(NamedTuple):
 
 
 class Leg(NamedTuple):
-    """speed_mps: over ground; None: as the UAV does."""
+    """A leg. speed_mps is over ground; None: the UAV's own speed."""
 
     start: LegEnd
     end: LegEnd
@@ -46,7 +46,7 @@ class Leg(NamedTuple):
 
 
 class LegFlyer(NamedTuple):
-    """Who flies legs with a speed, and in which air."""
+    """The UAV that flies legs at a given speed, and the conditions."""
 
     name: str
     cruise_speed_mps: float
@@ -55,7 +55,7 @@ class LegFlyer(NamedTuple):
 
 
 def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegFlyer | None = None) -> list[dict[str, Any]]:
-    """What is wrong with each; flyer: who flies them, needed where one has a speed."""
+    """Return what is wrong with each leg. flyer is needed where a leg has a speed."""
     table, has_ground, spans = zone_table(), has_terrain(), _all_spans()
     return [
         _faults(leg.start, leg.end, departs_at, table, spans, has_ground=has_ground) or _speed_fault(leg, flyer) or _NO_FAULT
@@ -64,7 +64,7 @@ def faults_of_legs(legs: Sequence[Leg], departs_at: datetime | None, flyer: LegF
 
 
 def speed_words(possible: SpeedRange, flyer: LegFlyer) -> str:
-    """Why a speed cannot be flown over a leg."""
+    """Return the text why a speed cannot be flown over a leg."""
     low, high = (number_text(speed_mps, 1) for speed_mps in possible)
     if flyer.performance.max_airspeed_mps is None:
         values = {"low": low, "high": high, "uav": flyer.name}
@@ -87,12 +87,12 @@ def _speed_fault(leg: Leg, flyer: LegFlyer | None) -> dict[str, Any] | None:
 def _faults(
     start: LegEnd, end: LegEnd, departs_at: datetime | None, table: ZoneTable, spans: Spans, *, has_ground: bool
 ) -> dict[str, Any] | None:
-    """The first thing that is wrong with a leg; the columns down to the ground at its ends are not looked at."""
+    """Return the first fault of a leg, or None; the vertical columns to the ground at its ends are not checked."""
     flight = settings.FLIGHT_RULES
     if max(start.agl_m, end.agl_m) > flight.max_agl_m:
         return _fault(None, _("It is above the limit of %(limit)s m.") % {"limit": f"{flight.max_agl_m:.0f}"})
     points = RoutePoints.of([RoutePoint(one.position, WaypointKind.PASS, one.agl_m) for one in (start, end)])
-    flown, _is_flat = with_heights(points, ground_heights_m if has_ground else None, flight)  # over a hill it is several legs
+    flown, _is_flat = with_heights(points, ground_heights_m if has_ground else None, flight)  # several legs over a hill
     position = flown.points.position
     arrival_s = departs_s = ends_s = None
     if departs_at is not None and start.arrival_s is not None and end.arrival_s is not None:
@@ -111,7 +111,7 @@ _NO_FAULT: dict[str, Any] = {"is_clear": True, "zone": None, "message": ""}
 
 
 def too_low_text(agl_m: float) -> str:
-    """What is said of a leg that has to be flown at this height above ground over something; inf: nobody knows it."""
+    """Return the text for a leg that needs this height above ground over an obstacle; inf: the terrain under it is unknown."""
     limit_m = settings.FLIGHT_RULES.max_agl_m
     if agl_m == np.inf:
         return _("How high the ground is under what stands here is not known: go round it.")
@@ -121,7 +121,7 @@ def too_low_text(agl_m: float) -> str:
 
 
 def _all_spans() -> Spans:
-    """Of the network; empty where there is none."""
+    """Return the spans of the network; empty where there is none."""
     try:
         return spans_of(planning_read().ground().network())
     except NoGraph:
@@ -129,7 +129,7 @@ def _all_spans() -> Spans:
 
 
 def _spans_elsewhere(spans: Spans, position: FloatArray) -> Spans:
-    """Near a leg all but what hangs at its ends: whether these are inspected is not known while it is dragged."""
+    """Return the spans near a leg except those attached at its ends: whether these are inspected is unknown during a drag."""
     low, high = position.min(axis=0) - NEAR_DEG, position.max(axis=0) + NEAR_DEG
     near = ((np.maximum(spans.start, spans.end) >= low) & (np.minimum(spans.start, spans.end) <= high)).all(axis=1)
     for at in (position[0], position[-1]):

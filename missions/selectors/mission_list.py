@@ -1,4 +1,4 @@
-"""Reads for the list of missions: what it finds, in which order, and the small drawing of each."""
+"""Reads for the list of missions: filters, order, and the small drawing of each."""
 
 import contextlib
 import math
@@ -39,14 +39,14 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.models import Organisation
 
 SKETCH_TOLERANCE_DEG = 0.0005  # about 50 m: less than a pixel of the list's drawing
-SKETCH_STEPS = 400  # across the drawing: what is finer than one is not seen
-SKETCH_SHAPE = 2.0  # width by height of the drawing, on the ground
+SKETCH_STEPS = 400  # grid cells across the drawing; finer detail is invisible
+SKETCH_SHAPE = 2.0  # width by height of the drawing, in metres on the ground
 SKETCH_ROOM = 1.35  # the margins of the drawing show the surroundings
 MIN_HALF_DEG = 0.004  # about 450 m: a single target has some surroundings too
 MAX_LINES = 60
 MAX_PLACES = 60
 KEPT_S = 7 * 24 * 3600
-NOT_PLANNED = -1.0  # what was not planned stands below what was
+NOT_PLANNED = -1.0  # sorts unplanned missions below planned ones
 
 LAST_CHANGED_FIRST = "-changed"
 # the list's columns by their names in the API → the annotations below
@@ -64,7 +64,7 @@ ORDERS = {
 
 @dataclass(frozen=True)
 class MissionFilter:
-    """What the list is asked for; empty parts ask for nothing."""
+    """Filter of the list; empty fields do not filter."""
 
     text: str = ""
     states: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ def _count_of(rows: QuerySet[Any]) -> Coalesce:
 
 
 def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet[Mission]:
-    """The missions that a filter leaves, without what the list shows of each."""
+    """Return the missions that match a filter, without the columns of the list."""
     missions = Mission.objects.filter(organisation=organisation)
     if asked.is_deleted is not None:
         missions = missions.filter(deleted_at__isnull=not asked.is_deleted)
@@ -114,7 +114,7 @@ def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet
 
 
 class MissionFigures(TypedDict):
-    """What the query for the list's rows works out."""
+    """Columns that the query for the list computes."""
 
     target_count: int
     unassigned_count: int
@@ -132,7 +132,7 @@ else:
 
 
 def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
-    """The same with counts, times, routes and something to sort each column by."""
+    """Return the missions with counts, times, routes and a sort key for each column."""
     longest = (
         Route.objects.filter(mission=OuterRef("pk")).order_by().values("mission").annotate(longest=Max("duration_s")).values("longest")
     )
@@ -144,7 +144,7 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
             uav_count=_count_of(MissionUav.objects.all()),
             is_simulated=Exists(MissionUav.objects.filter(mission=OuterRef("pk"), uav__is_simulated=True)),
             duration_s=Subquery(longest, output_field=FloatField()),
-            # with fields of their own: a page's cursor reads these values, not those of the columns they are made from
+            # Aliases as real fields: a page's cursor reads these values, not those of the columns they are made from.
             sort_name=Lower("name", output_field=CharField()),
             sort_author=Lower(Coalesce(F("author__username"), Value("")), output_field=CharField()),
             sort_state=Lower("state", output_field=CharField()),
@@ -156,13 +156,13 @@ def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
 
 
 def order_of(name: str) -> tuple[str, str]:
-    """ "-changed" → the columns to sort by, the last one unique. Raises KeyError for a name that is no column."""
+    """Return the columns to sort by for a name such as "-changed", the last one unique. Raises KeyError for an unknown column."""
     sign = "-" if name.startswith("-") else ""
     return f"{sign}{ORDERS[name.removeprefix('-')]}", f"{sign}pk"
 
 
 def counts_by_state(missions: QuerySet[Mission]) -> tuple[dict[str, int], dict[str, int]]:
-    """How many missions are in each state: those that are there, and those that are deleted."""
+    """Return the number of missions per state: first of existing ones, then of deleted ones."""
     there: dict[str, int] = {}
     deleted: dict[str, int] = {}
     is_gone = ExpressionWrapper(Q(deleted_at__isnull=False), output_field=BooleanField())
@@ -173,7 +173,7 @@ def counts_by_state(missions: QuerySet[Mission]) -> tuple[dict[str, int], dict[s
 
 
 def choices_of_filters(organisation: Organisation) -> dict[str, list[dict[str, Any]]]:
-    """Authors and UAVs of the missions that there are, by name, with how many missions each has."""
+    """Return the authors and UAVs of existing missions, by name, each with its number of missions."""
     missions = Mission.objects.filter(organisation=organisation, deleted_at=None).order_by()
     authors = missions.exclude(author=None).values("author__username").annotate(missions=Count("pk")).order_by("author__username")
     uavs = (
@@ -193,7 +193,7 @@ def choices_of_filters(organisation: Organisation) -> dict[str, list[dict[str, A
 
 
 def sketch(mission: Mission) -> list[list[list[float]]]:
-    """The routes, simplified for a drawing the size of a stamp; an empty one for a UAV on the ground, which keeps its letter and colour."""
+    """Return the routes, simplified for a thumbnail; an empty one for a UAV that does not fly keeps its letter and colour."""
     return [_rounded(route.geometry) for route in mission.routes.all()]
 
 
@@ -204,9 +204,9 @@ def _rounded(line: GEOSGeometry | None) -> list[list[float]]:
 
 
 def surroundings(missions: Sequence[Mission]) -> dict[UUID, dict[str, Any]]:
-    """Of each mission: its targets' places, and the lines and railways round them, as faint lines under the routes.
+    """Return for each mission its targets' places, and the lines and railways around them, drawn faintly under the routes.
 
-    Kept in the cache for as long as neither the mission nor the ground changes.
+    Cached until the mission or the map data change.
     """
     ground = ground_revision()
     keys = {mission.pk: f"mission-sketch:{mission.pk}:{mission.revision}:{ground}" for mission in missions}
@@ -236,7 +236,7 @@ def _places_of(missions: list[UUID]) -> dict[UUID, list[list[float]]]:
 
 
 def _box_of(places: list[list[float]]) -> Polygon | None:
-    """What the drawing can show: its shape, and its margins."""
+    """Return the area that the drawing shows: its shape and its margins; None without places."""
     if not places:
         return None
     west, east = min(lon for lon, _ in places), max(lon for lon, _ in places)

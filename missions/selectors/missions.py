@@ -33,26 +33,26 @@ def mission_alone(organisation: Organisation, mission_id: UUID) -> Mission:
 
 
 def revision_of_mission(organisation_id: int, mission_id: UUID) -> int | None:
-    """The number behind the ETag, by one column of one row; None for a mission that is not there."""
+    """Return the revision behind the ETag with a query for one column; None if the mission does not exist."""
     return Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("revision", flat=True).first()
 
 
 def state_of_mission(organisation_id: int, mission_id: UUID) -> MissionState | None:
-    """None for a mission that is not there."""
+    """Return the mission's state; None if it does not exist."""
     found = Mission.objects.filter(organisation=organisation_id, deleted_at=None, pk=mission_id).values_list("state", flat=True).first()
     return None if found is None else MissionState(found)
 
 
 def open_plan_of_mission(mission: Mission) -> UUID | None:
-    """The job that is planning the mission at present, the youngest if there are several."""
+    """Return the job that is planning the mission, the latest if there are several."""
     jobs = Job.objects.filter(organisation=mission.organisation_id, state__in=OPEN_STATES, task=PLAN_MISSION)
     return jobs.filter(parameters__mission=str(mission.pk)).order_by("-created_at").values_list("pk", flat=True).first()
 
 
 def approval_in_force(mission: Mission) -> Approval | None:
-    """By which the mission is frozen; None for one that nobody has approved, or whose approval is revoked."""
+    """Return the approval by which the mission is frozen; None if it was never approved or the approval is revoked."""
     found = Approval.objects.select_related("approved_by", "revoked_by").filter(mission=mission, revoked_at=None)
-    return found.defer("document").first()  # which is large, and read by few
+    return found.defer("document").first()  # large, and rarely read
 
 
 def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:
@@ -62,7 +62,7 @@ def history_of_mission(mission: Mission) -> QuerySet[AuditEntry]:
 
 
 def mission_bounds(mission_id: UUID) -> tuple[float, float, float, float] | None:
-    """West, south, east, north of what a mission's map shows first: targets and routes, or without routes the places where UAVs stand."""
+    """Return west, south, east, north of the mission's initial map view: targets and routes, or UAV positions if there are no routes."""
     targets = InspectionTarget.objects.filter(mission=mission_id).order_by()
     of_targets = targets.aggregate(
         points=Extent("position"), stretches=Extent("stretch"), assets=Extent("asset__centre", filter=Q(position=None, stretch=None))

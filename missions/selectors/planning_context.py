@@ -1,4 +1,4 @@
-"""Everything that a plan is made from, read at once: what the planner takes, made of rows."""
+"""The planning context of a request, read from rows at once."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +21,7 @@ from workspace.models import Organisation
 
 
 def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget], list[int]]:
-    """The map of now, the targets on it, and those whose asset has been deleted. Raises InvalidRequest."""
+    """Return the current map data, the targets on it, and the targets whose asset has been deleted. Raises InvalidRequest."""
     read = planning_read(whole_assets(request.targets))
     targets, deleted = resolved_targets(request.targets, read.points)
     return read.ground(), targets, deleted
@@ -30,9 +30,9 @@ def read_targets(request: PlanRequest) -> tuple[PlanningGround, list[NamedTarget
 def planning_context(
     request: PlanRequest | None, ground: PlanningGround, targets: Sequence[ResolvedTarget] = (), deleted_targets: Sequence[int] = ()
 ) -> PlanningContext:
-    """Return what a plan for the request is made from, over this map; without a request nothing of a fleet. Raises NoGraph."""
+    """Return the planning context of a request over this map data; without a request it has no fleet. Raises NoGraph."""
     dataset_version = ground.dataset_version
-    terrain_dataset_version, heights_m = terrain_at(dataset_version), heights_at(dataset_version)  # the edition before any height is read
+    terrain_dataset_version, heights_m = terrain_at(dataset_version), heights_at(dataset_version)  # version before any height is read
     stored = [uav.uav for uav in request.uavs if uav.uav is not None] if request is not None else []
     return PlanningContext(
         rules=planning_rules(),
@@ -58,7 +58,7 @@ def planning_context(
 
 
 def _other_flights(request: PlanRequest | None, window_s: float) -> OtherFlights:
-    """A plan for any time cannot be kept apart from flights of a certain one; it gets a departure before it is flown."""
+    """Return other flights of the window. A plan without departure cannot be deconflicted; it gets a departure before it is flown."""
     if request is None or request.departs_at is None or request.organisation is None:
         return OtherFlights()
     from_s = request.departs_at.timestamp()
@@ -66,14 +66,14 @@ def _other_flights(request: PlanRequest | None, window_s: float) -> OtherFlights
 
 
 def current_airspace(request: PlanRequest | None = None, *, is_by_length: bool = False) -> Airspace:
-    """With all zones of now, or with those that can be in force while the request is flown. Raises NoGraph."""
+    """Return the airspace with all current zones, or with those that can be in force while the request is flown. Raises NoGraph."""
     context = planning_context(request, planning_read().ground())
     chosen = None if request is None else zone_choice(context.zones, request.departs_at, context.rules.flight).widest
     return airspace_on(context, chosen, is_by_length=is_by_length)
 
 
 def with_bases(request: PlanRequest, organisation: Organisation) -> PlanRequest:
-    """The request with the bases of today, if a UAV is to land at one. Raises InvalidRequest if there is none."""
+    """Return the request with the organisation's bases if a UAV is to land at one. Raises InvalidRequest if there is none."""
     landing = [uav for uav in range(len(request.uavs)) if request.end_action(uav) is EndAction.BASE]
     if not landing:
         return replace(request, bases=())

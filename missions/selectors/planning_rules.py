@@ -1,4 +1,4 @@
-"""The limits of the settings that a plan keeps, as one value."""
+"""The limits from the settings that a plan keeps, as one value."""
 
 from django.conf import settings
 

@@ -1,4 +1,4 @@
-"""From what the operator picked to targets on the ground: a point, or the course of a line."""
+"""Resolve picked targets to geometry: a point, or the course of a line."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,25 +21,25 @@ from planning.trajectory.heights import FloatArray, asset_height_m
 from planning.trajectory.stretches import PlaceOnLine, nearest_on_line, stretch_between
 from workspace.locale_negotiation import number_text
 
-NEAR_ASSET_M = 500.0  # a picked point farther from the asset than this is a mistake, not a point on it
+NEAR_ASSET_M = 500.0  # a picked point farther from its asset is an error
 LINEAR = {AssetKind.LINE, AssetKind.RAILWAY}
 
 
 @dataclass(frozen=True)
 class NamedTarget(ResolvedTarget):
-    """A resolved target that can be named."""
+    """A resolved target with a label."""
 
     called: Callable[[], str] = field(kw_only=True, compare=False, repr=False)
 
     @cached_property
     def label(self) -> str:
-        """What it is called, in English: it is stored, for readers of any language."""
+        """Return the target's name in English: it is stored, for readers of any language."""
         with override("en"):
             return self.called()
 
 
 def whole_assets(targets: Sequence[TargetRequest]) -> list[int]:
-    """The keys of the assets if every target is a whole one, as most are in small plans; else none."""
+    """Return the keys of the assets if every target is a whole asset, as in most small plans; else an empty list."""
     keys = [target.asset for target in targets if target.asset is not None and target.position is None and target.stretch is None]
     return keys if len(keys) == len(targets) else []
 
@@ -47,10 +47,11 @@ def whole_assets(targets: Sequence[TargetRequest]) -> list[int]:
 def resolved_targets(
     targets: Sequence[TargetRequest], points: Mapping[int, PointAsset] | None = None
 ) -> tuple[list[NamedTarget], list[int]]:
-    """The place of each target, and the targets whose asset has been deleted since they were picked.
+    """Return the place of each target, and the targets whose asset has been deleted since they were picked.
 
-    points: of their `whole_assets` the towers and bridges, where they have been read already. Raises InvalidRequest with every fault: an
-    unknown asset, a point or stretch that is not on its asset.
+    points: the towers and bridges among `whole_assets`, if already read. Raises InvalidRequest with every fault: an unknown asset, a point
+    or
+    stretch that is not on its asset.
     """
     plain = _whole_towers_and_bridges(targets, points)
     if plain is not None:
@@ -78,7 +79,7 @@ def resolved_targets(
 
 
 def _whole_towers_and_bridges(targets: Sequence[TargetRequest], points: Mapping[int, PointAsset] | None) -> list[NamedTarget] | None:
-    """The places where all targets are whole towers and bridges; None where anything has to be looked into."""
+    """Return the places if all targets are whole towers and bridges; None where any target needs a closer check."""
     keys = whole_assets(targets)
     if not keys:
         return None
@@ -163,7 +164,7 @@ def _end(line: FloatArray, which: int) -> PlaceOnLine:
 
 
 def _on_area(geometry: GEOSGeometry, index: int, position: LonLat) -> LonLat:
-    """The position itself if it lies on the bridge's area, else the nearest point of its outline."""
+    """Return the position itself if it is on the bridge's area, else the nearest point of its outline."""
     if geometry.contains(Point(*position, srid=4326)):
         return position
     parts = geometry if isinstance(geometry, MultiPolygon) else [geometry]

@@ -9,7 +9,7 @@ from inspection.models import Asset
 from missions.models import SavedSelection
 from workspace.models import Organisation
 
-# What a row of targets shows of an asset.
+# columns of an asset that a row of targets shows
 SHOWN_OF_AN_ASSET = (
     "kind", "subtype", "osm_type", "osm_id", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "length_m", "carries",
     "place_on_line", "places_on_line", "vanished_at", "line__ref", "line__name", "line__operator", "line__max_voltage_v",
@@ -18,7 +18,7 @@ SHOWN_OF_AN_ASSET = (
 
 @dataclass(frozen=True)
 class KeptTarget:
-    """A target as it was kept, and its asset as it is now; `asset` is None for a bare position and for what is gone."""
+    """A saved target with its current asset; `asset` is None for a bare position and for a deleted asset."""
 
     value: dict[str, Any]
     asset: Asset | None

@@ -1,4 +1,4 @@
-"""What has changed since a mission was planned and what it means for it: which zone, which leg, which target, which base."""
+"""What has changed since a mission was planned, and what it affects: which zone, leg, target or base."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,13 +18,13 @@ from missions.selectors.uav_changes import UavChange, uav_change_words
 from missions.selectors.zones import MetZone, departure_s, flown_route, zones_met
 from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
 
-TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
+TERRAIN_CHANGED_M = 1.0  # smaller differences come from another sampling of the same terrain
 MAX_CAUSES = 20
 
 
 @dataclass(frozen=True)
 class StaleCause:
-    """One thing that changed and what of the mission it touches. `uav` and `target` are places in the mission."""
+    """One change and the part of the mission it affects. `uav` and `target` are places in the mission."""
 
     what: str  # zone, uav, base, asset, terrain or elsewhere
     message: str
@@ -32,51 +32,51 @@ class StaleCause:
     target: int | None = None
     leg: tuple[str, str] | None = None  # "A1", "A2"; a flight's start and end are empty
     position: tuple[float, float] | None = None
-    agl_m: tuple[float, float] | None = None  # lowest and highest, where it meets a zone
-    times: tuple[datetime, datetime] | None = None  # from when to when
+    agl_m: tuple[float, float] | None = None  # lowest and highest where it meets a zone
+    times: tuple[datetime, datetime] | None = None  # from and to
 
 
 def landing_routes_without_base() -> Exists:
-    """For missions: whether one of their routes lands where a base was and none is any more."""
+    """Return an expression for missions: whether one of their routes lands at a base that no longer exists."""
     bases = Base.objects.filter(organisation=OuterRef("mission__organisation"), location=OuterRef("lands_at"))
     return Exists(Route.objects.filter(~Exists(bases), mission=OuterRef("pk"), lands_at__isnull=False))
 
 
 def bases_landed_at(missions: Sequence[Mission], organisation_id: int) -> frozenset[tuple[float, ...]]:
-    """Where the organisation's bases are, (lon, lat), if any route of its missions lands at one; else nothing is asked."""
+    """Return positions (lon, lat) of the organisation's bases if any route of its missions lands at one; else empty, without a query."""
     if not any(route.lands_at is not None for mission in missions for route in mission.routes.all()):
         return frozenset()
     return frozenset(location.coords for location in Base.objects.filter(organisation=organisation_id).values_list("location", flat=True))
 
 
 def has_lost_base(mission: Mission, bases: frozenset[tuple[float, ...]]) -> bool:
-    """The same of one mission, whose routes are loaded."""
+    """Whether the mission, with routes loaded, lands at a base that no longer exists."""
     return any(route.lands_at is not None and route.lands_at.coords not in bases for route in mission.routes.all())
 
 
 def is_stale(mission: Mission, revision: int, *, has_lost_base: bool, has_other_uavs: bool) -> bool:
-    """Whether assets, zones, terrain, the bases to land at or its UAVs have changed since it was planned.
+    """Whether assets, zones, terrain, the bases to land at or the UAVs have changed since the mission was planned.
 
-    `revision` is the ground's now, `has_other_uavs` as uav_change_selectors has it.
+    `revision` is the current dataset version, `has_other_uavs` comes from uav_change_selectors.
     """
     return mission.state != MissionState.DRAFT and (mission.ground_revision != revision or has_lost_base or has_other_uavs)
 
 
 def stale_causes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
-    """What the changes mean for the mission, the worst first; empty if all is as it was. `uavs`: its uav_changes."""
+    """Return what the changes mean for the mission, worst first; empty if nothing changed. `uavs`: its uav_changes."""
     if not is_stale(mission, ground_revision(), has_lost_base=False, has_other_uavs=False):
         return [*_uavs(mission, uavs), *_bases(mission)]
     return causes_on_the_routes(mission, uavs) or [StaleCause("elsewhere", _("No zone in force touches the routes."))]
 
 
 def causes_on_the_routes(mission: Mission, uavs: Sequence[UavChange]) -> list[StaleCause]:
-    """What speaks against the stored routes on the ground as it is now, the worst first, whatever they were planned on."""
+    """Return what makes the stored routes invalid on the current map data, worst first, whatever they were planned on."""
     causes = [*_zones(mission), *_uavs(mission, uavs), *_bases(mission), *_vanished_targets(mission), *_passed_assets_gone(mission)]
     return (causes or _terrain(mission))[:MAX_CAUSES]
 
 
 def stale_reason(causes: list[StaleCause]) -> str:
-    """The headline with the worst cause; empty where there is none."""
+    """Return a headline with the worst cause; empty where there is none."""
     if not causes:
         return ""
     headline = {
@@ -105,9 +105,9 @@ def cause_json(cause: StaleCause) -> dict[str, Any]:
 
 
 def _zones(mission: Mission) -> list[StaleCause]:
-    """What the routes meet of the zones of now: at the mission's time where it has one, else at any time.
+    """Return conflicts of the routes with current zones, at the mission's time if it has one, else at any time.
 
-    Of a mission that flies, what its UAVs have still before them, at the time at which they come there.
+    For a flying mission only the remaining legs count, at the times at which they are flown now.
     """
     if mission.state == MissionState.ACTIVE:
         ways = ways_ahead(mission, timezone.now())
@@ -122,7 +122,7 @@ def _zones(mission: Mission) -> list[StaleCause]:
 
 
 def _zone_causes(route: Route, flown: FlownRoute, met: Sequence[MetZone]) -> list[StaleCause]:
-    """One for each zone and pair of neighbouring targets between which it is met."""
+    """Return one cause per zone and pair of neighbouring targets between which the route meets it."""
     parts: dict[tuple[int, tuple[str, str]], list[MetZone]] = {}
     for meeting in met:
         parts.setdefault((meeting.zone, leg_names(route, meeting.breach.leg)), []).append(meeting)
@@ -147,12 +147,12 @@ def _zone_causes(route: Route, flown: FlownRoute, met: Sequence[MetZone]) -> lis
 
 
 def _waypoints_of(leg: int, flown: FlownRoute) -> list[int]:
-    """The waypoints at a leg's ends; the columns at start and end have one."""
+    """Return the waypoints at a leg's ends; the vertical columns at start and end have one."""
     return [max(leg, 0), min(leg + 1, len(flown.position) - 1)]
 
 
 def _heights_m(leg: int, flown: FlownRoute) -> FloatArray:
-    """Above ground at a leg's ends."""
+    """Return the heights above ground at a leg's ends [m]."""
     on_ground = leg < 0 or (flown.lands and leg == len(flown.position) - 1)
     return np.append(flown.agl_m[_waypoints_of(leg, flown)], [0.0] if on_ground else [])
 
@@ -191,7 +191,7 @@ def _leg_words(zone: str, ends: tuple[str, str], uav: str) -> str:
 
 
 def route_letter(sequence: int) -> str:
-    """A to Z, then AA: as on the map."""
+    """Return A to Z, then AA, as on the map."""
     return chr(65 + sequence) if sequence < 26 else f"{chr(64 + sequence // 26)}{chr(65 + sequence % 26)}"
 
 
@@ -247,7 +247,7 @@ def _passed_assets_gone(mission: Mission) -> list[StaleCause]:
 
 
 def _terrain(mission: Mission) -> list[StaleCause]:
-    """Whether the ground under the waypoints is another one than the routes were planned over; its height then is AMSL less AGL."""
+    """Return a cause if the terrain under the waypoints differs from the one planned over; that height is AMSL less AGL."""
     waypoints = [(route, waypoint) for route in mission.routes.all() for waypoint in route.waypoints.all()]
     if not waypoints:
         return []

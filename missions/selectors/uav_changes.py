@@ -1,4 +1,4 @@
-"""What has changed of UAVs since a mission took their figures over: batteries, speeds, sensors, and whether they fly at all."""
+"""What has changed in UAVs since a mission copied their values: batteries, speeds, sensors, and whether they fly at all."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, pe
 from workspace.locale_negotiation import number_text
 
 TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it leaves the UAV on the ground
-# of the fewest decimals in which two figures are told apart, the first that is tried
+OUT_OF_SERVICE = "uav_out_of_service"  # the plan's own warning: it does not use the UAV
+# numbers of decimals, fewest first: the first that shows two values as different is used
 DECIMALS = {"mass_kg": 3, "rotor_disk_m2": 3}
 MAX_DECIMALS = 6
 
@@ -27,7 +27,7 @@ _COLUMNS = (
 
 @dataclass(frozen=True)
 class FigureChange:
-    """A figure by its name in the API: as the mission has it, and as it is now."""
+    """A changed value by its API name: as the mission has it, and as it is now."""
 
     name: str
     kept: Any
@@ -36,7 +36,7 @@ class FigureChange:
 
 @dataclass(frozen=True)
 class SaidFigure:
-    """A figure that is said for the mission alone, where the fleet's has changed since: as said, the fleet's then, the fleet's now."""
+    """A value set in the mission itself whose fleet value has changed since: as set, the fleet's then, the fleet's now."""
 
     name: str
     said: Any
@@ -46,12 +46,12 @@ class SaidFigure:
 
 @dataclass(frozen=True)
 class UavChange:
-    """A UAV of a mission that is no longer as the mission has it. `uav` is its place there, `uav_id` its key.
+    """A UAV that differs from the mission's copy. `uav` is its place in the mission, `uav_id` its key.
 
-    The plan counts on what the mission says itself, `said`, all the same.
+    The plan still uses values set in the mission itself, `said`.
 
-    Sensors count where a target needs one of them. `state` is its present one where the plan counts on another; `fault` says why its
-    present figures cannot be flown with.
+    Sensors count where a target needs one of them. `state` is the current one where the plan expects another; `fault` explains why its
+    current values cannot be flown with.
     """
 
     uav: int
@@ -68,19 +68,19 @@ class UavChange:
 
 
 def uav_changes(mission: UUID) -> list[UavChange]:
-    """Of a mission that is being made or is still to be flown, in the order of its UAVs."""
+    """Return the changes of a mission that is being made or is still to be flown, in the order of its UAVs."""
     return _changes(Mission.objects.filter(pk=mission, state__in=(MissionState.DRAFT, *TO_BE_FLOWN))).get(mission, [])
 
 
 def missions_with_other_uavs(missions: QuerySet[Mission] | Iterable[Mission]) -> frozenset[UUID]:
-    """Those of the missions that have a plan to be flown which counts on UAVs as they are no more."""
+    """Return those of the missions whose plan is still to be flown and uses outdated UAV values."""
     pks: Iterable[UUID] = missions.values_list("pk", flat=True) if isinstance(missions, QuerySet) else [mission.pk for mission in missions]
     changes = _changes(Mission.objects.filter(pk__in=pks, state__in=TO_BE_FLOWN))
     return frozenset(pk for pk, own in changes.items() if any(change.concerns_plan for change in own))
 
 
 def uav_change_words(change: UavChange) -> str:
-    """ "Kite: battery 56.6 → 40 Wh, in maintenance." in the reader's language."""
+    """Return a text such as "Kite: battery 56.6 → 40 Wh, in maintenance." in the reader's language."""
     reported = [_figure_words(figure) for figure in change.figures]
     if change.state is not None:
         reported.append(_state_words()[change.state])
@@ -128,12 +128,12 @@ def _changes(missions: QuerySet[Mission]) -> dict[UUID, list[UavChange]]:
 
 
 def of_fleet(change: UavChange) -> list[FigureChange]:
-    """What has changed in the fleet of what the mission says itself."""
+    """Return the changed fleet values of what the mission sets itself."""
     return [FigureChange(one.name, one.then, one.now) for one in change.said]
 
 
 def _said(row: dict[str, Any], kept: dict[str, Any], now: dict[str, Any] | None) -> tuple[SaidFigure, ...]:
-    """Only where the mission still says otherwise than the fleet."""
+    """Return values set in the mission whose fleet value changed since and differs from the mission's."""
     then = {name: value for name, value in row["fleet_figures"].items() if name in row["own_figures"]}
     if now is None:
         return ()
@@ -174,7 +174,7 @@ def _sensors_needed(missions: QuerySet[Mission]) -> dict[UUID, set[str]]:
 
 
 def _unexpected_state(row: dict[str, Any], state: UavState) -> UavState | None:
-    """Its state where a plan counts on it although it does not fly, or leaves it on the ground although it flies again."""
+    """Return the UAV's state if a plan uses it although it is not active, or excludes it although it is active again; else None."""
     if row["mission__state"] == MissionState.DRAFT:
         return None
     is_left_out = any(warning["code"] == OUT_OF_SERVICE and warning["uav"] == row["sequence"] for warning in row["mission__plan_warnings"])

@@ -20,16 +20,16 @@ from planning.clearance.nearby_zones import zones_near
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, breaches
 from planning.request import EndAction
 
-LegTime = tuple[float, float]  # from when to when a leg is flown, in seconds after departure, its end included
+LegTime = tuple[float, float]  # from when to when a leg is flown, in seconds after departure, end included
 
 
 def blocked_departures(
     legs: Iterable[LegTime], spans: Iterable[tuple[float, float]], margin_s: float, from_s: float, to_s: float
 ) -> tuple[Span, ...]:
-    """Departures between two moments at which a leg would be flown while a zone applies, or within the margin of that.
+    """Return the departures between two moments at which a leg would be flown while a zone applies, margin included.
 
-    A leg that is flown from a to b after departure meets a span from s to e, its end not included, if it departs from s - b up to but
-    without e - a; the margin makes that longer on both sides. Rounded outwards to whole seconds.
+    A leg flown from a to b after departure meets a span from s to e (e excluded) if the departure is in [s - b, e - a). The margin extends
+    both sides. Rounded outwards to whole seconds.
     """
     times = set(legs)
     return merged(
@@ -40,7 +40,7 @@ def blocked_departures(
 
 
 def free_between(blocked: Iterable[Span], from_s: float, to_s: float) -> tuple[Span, ...]:
-    """What spans leave over of the time between two moments."""
+    """Return the time between two moments that the spans leave free."""
     free: list[Span] = []
     open_s = from_s
     for span in merged(blocked):
@@ -53,18 +53,18 @@ def free_between(blocked: Iterable[Span], from_s: float, to_s: float) -> tuple[S
 
 
 def zone_margins() -> Margins:
-    """What the settings want to be kept from zones."""
+    """Return the margins from zones in the settings."""
     return planning_rules().margins
 
 
 def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
-    """A stored route; departs_s: when its mission begins, in seconds since the epoch, None for at any time."""
+    """Return a stored route as flown. departs_s: when its mission begins, in seconds since the epoch; None: at any time."""
     waypoints = list(route.waypoints.all())
     arrival_s = np.array([np.nan if waypoint.arrival_s is None else waypoint.arrival_s for waypoint in waypoints], dtype=np.float64)
     is_timed = departs_s is not None and not np.isnan(arrival_s).all()
     began_s = 0.0 if departs_s is None else departs_s
     lands = route.mission.return_to_start or route.mission_uav.end_action != EndAction.HOVER
-    lasts_s = route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)  # who hovers stays
+    lasts_s = route.duration_s if lands else max(route.duration_s, settings.FLIGHT_RULES.longest_flight_s)  # a hovering UAV stays
     return FlownRoute(
         position=np.array([waypoint.position.coords[:2] for waypoint in waypoints], dtype=np.float64).reshape(-1, 2),
         agl_m=np.array([waypoint.altitude_agl_m for waypoint in waypoints], dtype=np.float64),
@@ -79,7 +79,7 @@ def flown_route(route: Route, departs_s: float | None) -> FlownRoute:
 
 
 def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> list[list[MetZone]]:
-    """For each route the zones that it meets, those of now or of the table; a route without times at any time."""
+    """Return for each route the zones that it meets, current ones or those of the table; a route without times counts at any time."""
     return checked_zones_met(routes, zone_table() if table is None else table, zone_margins())
 
 
@@ -89,7 +89,7 @@ def departure_s(mission: Mission) -> float | None:
 
 @dataclass(frozen=True)
 class BlockingZone:
-    """A zone that routes meet in space and height. blocked: departures that would meet it in time, too; legs: (route, leg) of them."""
+    """A zone that routes meet in space and height. blocked: departures that meet it in time as well; legs: (route, leg) pairs."""
 
     zone: int
     name: str
@@ -100,16 +100,17 @@ class BlockingZone:
 
 @dataclass(frozen=True)
 class LegalWindows:
-    """When routes may depart between two moments, and which zones bar the rest."""
+    """When routes may depart between two moments, and which zones block the rest."""
 
     windows: tuple[Span, ...]
     zones: tuple[BlockingZone, ...]
 
 
 def legal_windows(routes: Sequence[FlownRoute], *, from_s: float, to_s: float) -> LegalWindows:
-    """The routes' times are seconds after departure; a leg without a time may be flown at any time from the route's take-off to its end.
+    """Return when the routes may depart between two moments, in seconds since the epoch.
 
-    Between two moments in seconds since the epoch; routes keep the margins of the settings in space, height and time.
+    The routes' times are seconds after departure. A leg without a time may be flown at any time from the route's take-off to its end.
+    Routes keep the margins of the settings in space, height and time.
     """
     margins, table = zone_margins(), zone_table()
     met: dict[int, list[tuple[int, int]]] = {}
@@ -134,7 +135,7 @@ def legal_windows(routes: Sequence[FlownRoute], *, from_s: float, to_s: float) -
 
 
 def _leg_times(route: FlownRoute) -> list[tuple[float, float]]:
-    """From when to when each leg is flown, the column up to the first waypoint first; what is not known is all of the flight."""
+    """Return the time span of each leg, the climb to the first waypoint first; an unknown one spans the whole flight."""
     departs_s = route.departs_s or 0.0
     known = [] if route.arrival_s is None else route.arrival_s[~np.isnan(route.arrival_s)].tolist()
     ends_s = max([departs_s, *known] if route.ends_s is None else [departs_s, route.ends_s, *known])

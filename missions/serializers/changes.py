@@ -1,4 +1,4 @@
-"""What goes out: what has changed since a mission was planned, and who has changed the mission."""
+"""Changes since a mission was planned, and users who changed it."""
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
@@ -9,7 +9,7 @@ from missions.selectors.fleet import FIGURES
 
 
 class StaleCauseSerializer(serializers.Serializer):
-    """One thing that changed since the mission was planned, and what of the mission it touches."""
+    """One change since the mission was planned, and the part of the mission it affects."""
 
     what = serializers.ChoiceField(choices=["zone", "uav", "base", "asset", "terrain", "elsewhere"])
     message = serializers.CharField()
@@ -32,7 +32,7 @@ class StaleCauseSerializer(serializers.Serializer):
 
 @extend_schema_field({"oneOf": [{"type": "number"}, {"type": "array", "items": {"type": "string"}}]})
 class FigureField(serializers.JSONField):
-    """A UAV's figure, or the names of its sensors."""
+    """A UAV's value, or the names of its sensors."""
 
 
 class FigureChangeSerializer(serializers.Serializer):
@@ -49,7 +49,7 @@ class SaidFigureSerializer(serializers.Serializer):
 
 
 class UavChangeSerializer(serializers.Serializer):
-    """A UAV that is no longer as the mission has it. Sent again in `uavs` without its figures, the mission takes the present ones."""
+    """A UAV that differs from the mission's copy. Sent again in `uavs` without its values, the mission takes the current ones."""
 
     uav = serializers.IntegerField(help_text="index of the UAV")
     id = serializers.IntegerField(help_text="of the stored UAV")

@@ -101,7 +101,7 @@ class CommandInputSerializer(WhyInputSerializer):
 
 
 class GivenParametersSerializer(serializers.Serializer):
-    """Those of its kind alone."""
+    """Parameters of the command's kind only."""
 
     speed_mps = serializers.FloatField(required=False)
     height_m = serializers.FloatField(required=False)
@@ -174,7 +174,7 @@ class CommandPageSerializer(serializers.Serializer):
 
 
 class ReturnWaySerializer(KnownFieldsSerializer):
-    """How a UAV returns: after a hold, at a height that is set before, both in this order, or along its route. Empty: straight, at once."""
+    """How a UAV returns: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once."""
 
     height_m = serializers.FloatField(required=False, help_text="above the take-off: set on the UAV and read back before it returns")
     wait_s = serializers.FloatField(required=False, min_value=0.0, max_value=MAX_WAIT_S, help_text="for which it holds before")
@@ -226,7 +226,7 @@ class RefusedReasonSerializer(serializers.Serializer):
 
 
 class BatchAnswerSerializer(serializers.Serializer):
-    """What became of a batch for one UAV."""
+    """Outcome of a batch for one UAV."""
 
     mission = serializers.UUIDField()
     uav = serializers.IntegerField()
@@ -251,7 +251,7 @@ class CloseInputSerializer(KnownFieldsSerializer):
 
 
 class SentSerializer(serializers.Serializer):
-    """What became of a mission that was sent, aborted or closed."""
+    """Outcome of sending, aborting or closing a mission."""
 
     mission = serializers.UUIDField()
     state = serializers.CharField()

@@ -43,7 +43,7 @@ class ZoneNameSerializer(serializers.Serializer):
 
 
 class ReachSerializer(serializers.Serializer):
-    """Whether one UAV could do the target alone."""
+    """Whether one UAV alone could serve the target."""
 
     name = serializers.CharField()
     uav_id = serializers.IntegerField(allow_null=True)
@@ -90,7 +90,7 @@ class HeaviestSerializer(serializers.Serializer):
 
 
 class AlternativeSerializer(serializers.Serializer):
-    """The nearest thing to another assignment: one target of this route on the route of another UAV."""
+    """The smallest change to another assignment: one target of this route on the route of another UAV."""
 
     target = serializers.IntegerField()
     uav = serializers.IntegerField(help_text="index of the other UAV")

@@ -26,7 +26,7 @@ MAX_SENSORS = 12
 
 
 class UavTypeSerializer(KnownFieldsSerializer):
-    """What UAVs of one make have in common. A UAV's own values come before these."""
+    """Values common to UAVs of one make. A UAV's own values override them."""
 
     id = serializers.IntegerField(read_only=True)
     name = serializers.CharField(max_length=100)
@@ -46,7 +46,7 @@ class UavTypeSerializer(KnownFieldsSerializer):
     updated_at = serializers.DateTimeField(read_only=True)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        """Figures that go together: the power of a hover and the mass and rotors that it holds up."""
+        """Check values that depend on each other: the hover power, and the mass and rotors that it supports."""
         stored = {} if self.instance is None else {key: getattr(self.instance, key) for key in PERFORMANCE_KEYS}
         figures = stored | {key: attrs[key] for key in PERFORMANCE_KEYS if key in attrs}
         if figures.get("battery_wh") and not figures.get("mass_kg") and not {"battery_wh", "mass_kg"}.isdisjoint(attrs):

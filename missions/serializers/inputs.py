@@ -1,4 +1,4 @@
-"""What comes in: UAVs, targets, options, plans and missions."""
+"""Request shapes: UAVs, targets, options, plans and missions."""
 
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -65,14 +65,14 @@ from workspace.models import Organisation
 
 
 class TaskSerializer(KnownFieldsSerializer):
-    """What is done at a target. Without `hold_s` the kind's own: 5 s to look, 10 s for photos, 30 s to hold."""
+    """What is done at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold."""
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
 
 
 class WindLayerSerializer(KnownFieldsSerializer):
-    """Wind at a height above ground; between two heights it is interpolated, beyond them it stays."""
+    """Wind at a height above ground: interpolated between two heights, constant beyond them."""
 
     altitude_agl_m = FiniteFloatField(min_value=0, max_value=MAX_WIND_M)
     speed_mps = FiniteFloatField(min_value=0, max_value=MAX_WIND_MPS)
@@ -80,7 +80,7 @@ class WindLayerSerializer(KnownFieldsSerializer):
 
 
 class ConditionsSerializer(KnownFieldsSerializer):
-    """The air that is flown through; without wind it is calm."""
+    """Wind and temperature during the flight; without wind it is calm."""
 
     wind = WindLayerSerializer(many=True, required=False)
     temperature_c = FiniteFloatField(min_value=-60, max_value=60, required=False, help_text="near the ground; missing: 15")
@@ -95,7 +95,7 @@ class ConditionsSerializer(KnownFieldsSerializer):
 
 
 class PerformanceFieldsSerializer(KnownFieldsSerializer):
-    """Battery, mass and airspeed; missing: the stored UAV's type's."""
+    """Battery, mass and airspeed; where missing, the stored UAV's type supplies them."""
 
     battery_wh = BetweenField(BATTERIES_WH, required=False, allow_null=True, help_text="of a full battery; null: its energy is not counted")
     mass_kg = BetweenField(MASSES_KG, required=False, allow_null=True, help_text="at take-off; null: the Iris's")
@@ -106,7 +106,7 @@ class PerformanceFieldsSerializer(KnownFieldsSerializer):
 
 
 class UavInputSerializer(PerformanceFieldsSerializer):
-    """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
+    """A UAV: a stored one by `id`, whose values the others override, or a new one by name and position."""
 
     id = serializers.IntegerField(required=False, allow_null=True)
     is_simulated = serializers.BooleanField(read_only=True, help_text="of the stored UAV; sent again it says nothing")
@@ -172,7 +172,7 @@ class TargetInputSerializer(KnownFieldsSerializer):
 
 
 class LostLinkSerializer(KnownFieldsSerializer):
-    """What UAVs do when their link is lost: go on, or hold for a while and return, or return to their start or the nearest rally point."""
+    """What UAVs do when their link is lost: go on, hold for a while and return, or return to their start or the nearest rally point."""
 
     behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
     rally_points = serializers.ListField(child=PositionField(), required=False, max_length=MAX_RALLY_POINTS)
@@ -180,7 +180,7 @@ class LostLinkSerializer(KnownFieldsSerializer):
 
 
 class LockListSerializer(serializers.ListSerializer):
-    """Counts before it looks at each: a target can be locked once, so that more than a plan may have are too many."""
+    """List of locks. It checks the count before the items: a target can be locked once, so more locks than targets of a plan are too many."""
 
     def to_internal_value(self, data: Any) -> list[dict[str, Any]]:
         most = settings.ROUTING_RULES.max_targets
@@ -193,7 +193,7 @@ class LockListSerializer(serializers.ListSerializer):
 
 
 class LockSerializer(KnownFieldsSerializer):
-    """Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route."""
+    """Targets that one UAV flies in this order without others between, optionally as the first or the last of its route."""
 
     uav = serializers.CharField(max_length=MAX_UAV_NAME_LENGTH, help_text="name of a UAV of the request")
     targets = serializers.ListField(
@@ -210,7 +210,7 @@ OBJECTIVES_IN_WORDS = "total: fewest metres; makespan: finish soonest; time: lea
 
 
 class OptionsSerializer(KnownFieldsSerializer):
-    """UAVs, targets and options, all optional: what a mission is made of."""
+    """UAVs, targets and options of a mission, all optional."""
 
     uavs = UavInputSerializer(many=True, required=False)
     targets = TargetInputSerializer(many=True, required=False)
@@ -265,7 +265,7 @@ class OptionsSerializer(KnownFieldsSerializer):
         return attrs
 
     def _uav_requests(self, uavs: list[dict[str, Any]]) -> tuple[UavRequest, ...]:
-        """Stored UAVs are those of the organisation in the serializer's context."""
+        """Return the UAV requests. Stored UAVs are those of the organisation in the serializer's context."""
         ids = [uav["id"] for uav in uavs if uav.get("id") is not None]
         stored: dict[int | None, Uav] = (
             {row.pk: row for row in uavs_of_organisation(self.context["organisation"]).filter(pk__in=ids)} if ids else {}
@@ -347,13 +347,13 @@ def _task(value: dict[str, Any]) -> Task:
 
 
 class PlanInputSerializer(OptionsSerializer):
-    """What is to be planned."""
+    """A planning request."""
 
     uavs = UavInputSerializer(many=True, allow_empty=False)
     targets = TargetInputSerializer(many=True, allow_empty=False)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        """Wishes that contradict each other are refused, and the organisation's bases come in where they are needed."""
+        """Refuse contradictory constraints, and add the organisation's bases where they are needed."""
         attrs = super().validate(attrs)
         request = plan_request(attrs)
         try:
@@ -365,16 +365,16 @@ class PlanInputSerializer(OptionsSerializer):
 
     @classmethod
     def read_request(cls, body: Any, organisation: Organisation) -> PlanRequest:
-        """Return what a body asks for. Raises ValidationError.
+        """Return the request of a body. Raises ValidationError.
 
-        A plan for a certain time is kept apart from what the organisation has in the air then.
+        A plan with a departure is deconflicted with the organisation's other flights of that time.
         """
         asked = plan_request(cls.read(body, organisation=organisation))
         return asked if asked.departs_at is None else replace(asked, organisation=organisation.pk)
 
 
 class GivenToMissionSerializer(OptionsSerializer):
-    """What other systems may keep with a mission."""
+    """Data that other systems may store with a mission."""
 
     external_id = ExternalIdField(help_text="another system's id, such as a work order's; several missions may have one")
     attributes = AttributesField(help_text="of other systems; a change replaces all of them")

@@ -1,4 +1,4 @@
-"""Requests whose fields are all known: a name that is mistyped is told instead of passed over."""
+"""Request serializers that refuse unknown fields, so that a mistyped name is reported instead of ignored."""
 
 import threading
 from collections.abc import Callable, Collection, Mapping
@@ -15,11 +15,11 @@ MAX_NAMED = 10
 MAX_REPORTED_LENGTH = 80
 UNKNOWN_NAMED = "unknown_fields_told"
 
-_of_thread = threading.local()  # `serializers`: by class, whose fields are made
+_of_thread = threading.local()  # `serializers`: by class, with their fields built
 
 
 class _Read(NamedTuple):
-    """A field that a body may name; `validate` is the serializer's own `validate_...` for it."""
+    """A field that a body may name; `validate` is the serializer's `validate_...` method for it."""
 
     field: serializers.Field
     validate: Callable[[Any], Any] | None
@@ -27,7 +27,7 @@ class _Read(NamedTuple):
 
 
 class KnownFieldsSerializer(serializers.Serializer):
-    """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only."""
+    """Refuses unknown fields and suggests the most similar known one; in long lists only for the first few."""
 
     refuses_other_fields = True
 
@@ -35,7 +35,7 @@ class KnownFieldsSerializer(serializers.Serializer):
     def read(cls, body: Any, **context: Any) -> Any:
         """Return the values of a request's body. Raises ValidationError.
 
-        A serializer's fields cost more to make than to read with: each thread makes those of a class once.
+        Building a serializer's fields costs more than reading with them, so each thread builds those of a class once.
         """
         known: dict[type, Any] = _of_thread.__dict__.setdefault("serializers", {})
         if cls not in known:
@@ -43,13 +43,13 @@ class KnownFieldsSerializer(serializers.Serializer):
         known[cls]._context = dict(context)
         try:
             return known[cls].run_validation(body)
-        except serializers.ValidationError:  # REST framework keeps some messages in the language in which a field first wrote them
+        except serializers.ValidationError:  # REST framework caches some messages in the language of their first use
             serializer = cls(data=body, context=dict(context))
             serializer.is_valid(raise_exception=True)
             return serializer.validated_data
 
     def to_internal_value(self, data: Any) -> Any:
-        """As REST framework's, but fields that the body does not name, and that need not be there, cost nothing."""
+        """Return the values as REST framework does, but spend no time on optional fields that the body does not name."""
         if not isinstance(data, Mapping):
             return super().to_internal_value(data)
         if not self._reads.keys() >= data.keys():
@@ -73,7 +73,7 @@ class KnownFieldsSerializer(serializers.Serializer):
         return values
 
     def run_validation(self, data: Any = empty) -> Any:
-        """As REST framework's, which looks for what is not there: no object is empty, and there are no validators of a whole one."""
+        """Validate as REST framework does, but skip its checks for empty values and whole-object validators, which do not occur here."""
         if not isinstance(data, dict):
             return super().run_validation(data)
         values = self.to_internal_value(data)

@@ -1,4 +1,4 @@
-"""When a mission or a plan may depart: what is asked, and the answer."""
+"""When a mission or a plan may depart: request and response."""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -29,7 +29,7 @@ class TimedWaypointSerializer(serializers.Serializer):
 
 
 class TimedRouteSerializer(serializers.Serializer):
-    """A plan's route; more of it may come along and is not read."""
+    """A plan's route; further fields are accepted and ignored."""
 
     end_action = serializers.ChoiceField(choices=END_ACTIONS)
     departs_s = serializers.FloatField(required=False)
@@ -89,7 +89,7 @@ class LegalWindowsInputSerializer(KnownFieldsSerializer):
 
 
 class TimeSpanSerializer(serializers.Serializer):
-    """From a moment up to but without another one."""
+    """A time span; its end is excluded."""
 
     to = serializers.DateTimeField()
 
@@ -112,7 +112,7 @@ class BlockingZoneSerializer(serializers.Serializer):
 
 
 class LegalWindowsSerializer(TimeSpanSerializer):
-    """Departures between two moments, the routes being flown as planned."""
+    """Permitted departures between two moments, with the routes flown as planned."""
 
     margin_s = serializers.FloatField(help_text="by so much before and after its times a zone counts")
     height_margin_m = serializers.FloatField(help_text="by so much below and above its limits a zone counts")
@@ -121,7 +121,7 @@ class LegalWindowsSerializer(TimeSpanSerializer):
 
 
 def legal_windows_json(found: LegalWindows, span: Span, uavs: list[int]) -> dict[str, Any]:
-    """uavs: for each route the index of its UAV."""
+    """Return legal windows as JSON. uavs: for each route the index of its UAV."""
     return _span_json(span) | {
         "margin_s": settings.ZONE_RULES.time_margin_s,
         "height_margin_m": settings.ZONE_RULES.height_margin_m,

@@ -1,4 +1,4 @@
-"""Waypoints changed by hand, and legs that are looked at while they are dragged."""
+"""Manually edited waypoints, and legs checked while they are dragged."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ MAX_AGL_M = 10_000.0
 
 
 class HandPointSerializer(KnownFieldsSerializer):
-    """A waypoint as it is wished."""
+    """A waypoint as requested."""
 
     position = PositionField()
     altitude_agl_m = FiniteFloatField(min_value=0, max_value=MAX_AGL_M)
@@ -55,7 +55,7 @@ class HandPointFlownSerializer(serializers.Serializer):
 
 
 class HandRouteFlownSerializer(serializers.Serializer):
-    """Every waypoint of the route as it would be flown, over hills more than are wished; as in the routes of a plan."""
+    """Every waypoint of the route as it would be flown, with those added over hills; as in the routes of a plan."""
 
     waypoints = WaypointSerializer(many=True)
     departs_s = serializers.FloatField()
@@ -67,7 +67,7 @@ class HandRouteFlownSerializer(serializers.Serializer):
 
 
 class HandLookSerializer(serializers.Serializer):
-    """What keeping these waypoints would say."""
+    """Result of checking these waypoints without saving them."""
 
     faults = serializers.DictField(child=serializers.CharField(), help_text="by place, `waypoints.3.altitude_agl_m` or `legs.2`")
     length_m = serializers.FloatField(allow_null=True, help_text="null, as all that follows, where the route cannot be flown at all")

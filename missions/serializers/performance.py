@@ -1,4 +1,4 @@
-"""What is wrong with a UAV's figures, in the reader's language."""
+"""Faults of a UAV's values, in the reader's language."""
 
 import math
 

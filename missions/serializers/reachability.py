@@ -1,4 +1,4 @@
-"""The question which assets can be inspected, and its answer."""
+"""Request and response of which assets can be inspected."""
 
 from typing import Any
 
@@ -14,11 +14,11 @@ from workspace.api import strict_serializers as serializers
 from workspace.api.fields import FiniteFloatField
 from workspace.jobs.serializers import Declared
 
-MAX_FLIGHTS = 100  # a UAV from a base is one
+MAX_FLIGHTS = 100  # a UAV from one base is one flight
 
 
 class ReachabilityInputSerializer(OptionsSerializer):
-    """UAVs where they stand, or each of them from each of some bases; when they depart, how they end, in which wind."""
+    """UAVs at their positions, or each of them from each of some bases; with departure, end action and wind."""
 
     uavs = UavInputSerializer(many=True, allow_empty=False)
     bases = serializers.ListField(
@@ -79,7 +79,7 @@ class ReachabilityReasonSerializer(serializers.Serializer):
 
 
 class ReachableAssetsSerializer(serializers.Serializer):
-    """Columns of equal length, sorted by id: of 200,000 assets a map then reads five lists of small numbers and no objects."""
+    """Columns of equal length, sorted by id: for 200,000 assets a map reads five lists of small numbers instead of objects."""
 
     ids = serializers.ListField(child=serializers.IntegerField())
     code = serializers.ListField(child=serializers.IntegerField(), help_text="0: can be inspected; n: the n-th of the reasons, from 1 on")

@@ -9,7 +9,7 @@ from missions.models import OfferState, ReplanOffer
 from workspace.api.reasons import WhySerializer
 from workspace.reason_texts import column_text, reasons_of_column, why_text
 
-REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked out once and decided once
+REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is computed once and decided once
 DECIDED = 3
 
 
@@ -44,7 +44,7 @@ class ReplanAskedSerializer(serializers.Serializer):
 
 
 def render_difference(difference: Mapping[str, Any]) -> dict[str, Any]:
-    """As services/replanning/difference.py has it, in the reader's language, and without what the offer was reckoned on."""
+    """Return the difference from services/replanning/difference.py in the reader's language, without the `basis` of its computation."""
     shown = {name: value for name, value in difference.items() if name != "basis"}
     if "uavs" in shown:
         shown["uavs"] = [{**entry, "why": why_text(entry.get("reasons", ()), entry["why"], "\n")} for entry in shown["uavs"]]

@@ -24,7 +24,7 @@ from workspace.reason_texts import why_text
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:
-    """A mission with all that belongs to it, as loaded by selectors.mission_of_organisation."""
+    """Return a mission with all its parts, as loaded by selectors.mission_of_organisation."""
     changes = uav_changes(mission.pk)
     causes = stale_causes(mission, changes)
     return {
@@ -65,10 +65,10 @@ def mission_json(mission: Mission) -> dict[str, Any]:
 def mission_summary(
     mission: ListedMission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]], *, has_other_uavs: bool
 ) -> dict[str, Any]:
-    """A line of the list, as loaded by list_selectors.mission_rows.
+    """Return a line of the list, as loaded by list_selectors.mission_rows.
 
-    `revision` is the ground's now, `drawing` what stands round it, `bases` as stale_selectors.bases_landed_at has them,
-    `has_other_uavs` as uav_change_selectors says.
+    `revision` is the current dataset version, `drawing` the surroundings, `bases` comes from stale_selectors.bases_landed_at,
+    `has_other_uavs` from uav_change_selectors.
     """
     return {
         "id": str(mission.pk),
@@ -97,7 +97,7 @@ def mission_summary(
 
 
 def _approval(mission: Mission) -> dict[str, Any] | None:
-    """With how many flights each UAV has, and how many of them it has flown."""
+    """Return the approval with the number of flights of each UAV, and how many of them it has flown."""
     found = None if mission.state in EDITABLE else approval_json(approval_in_force(mission))
     if found is not None:
         found["flights"] = [
@@ -155,7 +155,7 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
 
 
 def _plan(mission: Mission) -> dict[str, Any] | None:
-    """The stored plan in the shape in which the planner answers; null for a draft."""
+    """Return the stored plan in the shape of the planner's answer; None for a draft."""
     if mission.planned_at is None:
         return None
     sequence_of: dict[int | None, int] = {target.pk: target.sequence for target in mission.targets.all()}
@@ -193,7 +193,7 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
 
 
 def _lost_link_check_json(check: dict[str, Any] | None) -> dict[str, Any] | None:
-    """The stored check; one of an older version, which an approval may freeze, calls the return point `haven`."""
+    """Return the stored check. An older version, which an approval may have frozen, calls the return point `haven`."""
     if check is None:
         return None
     failed = [{("return_point" if name == "haven" else name): value for name, value in one.items()} for one in check["failed"]]

@@ -1,4 +1,4 @@
-"""Autopilots' own returns in the shapes of the API."""
+"""RTL behaviour of autopilots in the shapes of the API."""
 
 from rest_framework import serializers
 

@@ -13,7 +13,7 @@ from workspace.jobs.serializers import Declared
 
 
 class SelectionInputSerializer(OptionsSerializer):
-    """A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept."""
+    """A name, and targets as in a mission. UAVs, ties, locks, options, external ids and attributes are not saved."""
 
     uavs: Declared = None
     objective: Declared = None

@@ -1,4 +1,4 @@
-"""What goes out: plans and missions."""
+"""Response shapes: plans and missions."""
 
 from rest_framework import serializers
 
@@ -48,7 +48,7 @@ class HandSpeedSerializer(serializers.Serializer):
 
 
 class StraightSerializer(serializers.Serializer):
-    """The short of a route's explanation; the long is asked for: `GET /missions/{id}/explanation`, `POST /plans/why-route`."""
+    """Summary of a route's explanation; the full one comes from `GET /missions/{id}/explanation` and `POST /plans/why-route`."""
 
     straight_m = serializers.FloatField(help_text="from target to target as the crow flies, stretches along the line")
     more_m = serializers.FloatField(help_text="what is flown beyond that: along the lines, round zones and what stands tall")
@@ -114,7 +114,7 @@ class WarningSerializer(serializers.Serializer):
 
 
 class PlanLockSerializer(serializers.Serializer):
-    """A locked run, as it was asked for."""
+    """A locked run, as requested."""
 
     uav = serializers.CharField(help_text="name")
     targets = serializers.ListField(child=serializers.IntegerField(), help_text="indices in the order flown")
@@ -123,7 +123,7 @@ class PlanLockSerializer(serializers.Serializer):
 
 
 class WishSerializer(serializers.Serializer):
-    """What the locks cost: the plan less the plan that would be made without them."""
+    """Cost of the locks: this plan less the plan without them."""
 
     cost_m = serializers.FloatField(allow_null=True, help_text="of all routes; null where the two plans do not reach as many targets")
     cost_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time, level flight and tasks; null as before")
@@ -133,7 +133,7 @@ class WishSerializer(serializers.Serializer):
 
 
 class QualitySerializer(serializers.Serializer):
-    """How good a plan is: a bound that no plan can be better than, and how far above it this one is."""
+    """Quality of a plan: a bound that no plan can be better than, and this plan's gap above it."""
 
     lower_bound_m = serializers.FloatField(allow_null=True, help_text="of the total; null where the longest route counts")
     lower_bound_s = serializers.FloatField(allow_null=True, help_text="of the longest route or of all flying time, whichever counts")
@@ -157,14 +157,14 @@ class WindLayerOutputSerializer(serializers.Serializer):
 
 
 class ConditionsOutputSerializer(serializers.Serializer):
-    """The air that is flown through; without wind it is calm."""
+    """Wind and temperature during the flight; without wind it is calm."""
 
     wind = WindLayerOutputSerializer(many=True)
     temperature_c = serializers.FloatField()
 
 
 class NearestSerializer(serializers.Serializer):
-    """Where two UAVs come nearest to each other."""
+    """The closest approach of two UAVs."""
 
     metres = serializers.FloatField()
     vertical_m = serializers.FloatField(allow_null=True, help_text="null: a height is not known")
@@ -174,7 +174,7 @@ class NearestSerializer(serializers.Serializer):
 
 
 class UnresolvedSerializer(serializers.Serializer):
-    """Two flights that could not be kept apart, or with `times_not_known` one of another mission that nobody can keep clear of."""
+    """Two flights that could not be separated. With `times_not_known` one belongs to another mission whose times are unknown."""
 
     code = serializers.CharField(help_text="too_near, hovers_in_the_way or times_not_known; the latter has uavs and missions alone")
     uavs = serializers.ListField(child=serializers.CharField())
@@ -188,7 +188,7 @@ class UnresolvedSerializer(serializers.Serializer):
 
 
 class SeparationSerializer(serializers.Serializer):
-    """How the routes are kept apart: two UAVs are nowhere nearer than this at the same time."""
+    """Separation of the routes: the smallest distance of two UAVs at the same time."""
 
     lateral_m = serializers.FloatField()
     vertical_m = serializers.FloatField()
@@ -200,7 +200,7 @@ class SeparationSerializer(serializers.Serializer):
 
 
 class FailedReturnSerializer(serializers.Serializer):
-    """A waypoint from which a UAV that has lost its link cannot return as wished."""
+    """A waypoint from which a UAV with a lost link cannot return as requested."""
 
     route = serializers.IntegerField(help_text="index of the UAV")
     waypoint = serializers.IntegerField(help_text="its place in the route")
@@ -286,7 +286,7 @@ class LastRouteSerializer(serializers.Serializer):
 
 
 class LastPlanSerializer(serializers.Serializer):
-    """A plan that another one has replaced, to compare with."""
+    """The plan that the current one replaced, for comparison."""
 
     planned_at = serializers.DateTimeField()
     objective = serializers.ChoiceField(choices=Objective.choices)

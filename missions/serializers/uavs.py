@@ -31,8 +31,10 @@ FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
 
 
 class UavPropertiesSerializer(KnownFieldsSerializer):
-    """Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
-    `from_type` names it."""
+    """Range, speed, battery, mass, reserve and airspeed are the UAV's own. Where one is `null`, the response has its type's value, and
+
+    `from_type` names it.
+    """
 
     name = serializers.CharField(max_length=100)
     type = serializers.IntegerField(allow_null=True, required=False, min_value=1, max_value=2**63 - 1)
@@ -84,12 +86,14 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
 
 
 class UavFlatSerializer(UavPropertiesSerializer):
-    """A UAV as one object: its properties and `position`; a new one without it stands at its base. A GeoJSON Feature is taken too."""
+    """A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
+    too.
+    """
 
     position = PositionField(required=False)
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
-        """`type` and `base` become rows of the organisation in the context."""
+        """Resolve `type` and `base` to rows of the organisation in the context."""
         organisation = self.context["organisation"]
         faults: dict[str, str] = {}
         for field, name, rows in (("base", "base", bases_of_organisation), ("type", "uav_type", types_of_organisation)):
@@ -106,7 +110,7 @@ class UavFlatSerializer(UavPropertiesSerializer):
         return attrs
 
     def _performance_faults(self, attrs: dict[str, Any]) -> dict[str, str]:
-        """Figures that no UAV of its type has."""
+        """Return the values that are impossible for a UAV of its type."""
         stored = self.instance
         uav_type = attrs["uav_type"] if "uav_type" in attrs else getattr(stored, "uav_type", None)
         own = {name: attrs[name] if name in attrs else getattr(stored, name, None) for name in OWN_PERFORMANCE_KEYS}
@@ -178,9 +182,9 @@ def _own_or_of_type(uav: Uav, name: str) -> float | None:
 
 
 def flat_uav(data: Any) -> Any:
-    """A GeoJSON Feature as one flat object; anything else as it is, for the serializer to judge.
+    """Return a GeoJSON Feature as one flat object, and anything else unchanged for the serializer to validate.
 
-    What comes back in an answer may be sent again. Raises ValidationError for what a Feature of a UAV does not have.
+    A response may be sent back as a request. Raises ValidationError for fields that a Feature of a UAV does not have.
     """
     if not isinstance(data, dict) or data.get("type") != "Feature":
         return data

@@ -1,4 +1,4 @@
-"""Closing a mission: a person says why each open target is left, and then nothing of it is to be flown any more."""
+"""Closing a mission: a user states why each open target is left, and nothing of the mission is flown afterwards."""
 
 from collections.abc import Mapping
 
@@ -21,11 +21,12 @@ MAX_REASON_LENGTH = 300
 
 
 def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], expected_revision: int | None = None) -> Mission:
-    """Skip each open target, by its place in the mission, for the reason that is given of it, and end a mission that is on its way.
+    """Skip each open target, by its place in the mission, for the given reason, and end a mission that is on its way.
 
     It ends as completed where no target was open, else as aborted, or failed where a flight has failed. One that has ended already keeps
-    its state. UAVs that may hold a mission that was not started are told to drop it. Raises MissionChanged, or Refused: while a UAV of it
-    is in the air, where an open target has no reason, and where nothing is left to close.
+    its state. UAVs that may hold a mission that was not started get the command to clear it. Raises MissionChanged, or Refused: while one
+    of
+    its UAVs is in the air, where an open target has no reason, and where nothing is left to close.
     """
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)
@@ -52,7 +53,7 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
 
 
 def _in_the_air(held: Mission) -> list[RefusalReason]:
-    """UAVs with a route of the mission, as far as they do not fly another one by now."""
+    """Return reasons for UAVs in the air with a route of the mission, unless they fly another one by now."""
     own = held.mission_uavs.filter(uav__isnull=False, route__geometry__isnull=False).exclude(uav__in=busy_elsewhere(held))
     names = dict(own.values_list("uav", "name"))
     return [

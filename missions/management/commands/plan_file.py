@@ -1,4 +1,4 @@
-"""Plan missions of a file on a graph of a file, without database and queue."""
+"""Plan missions read from a file on a graph read from a file, without database and queue."""
 
 import argparse
 import json
@@ -47,5 +47,5 @@ class Command(BaseCommand):
 
     def _plans(self, graph: FileGraph, missions: list[Any], objective: Objective) -> list[bytes]:
         if missions:
-            plan_json(graph, missions[0], objective, perf_counter)  # loads what is compiled; planned again below
+            plan_json(graph, missions[0], objective, perf_counter)  # loads the compiled code; planned again below
         return [plan_json(graph, mission, objective, perf_counter) for mission in missions]

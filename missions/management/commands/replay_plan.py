@@ -1,4 +1,4 @@
-"""Make the plan of a context file again, without a database."""
+"""Plan again from a context file, without a database."""
 
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""Write what a mission's plan would be made from now to a file, for replay_plan."""
+"""Write the current planning context of a mission to a file, for replay_plan."""
 
 from pathlib import Path
 from typing import Any

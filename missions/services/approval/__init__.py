@@ -1,1 +1,1 @@
-"""Approval of a plan: its checks, and the document that is frozen."""
+"""Approval of a plan: its checks, and the frozen document."""

@@ -1,7 +1,7 @@
-"""Approving a plan and taking the approval back. An approved mission is frozen: what may be flown is what was approved, and nothing else.
+"""Approve a plan and revoke the approval. An approved mission is frozen: only what was approved may be flown.
 
-A revocation counts at once while nothing of the mission has left. Later it waits until every UAV that may hold the mission was seen
-without it: until then the approval is in force, so that no UAV flies what nobody answers for.
+A revocation takes effect at once while no part of the mission has been sent. Later it waits until every UAV that may hold the mission
+was read back without it. Until then the approval stays in force, so that no UAV flies an unapproved mission.
 """
 
 from functools import partial
@@ -51,12 +51,12 @@ def approve_mission(
     longest_leg_m: float | None = None,
     is_under_way: bool = False,
 ) -> Approval:
-    """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so.
+    """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason against flying it so.
 
-    What later apps ask for is not asked of one that takes over while UAVs are in the air, which cannot wait for a rehearsal, nor of one
-    that simulated twins alone fly.
+    The checks of later apps are skipped for a mission that takes over while UAVs are in the air, which cannot wait for a rehearsal, and for
+    one flown only by simulated twins.
 
-    With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
+    With `longest_leg_m` autopilots get extra points on each longer leg; the flown lines stay the same.
     """
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)
@@ -73,7 +73,7 @@ def approve_mission(
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
         approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
-        held.ground_revision = checked_revision  # which the routes have just been checked against
+        held.ground_revision = checked_revision  # the routes have just been checked against it
         held.targets.update(state=TargetState.PENDING, state_at=None, state_reason="", reached_at=None, held_s=None, visit_stored_at=None)
         held.routes.update(flights_flown=0, has_failed=False)
         facts: dict[str, Any] = {"approval": str(approval.pk), "sha256": approval.content_sha256}
@@ -83,15 +83,15 @@ def approve_mission(
 
 
 def _is_flown_by_twins(mission: Mission) -> bool:
-    """Whether it is a simulated copy as it was made: whoever gives it another UAV since has a mission like any other."""
+    """Whether it is an unmodified simulated copy. If a user gives it another UAV, it is an ordinary mission."""
     return mission.simulates_id is not None and not mission.mission_uavs.filter(Q(uav=None) | Q(uav__twin_of=None)).exists()
 
 
 def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revision: int | None = None) -> Approval:
-    """Take the approval back: the mission is planned again. Raises MissionChanged or Refused.
+    """Revoke the approval: the mission becomes planned again. Raises MissionChanged or Refused.
 
-    If UAVs may hold the mission, each is given the command to drop it, and the approval stays in force until all of them have; asked
-    again, it tells those once more that failed to. What is being flown is not revoked but aborted.
+    Each UAV that may hold the mission gets the command to clear it, and the approval stays in force until all have done so. A repeated call
+    sends the command again to those that failed. A mission that is being flown is aborted instead of revoked.
     """
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)
@@ -112,7 +112,7 @@ def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revi
 
 
 def finish_revocation(*, approval_id: UUID) -> bool:
-    """After a UAV was seen without the mission: end the approval if it was to be revoked and no UAV holds it any more."""
+    """End the approval after a readback without the mission, if it was to be revoked and no UAV holds it any more."""
     with transaction.atomic():
         mission_id = Approval.objects.values_list("mission", flat=True).get(pk=approval_id)
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
@@ -133,7 +133,7 @@ def _finish(held: Mission, approval: Approval) -> bool:
 
 
 def uavs_that_may_hold(approval: Approval) -> QuerySet[Uav]:
-    """To which some of it went, or may have gone, and of which nobody has seen since that they hold no mission or another one."""
+    """Return the UAVs to which some of the mission was or may have been sent and whose readback since shows no empty or other mission."""
     emptied_or_loaded = Q(kind=CommandKind.CLEAR_MISSION) | (Q(kind=CommandKind.UPLOAD_MISSION) & ~Q(approval=approval))
     later = UavCommand.objects.filter(emptied_or_loaded, uav=OuterRef("uav"), sequence__gt=OuterRef("sequence"), state=CommandState.APPLIED)
     went = UavCommand.objects.filter(~Exists(later), approval=approval, kind=CommandKind.UPLOAD_MISSION)
@@ -146,7 +146,7 @@ def _is_being_cleared(uav: Uav, approval: Approval) -> bool:
 
 
 def locked_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
-    """The row, held until the caller's transaction ends. Raises MissionChanged."""
+    """Return the row, locked until the caller's transaction ends. Raises MissionChanged."""
     held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
     if held.deleted_at is not None or (expected_revision is not None and held.revision != expected_revision):
         raise MissionChanged
@@ -154,13 +154,13 @@ def locked_mission(mission_id: UUID, expected_revision: int | None) -> Mission:
 
 
 def change_state(held: Mission, state: MissionState, actor: User | None, action: str, facts: dict[str, Any]) -> None:
-    """With its entry in the history, and word to live pages after the commit; the caller holds the row."""
+    """Change the state, write its history entry, and notify live pages after the commit; the caller holds the row."""
     before = {"state": str(held.state), "revision": held.revision}
     if state == MissionState.ACTIVE and held.started_at is None:
         held.started_at = timezone.now()
     if state in ENDED_STATES and held.state not in ENDED_STATES:
         held.ended_at = timezone.now()
-        held.targets.filter(state=TargetState.IN_PROGRESS).update(state=TargetState.PENDING, state_at=Now())  # nothing is after the end
+        held.targets.filter(state=TargetState.IN_PROGRESS).update(state=TargetState.PENDING, state_at=Now())  # none is after the end
     if state == MissionState.DISPATCHED and held.state != MissionState.DISPATCHED:
         give_call_sign(held)
     held.state, held.revision = state, held.revision + 1

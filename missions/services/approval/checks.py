@@ -1,4 +1,4 @@
-"""What speaks against flying a mission's routes as they are stored: looked at before it is approved, and again before it is sent."""
+"""Reasons against flying a mission's stored routes, checked before it is approved and again before it is sent."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -23,9 +23,9 @@ TOO_NEAR = {"too_near", "hovers_in_the_way"}
 
 
 def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = False) -> list[RefusalReason]:
-    """All of them, of a mission with routes as loaded by selectors.mission_of_organisation; empty where it may be flown.
+    """Return all reasons, for a mission with routes as loaded by selectors.mission_of_organisation; empty where it may be flown.
 
-    One that is under way has departed, and other missions have been kept apart from it.
+    A mission under way has departed, and other missions have been deconflicted with it, so departure and separation are skipped.
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     if not flown:
@@ -39,7 +39,7 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
 
 
 def _reversed_visits(mission: Mission) -> list[RefusalReason]:
-    """Separation leaves simulated twins out, so they fly the copies that were made for them and nothing else."""
+    """Return refusals for twins in real missions: separation ignores simulated twins, so they may fly only their own copies."""
     if mission.simulates_id is not None:
         return []
     twins = mission.mission_uavs.filter(uav__twin_of__isnull=False).values_list("sequence", "name")
@@ -49,7 +49,7 @@ def _reversed_visits(mission: Mission) -> list[RefusalReason]:
 
 @dataclass(frozen=True)
 class ApprovalCheck:
-    """What spoke against a mission, taken before its row is held: that may take seconds, for which no abort shall wait."""
+    """Reasons against a mission, computed before its row is locked: that may take seconds, and an abort must not wait for it."""
 
     mission_revision: int
     ground: int
@@ -57,13 +57,13 @@ class ApprovalCheck:
     reasons: tuple[RefusalReason, ...]
 
     def still_counts(self, held: Mission) -> bool:
-        """Whether neither the mission nor the ground was changed since. The caller holds the mission's row."""
+        """Whether neither the mission nor the map data have changed since. The caller holds the mission's row."""
         now = (held.revision, held.state == MissionState.ACTIVE)
         return now == (self.mission_revision, self.is_under_way) and self.ground == ground_revision()
 
 
 def check_approval(mission: Mission, *, now: datetime) -> ApprovalCheck | None:
-    """reasons_against, with the mission's revision and the ground's; None for one that has been put away."""
+    """Return reasons_against with the mission's revision and the dataset version; None for a deleted mission."""
     ground = ground_revision()
     try:
         loaded = mission_of_organisation(mission.organisation, mission.pk)
@@ -74,7 +74,7 @@ def check_approval(mission: Mission, *, now: datetime) -> ApprovalCheck | None:
 
 
 def valid_check(check: ApprovalCheck | None, held: Mission, *, now: datetime) -> ApprovalCheck:
-    """The look that was taken before the row was held, or a new one. Raises MissionChanged for a mission that has been put away."""
+    """Return the check made before the row was locked if it is still valid, else a new one. Raises MissionChanged for a deleted mission."""
     current = check if check is not None and check.still_counts(held) else check_approval(held, now=now)
     if current is None:
         raise MissionChanged
@@ -82,14 +82,14 @@ def valid_check(check: ApprovalCheck | None, held: Mission, *, now: datetime) ->
 
 
 def _departure(mission: Mission, now: datetime) -> Iterator[RefusalReason]:
-    """Zones and other missions were looked at for its time, with a margin."""
+    """Yield a reason if the departure has passed: zones and other missions were checked for its time, with a margin."""
     margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
     if mission.departs_at is not None and mission.departs_at + margin < now:
         yield RefusalReason("departure_past", _("Its departure is over. Plan it for another time."))
 
 
 def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[RefusalReason]:
-    """A height over an assumed ground is none for a real aircraft."""
+    """Yield a reason for each real UAV whose heights are relative to an assumed flat ground."""
     for route in routes:
         uav = route.mission_uav
         is_real = uav.uav is None or not uav.uav.is_simulated
@@ -99,7 +99,7 @@ def _height_references(mission: Mission, routes: Sequence[Route]) -> Iterator[Re
 
 
 def _ground(mission: Mission) -> Iterator[RefusalReason]:
-    """Zones, bases, assets and terrain as they are now, and what stands and hangs beside the routes."""
+    """Yield reasons from current zones, bases, assets and terrain, and from masts and wires beside the routes."""
     for cause in causes_on_the_routes(mission, uav_changes(mission.pk)):
         yield RefusalReason(f"{cause.what}_changed" if cause.what != "zone" else "zone", cause.message, cause.uav)
     routes = stored_routes(mission)

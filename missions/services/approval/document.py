@@ -1,6 +1,6 @@
-"""What an approval freezes: one document with the routes, what they were checked against, and the items that UAVs are given.
+"""The document that an approval freezes: the routes, what they were checked against, and the items sent to UAVs.
 
-It is written in one canonical form, whose SHA-256 names it. What is sent to a UAV is read from it and from nothing else.
+It is written in a canonical form, whose SHA-256 names it. Everything sent to a UAV is read from it.
 """
 
 import hashlib
@@ -36,7 +36,7 @@ VERSION = 1
 
 
 def approved_targets(mission: Mission) -> list[dict[str, Any]]:
-    """`geometry` is GeoJSON of the whole asset: a bridge's outline, a line's course."""
+    """Return the targets as approved; `geometry` is GeoJSON of the whole asset: a bridge's outline, a line's course."""
     targets = list(mission.targets.all())
     assets = {target.asset_id for target in targets if target.asset_id is not None}
     shapes = Asset.objects.filter(pk__in=assets).annotate(shape=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
@@ -63,13 +63,13 @@ def approved_targets(mission: Mission) -> list[dict[str, Any]]:
 
 
 def content_sha256(document: Any) -> str:
-    """Of the canonical form, which is the same before and after the database has kept the document."""
+    """Return the SHA-256 of the canonical form, which is the same before and after the database has stored the document."""
     text = json.dumps(_canonical(document), sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _canonical(value: Any) -> Any:
-    """A whole number is written as one: the database does not keep how it was written, nor the sign of zero."""
+    """Return the value with whole floats as integers: the database keeps neither their notation nor the sign of zero."""
     if isinstance(value, dict):
         return {str(key): _canonical(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
@@ -80,9 +80,9 @@ def _canonical(value: Any) -> Any:
 
 
 def approval_document(mission: Mission, *, longest_leg_m: float | None = None) -> dict[str, Any]:
-    """Of a planned mission, as loaded by selectors.mission_of_organisation. Raises Refused for routes that a UAV cannot be given.
+    """Return the document of a planned mission, as loaded by selectors.mission_of_organisation.
 
-    With `longest_leg_m` an autopilot's items have points put in on each leg that is longer.
+    Raises Refused for routes that cannot be sent to a UAV. With `longest_leg_m` an autopilot's items get points on each longer leg.
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     return {
@@ -114,7 +114,7 @@ def approval_document(mission: Mission, *, longest_leg_m: float | None = None) -
 
 
 def frozen_route(route: Route, mission: Mission) -> FrozenRoute:
-    """A stored route in plain values. Its first waypoint stands above the take-off, if it does not begin in the air."""
+    """Return a stored route in plain values. Its first waypoint is above the take-off unless the route begins in the air."""
     waypoints = list(route.waypoints.all())
     first, uav = waypoints[0], route.mission_uav
     ground_m = None if first.altitude_amsl_m is None else round(first.altitude_amsl_m - first.altitude_agl_m, 2)
@@ -194,7 +194,7 @@ def _loads(
 
 
 def _flights(route: FrozenRoute, own: list[FlightLoad] | None) -> list[dict[str, Any]]:
-    """With what each flight is flown from: items for an autopilot, the flight in plain values for a companion computer."""
+    """Return each flight with what it is flown from: items for an autopilot, the flight in plain values for a companion computer."""
     loads = [None] * len(route.flights) if own is None else own
     found = []
     for flight, load in zip(route.flights, loads, strict=True):
@@ -213,7 +213,7 @@ def _flights(route: FrozenRoute, own: list[FlightLoad] | None) -> list[dict[str,
 
 
 def _zones(routes: list[Route]) -> list[dict[str, Any]]:
-    """Those beside or across the routes at whatever height and time, each with what it says."""
+    """Return the zones beside or across the routes at any height and time, each with its limits."""
     table, margins = zone_table(), zone_margins()
     found: dict[int, dict[str, Any]] = {}
     for route in routes:

@@ -1,4 +1,4 @@
-"""What an autopilot is given beside its route: zones around it that it keeps out of by itself, and where it may land without a link."""
+"""What an autopilot gets beside its route: a fence of nearby zones, and rally points for a lost link."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ from planning.request import lost_link_from_json
 
 
 def zones_beside(route: Route, departs_s: float | None) -> list[FenceZone]:
-    """Zones that reach down to the flight's heights and are in force while it lasts; one of several parts is several.
+    """Return the zones that reach down to the flight's heights and are in force during it; each part of a zone is an entry of its own.
 
     departs_s: the mission's departure, in seconds since the epoch; None: every zone counts as in force.
     """
@@ -34,7 +34,10 @@ def zones_beside(route: Route, departs_s: float | None) -> list[FenceZone]:
 
 
 def rally_points(mission: Mission, place: int) -> list[tuple[LonLat, float]]:
-    """Where the UAV of this place may go, at the height above its start at which the way there was checked; none if it is to go on."""
+    """Return the rally points of the UAV at this place, each with the height above its start at which the path was checked.
+
+    Returns none if the UAV is to go on without a link.
+    """
     lost_link = lost_link_from_json(mission.lost_link)
     if lost_link.behaviour is LostLink.GO_ON:
         return []

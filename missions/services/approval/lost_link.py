@@ -1,4 +1,4 @@
-"""From where on their stored routes UAVs that lose their link could not do what is asked for."""
+"""Where on stored routes the lost-link action could not be done."""
 
 from typing import Any
 
@@ -11,9 +11,9 @@ from planning.request import PlanRequest
 
 
 def lost_link_of_stored(mission: Mission, request: PlanRequest) -> dict[str, Any] | None:
-    """The check for the stored routes of a mission, with the zones of now; None where there are none, or their times are not known.
+    """Return the check of a mission's stored routes with the current zones; None where it has no routes or their times are unknown.
 
-    request: what the mission holds. Raises NoGraph.
+    request: the mission's stored request. Raises NoGraph.
     """
     routes = stored_routes(mission)
     if routes is None:

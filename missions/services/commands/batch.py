@@ -1,4 +1,4 @@
-"""Commands to several UAVs of missions at once: one request, answered UAV by UAV."""
+"""Commands to several UAVs of missions at once: one request with one answer per UAV."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,12 +18,12 @@ from missions.services.commands.steering import command_uav
 from workspace.models import User
 
 BATCH_KINDS = frozenset({CommandKind.PAUSE, CommandKind.RESUME, CommandKind.HOLD, CommandKind.RETURN, CommandKind.LAND})
-REACHABLE = (*ON_ITS_WAY, MissionState.ABORTED, MissionState.FAILED)  # UAVs of an aborted mission may be on their way home
+REACHABLE = (*ON_ITS_WAY, MissionState.ABORTED, MissionState.FAILED)  # UAVs of an aborted mission may be returning
 
 
 @dataclass(frozen=True)
 class Scope:
-    """Whom a batch is for: UAVs of a mission by their ids; None for all with a route of it sent or in flight."""
+    """The UAVs that a batch is for: UAVs of a mission by their ids; None for all with a route of it sent or in flight."""
 
     mission: Mission
     uavs: Collection[int] | None = None
@@ -31,9 +31,9 @@ class Scope:
 
 @dataclass(frozen=True)
 class UavAnswer:
-    """What became of a batch for one UAV: a command, or reasons why it was given none.
+    """Outcome of a batch for one UAV: a command, or the reasons why it got none.
 
-    `name` is empty for a UAV that the organisation does not have, `place` None for one that flies nothing of the mission.
+    `name` is empty for a UAV that the organisation does not have, `place` None for one without a route of the mission.
     """
 
     mission: UUID
@@ -51,11 +51,11 @@ class UavAnswer:
 def command_missions(
     *, scopes: Sequence[Scope], kind: CommandKind, actor: User, why: str = "", ways: Mapping[int, dict[str, Any]] | None = None
 ) -> list[UavAnswer]:
-    """Give UAVs of these missions a command, all in one transaction: a refusal of one is none of the others.
+    """Give UAVs of these missions a command in one transaction: a refusal for one UAV does not affect the others.
 
-    Reached are UAVs with a route sent or in flight in the mission that is named, and no others. ways: how UAVs, by their ids, return, as
-    parameters of a return have it. Raises Refused for a kind that is not in BATCH_KINDS, for ways of another kind than a return, and
-    where nobody is named and no mission has a UAV to reach.
+    Only UAVs with a route of the named mission sent or in flight get it. ways: for UAV ids, the parameters of a return. Raises Refused for
+    a
+    kind that is not in BATCH_KINDS, for `ways` of another kind than a return, and where no UAV is named and no mission has a UAV to reach.
     """
     if kind not in BATCH_KINDS:
         raise refuse("no_batch", _("This command is given to one UAV at a time."))
@@ -70,7 +70,7 @@ def command_missions(
 
 
 def _hold(scopes: Sequence[Scope], kind: CommandKind) -> None:
-    """Rows in the order mission, UAV; what stops a UAV waits for nobody who holds its mission."""
+    """Lock rows in the order mission, UAV; a command that stops a UAV does not wait for a holder of its mission."""
     missions = sorted({scope.mission.pk for scope in scopes})
     if kind in SETS_IN_MOTION:
         list(Mission.objects.select_for_update(no_key=True).filter(pk__in=missions).order_by("pk").values_list("pk"))

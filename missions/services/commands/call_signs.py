@@ -1,4 +1,4 @@
-"""What tells UAVs of several missions apart on live pages: the number before their letters, and their colours."""
+"""What distinguishes UAVs of several missions on live pages: the number before their letters, and their colours."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -16,9 +16,9 @@ ROUTE_COLOURS = 8  # of static/css/tokens.css
 
 
 def give_call_sign(mission: Mission) -> None:
-    """Set the number and the colours of a mission that is sent to UAVs, which the caller saves; one mission at a time takes them.
+    """Set the number and the colours of a mission that is sent to UAVs; the caller saves it. A lock serialises missions of an organisation.
 
-    The number is the smallest that no other mission has which live pages of the organisation show.
+    The number is the smallest that no other mission on the organisation's live pages has.
     """
     lock_until_end(CALL_NUMBERS_LOCK, mission.organisation_id)
     is_shown = Q(state__in=[MissionState.DISPATCHED, MissionState.ACTIVE]) | Q(ended_at__gt=timezone.now() - SHOWN_AFTER_END)
@@ -32,15 +32,15 @@ def give_call_sign(mission: Mission) -> None:
 
 
 def colour_of(place: int, colours: Sequence[int]) -> int:
-    """Return the number of the colour of a UAV by its place in a mission with these colours, or with none yet."""
+    """Return the colour number of a UAV by its place in a mission with these colours, or with none yet."""
     return colours[place % ROUTE_COLOURS] if colours else place % ROUTE_COLOURS + 1
 
 
 def colours_by_place(own: Sequence[tuple[int, int | None]], shown: Sequence[tuple[int | None, int]]) -> list[int]:
     """Return the colours of places 0 to 7 of a mission, numbers from 1; a ninth UAV has that of the first.
 
-    own: places that fly, and their UAVs; shown: UAVs of other missions, and their colours. A UAV that is shown already keeps its colour;
-    else it has that of its place, or where another UAV has that one, the next that the fewest have.
+    own: places that fly, and their UAVs; shown: UAVs of other missions, and their colours. A UAV that is shown already keeps its colour.
+    Another gets that of its place, or if another UAV has that one, the next one with the fewest uses.
     """
     flying = {place: uav for place, uav in own if place < ROUTE_COLOURS}
     known = {uav: colour for uav, colour in shown if uav is not None}

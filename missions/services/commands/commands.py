@@ -1,6 +1,6 @@
-"""Commands to UAVs, and what becomes of missions when they are carried out.
+"""Commands to UAVs, and their effects on missions.
 
-Whoever carries commands works with this module; the rows themselves are kept by `outbox`.
+The dispatcher works with this module; `outbox` keeps the rows.
 """
 
 from uuid import UUID
@@ -52,17 +52,17 @@ __all__ = [
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: Why = (), warnings: Why = ()) -> bool:
-    """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked.
+    """Record that the vehicle did the command. A start makes its mission active; the last clearing completes a revocation.
 
-    Of what hands a UAV over to another mission the next step is given, and after what it does before it returns, the return.
+    A step of a route swap is followed by the next one, and a command with THEN_RETURN by the return.
     """
     with transaction.atomic():
         command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id", "parameters").filter(pk=command_id).first()
         if command is not None and command.mission_id is not None:
-            Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=command.mission_id)  # missions are held before commands
+            Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=command.mission_id)  # lock missions before commands
         if not outbox.note_applied(command_id, attempt=attempt, holder=holder, note=note, warnings=warnings):
             return False
-        assert command is not None  # noqa: S101 - it has just been written to
+        assert command is not None  # noqa: S101 - the call above wrote to it
         if command.kind == CommandKind.START and command.mission_id is not None:
             mark_started(mission_id=command.mission_id, uav_id=command.uav_id)
         if command.kind == CommandKind.CLEAR_MISSION and command.approval_id is not None:

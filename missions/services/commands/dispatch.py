@@ -1,4 +1,4 @@
-"""Sending an approved mission to its UAVs, one flight at a time, and aborting one that is on its way."""
+"""Send an approved mission to its UAVs, one flight at a time, and abort one that is on its way."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -40,12 +40,12 @@ UNSUCCESSFUL = (MissionState.FAILED, MissionState.ABORTED)
 
 
 class DamagedApproval(Exception):
-    """The document is not the one that was approved: its hash is another one."""
+    """Raised when a document's hash differs from the approved one."""
 
 
 @dataclass(frozen=True)
 class ApprovedLoad:
-    """What one flight of a UAV is flown from, as it was approved.
+    """The approved content of one flight of a UAV.
 
     `load` is None for a UAV with a companion computer, which flies from `content`: the flight in plain values. `flight` counts from 1 to
     `flights`; `waypoints` are the places in the route that belong to it. `content_sha256` names exactly this load.
@@ -67,7 +67,7 @@ class ApprovedLoad:
 def dispatch_mission(
     *, mission: Mission, actor: User, expected_revision: int | None = None, place: int | None = None, flight: int = 1, why: str = ""
 ) -> list[UavCommand]:
-    """Queue the approved routes for their UAVs: those whose first flight is not on the UAV or on its way, or one UAV's flight.
+    """Queue the approved routes whose first flight is neither onboard nor on its way, or one flight of one UAV.
 
     `place` is the UAV's in the mission. Raises MissionChanged or Refused.
     """
@@ -105,10 +105,10 @@ def dispatch_mission(
 
 
 def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision: int | None = None) -> list[UavCommand]:
-    """End a mission that is on its way: every UAV that may hold it is told, before anything else. Raises MissionChanged or Refused.
+    """End a mission that is on its way: every UAV that may hold it gets an abort, before anything else. Raises MissionChanged or Refused.
 
-    One that was not started yet is also taken off the UAVs. One that has ended is aborted again as long as a UAV may hold it that flies
-    nothing else: what was said of its flights, and whether an earlier abort was heard, may be wrong.
+    A mission that was not started is also cleared from the UAVs. An ended one is aborted again while a UAV that flies nothing else may hold
+    it: reports on its flights or on the delivery of an earlier abort may be wrong.
     """
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)
@@ -136,14 +136,14 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
 
 
 def busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
-    """UAVs that fly a route of another mission."""
+    """Return UAVs that fly a route of another mission."""
     others = MissionUav.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
     others = others.filter(route__continued_by=None)
     return others.exclude(mission=mission).filter(uav__isnull=False).values("uav")
 
 
 def load_of(command: UavCommand) -> ApprovedLoad:
-    """What an upload brings onto the UAV, or what a start is to find there; from the approval's document and from nothing else.
+    """Return what an upload puts on the UAV, or what a start expects there, read only from the approval's document.
 
     Raises DamagedApproval.
     """
@@ -154,7 +154,7 @@ def load_of(command: UavCommand) -> ApprovedLoad:
 
 
 def approved_load(approval: Approval, *, uav_id: int, flight: int) -> ApprovedLoad:
-    """Raises DamagedApproval, or LookupError for a UAV or flight that the approval has not."""
+    """Return the load of a UAV's flight. Raises DamagedApproval, or LookupError for a UAV or flight that the approval does not have."""
     route = next(route for route in _sound_document(approval)["routes"] if route["uav"] == uav_id)
     flights = route["flights"]
     own = flights[flight - 1]
@@ -181,7 +181,7 @@ def _sound_document(approval: Approval) -> dict[str, Any]:
 
 
 def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[RefusalReason]:
-    """Whether each is a UAV of the fleet that does nothing else."""
+    """Return reasons for routes whose UAV is not in the fleet, appears twice, or is busy."""
     reasons = []
     named = [route["uav"] for route in routes]
     for route in routes:
@@ -205,7 +205,7 @@ def _uav_reasons(mission: Mission, routes: list[dict[str, Any]]) -> list[Refusal
 
 
 def _link_reasons(routes: list[dict[str, Any]]) -> list[RefusalReason]:
-    """Items are made for autopilots, routes for companion computers: who changed since must be approved anew."""
+    """Return reasons for UAVs whose link kind changed: items are for autopilots, routes for companions, so they need a new approval."""
     links = dict(Uav.objects.filter(pk__in=[route["uav"] for route in routes]).values_list("pk", "link"))
     words = _("%(uav)s is connected otherwise than when it was approved. Revoke, and approve it again.")
     return [
@@ -217,13 +217,13 @@ def _link_reasons(routes: list[dict[str, Any]]) -> list[RefusalReason]:
 
 
 def _is_on_its_way(approval: Approval, uav_id: int) -> bool:
-    """Whether the last word about the UAV's mission is an upload of this approval that has arrived or is under way."""
+    """Whether the UAV's latest mission command is an upload of this approval that is open or applied."""
     upload = upload_of(approval, uav_id)
     return upload is not None and (upload.state in OPEN_COMMANDS or upload.state == CommandState.APPLIED)
 
 
 def _flight_reasons(mission: Mission, approval: Approval, route: dict[str, Any], flight: int) -> list[RefusalReason]:
-    """Flights follow each other, and nothing is sent to a UAV that is flying one: a refused upload in flight changes its route."""
+    """Return reasons by flight order; nothing is sent to a UAV in flight, as even a refused upload changes its route."""
     flown, has_failed = mission.routes.filter(mission_uav__sequence=route["place"]).values_list("flights_flown", "has_failed").get()
     started = approval.commands.filter(uav=route["uav"], kind=CommandKind.START, state=CommandState.APPLIED)
     values, place = {"uav": route["name"]}, route["place"]

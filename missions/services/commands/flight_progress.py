@@ -1,7 +1,6 @@
-"""A mission on its way: what telemetry has seen of it, from the start of the first UAV to the end of the last flight.
+"""A mission's progress as seen by telemetry, from the start of the first UAV to the end of the last flight.
 
-Telemetry decides what has happened and calls these. Each may be called again with the same: nothing changes twice, and what comes late,
-after a mission has ended, changes nothing.
+Telemetry decides what has happened and calls these functions. Repeated calls change nothing, nor do calls after a mission has ended.
 """
 
 from datetime import datetime
@@ -22,8 +21,8 @@ from workspace.live.changes import publish_live
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
 SETTLED = (TargetState.COMPLETE, TargetState.SKIPPED, TargetState.FAILED)
-FLIGHT_FAILED = "flight-failed"  # why a target has failed of which nobody reported anything
-NOT_REACHED, NOT_HELD = "not-reached", "not-held"  # why one was skipped that the vehicle counted as passed
+FLIGHT_FAILED = "flight-failed"  # reason of a target that failed without a report
+NOT_REACHED, NOT_HELD = "not-reached", "not-held"  # reasons of a skipped target that the vehicle counted as passed
 
 
 class FlightEnd(StrEnum):
@@ -32,7 +31,7 @@ class FlightEnd(StrEnum):
 
 
 def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
-    """A UAV flies its part. Returns whether the mission became active by it."""
+    """Record that a UAV flies its part. Returns whether the mission became active by it."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state != MissionState.DISPATCHED:
@@ -42,7 +41,7 @@ def mark_started(*, mission_id: UUID, uav_id: int) -> bool:
 
 
 def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> None:
-    """A UAV is at a waypoint of its route, by its place in it: the target there is in progress, those before it are done."""
+    """Record that a UAV is at a waypoint, by its place in the route: the target there is in progress, those before it are complete."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state not in ON_ITS_WAY:
@@ -58,7 +57,7 @@ def mark_waypoint_reached(*, mission_id: UUID, uav_id: int, waypoint: int) -> No
 
 
 def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
-    """What a UAV reports of a target, by its place in the mission, is the last word on it: complete, skipped or failed."""
+    """Set the final state of a target, by its place in the mission, from a UAV's report: complete, skipped or failed."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         if held.state in {MissionState.DRAFT, MissionState.PLANNED, MissionState.APPROVED}:
@@ -68,7 +67,7 @@ def mark_target(*, mission_id: UUID, target: int, state: TargetState) -> bool:
 
 
 def mark_missed(*, mission_id: UUID, target: int, reason: str) -> bool:
-    """Where a UAV was shows that a target, by its place in the mission, was not done, though it counts as passed: it is skipped.
+    """Skip a target, by its place in the mission, that counts as passed although the UAV's track shows it was not done.
 
     reason: NOT_REACHED or NOT_HELD. Returns whether it counted as complete before.
     """
@@ -79,7 +78,7 @@ def mark_missed(*, mission_id: UUID, target: int, reason: str) -> bool:
 
 
 def store_visit(*, mission_id: UUID, target: int, reached_at: datetime | None, held_s: float) -> bool:
-    """Keep when a settled target, by its place in the mission, was reached (None: never) and for how many seconds its UAV can have stayed.
+    """Store when a settled target, by its place in the mission, was reached (None: never) and the most seconds its UAV can have stayed.
 
     Returns whether that is new.
     """
@@ -90,11 +89,11 @@ def store_visit(*, mission_id: UUID, target: int, reached_at: datetime | None, h
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:
-    """A UAV is down after its flight, from 1 on. The mission has ended once its last UAV is down for good.
+    """Record the end of a UAV's flight, counted from 1. The mission ends with the last flight of its last UAV.
 
-    It is completed with the last flight of the last UAV. A flight that failed is the end of its route and of no other: others fly on, and
-    are paused and aborted as before; then the mission has failed. Targets on a flown route that nothing else was said of are complete,
-    those on one that failed have failed. A route that another mission continues has ended by that. Returns the mission's state.
+    A failed flight ends its own route only: others fly on, and are paused and aborted as before; the mission then fails, else it is
+    completed. Targets on a flown route without another report are complete, those on a failed one have failed. A route that another mission
+    continues has ended. Returns the mission's state.
     """
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
@@ -117,12 +116,15 @@ def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: Flight
 
 
 def end_if_over(held: Mission) -> None:
-    """After routes were taken over by another mission; the caller holds the row."""
+    """End the mission if another one took over its remaining routes; the caller holds the row."""
     _end_with_the_last(held, _flights(held))
 
 
 def _end_with_the_last(held: Mission, flights: dict[int, int]) -> None:
-    """flights: how many each UAV has to fly. A flight that failed makes it failed; else it is aborted where a route was taken over."""
+    """End the mission if all routes ended: failed if a flight failed, aborted if a route was taken over, else completed.
+
+    flights: the number of flights of each UAV.
+    """
     routes = {route.mission_uav.uav_id: route for route in held.routes.filter(geometry__isnull=False).select_related("mission_uav")}
     failed = sorted(uav for uav in flights if uav in routes and routes[uav].has_failed)
     continued = sorted(uav for uav in flights if uav in routes and routes[uav].continued_by_id is not None)
@@ -144,7 +146,7 @@ def _settle(held: Mission, route: Route, state: TargetState) -> None:
 
 
 def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState, reason: str = "") -> bool:
-    """Whether there were any. Live pages are told after the commit."""
+    """Return whether any targets were updated. Live pages are notified after the commit."""
     if not targets.update(state=state, state_at=Now(), state_reason=reason):
         return False
     transaction.on_commit(partial(publish_live, held.organisation_id))
