@@ -30,7 +30,7 @@ from workspace.audit import record_change
 
 
 class _FleetAdmin(HistoryAdmin):
-    """Admin whose changes count as changes on the fleet page: they enter the history and conflict with older open copies of the row."""
+    """Admin whose changes count as changes on the fleet page: they increment the revision and enter the history."""
 
     def save_model(self, request: HttpRequest, obj: Any, form: Any, change: bool) -> None:
         if change:
@@ -50,7 +50,7 @@ class UavAdmin(_FleetAdmin):
     list_filter = ["state", "link", "is_simulated", "allows_unsigned", "uav_type", "base_name", "end_action", "organisation"]
     list_select_related = ["uav_type", "organisation"]
     search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
-    readonly_fields = [
+    readonly_fields = [  # the fleet page changes the first ones, as it protects UAVs in flight
         "state", "link", "mavlink_system_id", "allows_unsigned", "is_simulated", "is_demo",
         "autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at",
     ]  # fmt: skip

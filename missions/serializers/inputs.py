@@ -180,7 +180,7 @@ class LostLinkSerializer(KnownFieldsSerializer):
 
 
 class LockListSerializer(serializers.ListSerializer):
-    """List of locks. It checks the count before the items: a target can be locked once, so more locks than targets of a plan are too many."""
+    """List of locks. It checks the count before the items: a target can be locked once, so a plan has at most as many locks."""
 
     def to_internal_value(self, data: Any) -> list[dict[str, Any]]:
         most = settings.ROUTING_RULES.max_targets

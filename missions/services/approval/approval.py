@@ -133,7 +133,7 @@ def _finish(held: Mission, approval: Approval) -> bool:
 
 
 def uavs_that_may_hold(approval: Approval) -> QuerySet[Uav]:
-    """Return the UAVs to which some of the mission was or may have been sent and whose readback since shows no empty or other mission."""
+    """Return the UAVs to which some of the mission was or may have been sent, unless a later clearing or other upload was applied."""
     emptied_or_loaded = Q(kind=CommandKind.CLEAR_MISSION) | (Q(kind=CommandKind.UPLOAD_MISSION) & ~Q(approval=approval))
     later = UavCommand.objects.filter(emptied_or_loaded, uav=OuterRef("uav"), sequence__gt=OuterRef("sequence"), state=CommandState.APPLIED)
     went = UavCommand.objects.filter(~Exists(later), approval=approval, kind=CommandKind.UPLOAD_MISSION)
