@@ -1,4 +1,4 @@
-"""Large plans, solved by a worker with an ear for the user who wants to stop; and the end of commands that nobody wants any more."""
+"""Tasks: large plans in a worker that users can stop, offers, and the expiry of commands."""
 
 from collections.abc import Callable
 
@@ -22,11 +22,11 @@ from workspace.tasks import send_job
 
 SOFT_LIMIT_S = 540
 HARD_LIMIT_S = 600
-SHARES_OF_A_SEARCH = 10  # that one way of several gets: somebody waits while UAVs fly
+SHARES_OF_A_SEARCH = 10  # one of several searches gets this part of the time: a user waits while UAVs fly
 
 
 def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
-    """Take the job, do it, and write down how it ended. Safe to run twice: a job is held by one worker, and finished once."""
+    """Take the job, do it, and store how it ended. Safe to run twice: a job is held by one worker, and finished once."""
     job = start_job(job_id=job_id)
     if job is None:
         return
@@ -50,7 +50,7 @@ def _work(job_id: str, do: Callable[[Job, JobWatch], None]) -> None:
     except SoftTimeLimitExceeded:
         fail_job(job=job, code="took_too_long", message=Reason("no_plan_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except DATABASE_UNAVAILABLE:
-        raise  # the lease runs out, and the job is taken up again
+        raise  # the lease runs out, and the job is retried
     except Exception:
         fail_job(job=job, code="internal", message=Reason("planner_failed"))
         raise
@@ -69,7 +69,7 @@ def _end_message(watch: JobWatch) -> Reason:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def solve_plan(job_id: str) -> None:
-    """A plan that is not stored: it becomes the job's result. Stopped on the way, it is the best plan found until then."""
+    """Make a plan that becomes the job's result and is not stored. If stopped, the result is the best plan found until then."""
 
     def do(job: Job, watch: JobWatch) -> None:
         plan = services.make_plan(
@@ -85,7 +85,9 @@ def solve_plan(job_id: str) -> None:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def plan_mission(job_id: str) -> None:
-    """A mission's plan, stored if the mission is still the one that was asked for; stopped on the way, the best found until then."""
+    """Plan a mission, and store the plan if the mission is unchanged since the request. If stopped, store the best
+    plan found until then.
+    """
 
     def do(job: Job, watch: JobWatch) -> None:
         services.plan_mission_for_job(
@@ -101,7 +103,7 @@ def plan_mission(job_id: str) -> None:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def replan_mission(job_id: str) -> None:
-    """What is left of a mission that flies, planned anew and offered."""
+    """Plan the rest of a flying mission again and offer the result."""
 
     def do(job: Job, watch: JobWatch) -> None:
         replanning.work_out_for_job(
@@ -113,7 +115,7 @@ def replan_mission(job_id: str) -> None:
 
 @shared_task(time_limit=60, soft_time_limit=55)
 def look_after_offers() -> None:
-    """Marks offers outdated, looks for zones that have come across routes, and sends the jobs of what services have suggested."""
+    """Mark offers outdated, find zones that cross routes, and send the jobs of suggested offers."""
     replanning.settle_offers()
     replanning.suggest_for_zones()
     for job in Job.objects.filter(task=replanning.REPLAN, state=JobState.QUEUED, attempts=0, lease_expires_at=None):

@@ -1,4 +1,4 @@
-"""Addresses of planning, missions and UAVs under /api/v1/."""
+"""URLs of planning, missions and UAVs under /api/v1/."""
 
 from django.urls import path
 

@@ -1,4 +1,4 @@
-"""What is remembered of a plan when the next one takes its place: enough to compare the two, and to draw the old strips."""
+"""Summary of a replaced plan: enough to compare it with the next one and to draw its strips."""
 
 from itertools import accumulate, pairwise
 from typing import Any
@@ -14,7 +14,7 @@ OFF_NETWORK = {WaypointKind.START, WaypointKind.END}
 
 
 def summary_of_plan(*, mission: Mission) -> dict[str, Any] | None:
-    """The mission's present plan in short; None for a draft."""
+    """Return a summary of the mission's current plan; None for a draft."""
     if mission.planned_at is None:
         return None
     targets = {target.pk: target for target in mission.targets.all()}
@@ -55,7 +55,7 @@ def _route(mission: Mission, route: Route, targets: dict[int, InspectionTarget])
 
 
 def _along_m(waypoints: list[Waypoint], length_m: float) -> list[float]:
-    """Metres flown to each waypoint; the sum is the route's own length."""
+    """Return the metres flown to each waypoint, scaled so that the sum is the route's own length."""
     if len(waypoints) < 2:
         return [0.0] * len(waypoints)
     places = np.array([waypoint.position.coords for waypoint in waypoints])
@@ -65,7 +65,7 @@ def _along_m(waypoints: list[Waypoint], length_m: float) -> list[float]:
 
 
 def _off_network(waypoints: list[Waypoint], along_m: list[float]) -> list[list[float]]:
-    """From where to where the route leaves the network, neighbours joined."""
+    """Return the parts in which the route leaves the network, with adjacent ones merged."""
     is_off = [waypoint.kind in OFF_NETWORK or waypoint.asset_id is None for waypoint in waypoints]
     found: list[list[float]] = []
     for (first_off, second_off), (from_m, to_m) in zip(pairwise(is_off), pairwise(along_m), strict=True):
@@ -79,7 +79,7 @@ def _off_network(waypoints: list[Waypoint], along_m: list[float]) -> list[list[f
 
 
 def _target(target: InspectionTarget) -> dict[str, Any]:
-    """What the page knows a target by, and its name."""
+    """Return what identifies a target on the page, and its name."""
     return {
         "asset": target.asset_id,
         "position": list(target.position.coords) if target.position else None,

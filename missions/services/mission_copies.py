@@ -1,4 +1,4 @@
-"""A second mission like the first, its plan included."""
+"""Copies and follow-ups of missions."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -27,10 +27,11 @@ NOT_FLOWN: dict[str, Any] = {
 
 
 def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Mission:
-    """With the same UAVs and wishes, and no departure yet. What another mission that continues this one took over is left to that one.
+    """Create a draft of the missed targets with the same UAVs and constraints, without departure or targets that a continuation took over.
 
     UAVs begin where they return to. Raises Refused where the mission is not over, or nothing was missed, and InvalidRequest where its
-    targets cannot be asked for any more.
+    targets
+    no longer exist.
     """
     if mission.state not in ENDED_STATES:
         raise refuse("not_over", _("A follow-up is planned once the mission is over."))
@@ -55,19 +56,17 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
 
 
 def _what(target: InspectionTarget) -> tuple[Any, ...]:
-    """Names what is inspected, in whichever mission."""
+    """Return what identifies the inspected thing in any mission."""
     return (target.asset_id, *(None if shape is None else shape.wkb for shape in (target.position, target.stretch)))
 
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other: Any) -> Mission:
-    """A copy of its own: targets are pending again, and a mission that was on its way is merely planned.
+    """Copy a mission with its plan: targets are pending again, and a mission on its way becomes planned.
 
-    It is compared with what is approved by now, the mission itself among it. `other` are values that differ from the mission's.
+    The copy's separation is checked against all missions approved by now, including the original. `other` are values that differ.
     """
     with transaction.atomic():
-        mission = Mission.objects.select_for_update(no_key=True).get(
-            pk=mission.pk
-        )  # as it is now: never half of one plan and half of the next
+        mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)  # the current row, to avoid mixing two plans
         values = {field: getattr(mission, field) for field in COPIED} | other
         if values["state"] != MissionState.DRAFT:
             values["state"] = MissionState.PLANNED
@@ -91,7 +90,7 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other
 
 
 def _copied(model: type[Model], rows: Iterable[Any], **values: Any) -> dict[int | None, Any]:
-    """The rows under the new mission, by the primary keys of the old ones."""
+    """Copy rows to the new mission; returns them by the primary keys of the old ones."""
     old = list(rows)
     new = model._default_manager.bulk_create([_copy_of(row, **values) for row in old])
     return {before.pk: after for before, after in zip(old, new, strict=True)}
@@ -105,7 +104,7 @@ def _copy_of(row: Any, **values: Any) -> Any:
 
 
 def _free_name(mission: Mission) -> str:
-    """ "North (copy)", then "North (copy 2)"."""
+    """Return a free name: "North (copy)", then "North (copy 2)"."""
     stem = mission.name[: MAX_NAME_LENGTH - 12]
     taken = set(
         Mission.objects.filter(organisation=mission.organisation, deleted_at=None, name__startswith=stem).values_list("name", flat=True)

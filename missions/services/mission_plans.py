@@ -1,4 +1,4 @@
-"""Storing a plan on its mission: all of it or nothing, and only on the mission that it was made for."""
+"""Storing a plan on its mission: completely or not at all, and only on the mission that it was made for."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -38,13 +38,13 @@ QUALITY = (
 
 
 class NothingToPlan(Exception):
-    """A mission without UAVs or without targets."""
+    """Raised for a mission without UAVs or without targets."""
 
 
 def plan_mission(*, mission: Mission, actor: User | None, expected_revision: int | None = None) -> Mission:
     """Plan the mission and store the plan. Raises what make_plan raises, MissionChanged, MissionFrozen or NothingToPlan.
 
-    The plan is made without holding the mission; if the mission is changed in the meantime, nothing is stored.
+    The mission is not locked during planning; if it is changed in the meantime, nothing is stored.
     """
     request = plannable_request(mission=mission)
     plan = make_plan(request=request)
@@ -54,14 +54,14 @@ def plan_mission(*, mission: Mission, actor: User | None, expected_revision: int
 
 
 def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) -> bool:
-    """Store the plan that a job has made already, if it was asked for just what the mission holds; False where it was not."""
+    """Store the plan that a job has already made, if its request equals the mission's; returns False where it does not."""
     if job.task != PLANNING_TASK or not job.result or "request" not in job.parameters:
         return False
     wanted, asked = plannable_request(mission=mission), request_from_json(job.parameters["request"])
     if len(asked.targets) != len(wanted.targets):
         return False
     targets = tuple(
-        replace(target, task=stored.task) if target.task is None else target  # the mission holds what the planner took for none
+        replace(target, task=stored.task) if target.task is None else target  # the mission stores the planner's default
         for target, stored in zip(asked.targets, wanted.targets, strict=True)
     )
     if _that_counts(replace(asked, targets=targets)) != _that_counts(wanted):
@@ -75,9 +75,9 @@ def take_plan(*, mission: Mission, actor: User | None, revision: int, job: Job) 
 
 
 def _that_counts(request: PlanRequest) -> PlanRequest:
-    """The request with those sensors alone that a target needs, as a UAV may have got others since, and without whose it is.
+    """Return the request without what does not affect routes: sensors that no target needs, the lost-link action and the owner.
 
-    What is done without a link does not decide over the routes.
+    A UAV may have got other sensors since the request.
     """
     needed = [target.sensor for target in request.targets if target.sensor]
     uavs = (replace(uav, sensors=tuple(sensor for sensor in needed if has_sensor(uav, sensor))) for uav in request.uavs)
@@ -85,7 +85,7 @@ def _that_counts(request: PlanRequest) -> PlanRequest:
 
 
 def plannable_request(*, mission: Mission) -> PlanRequest:
-    """What the planner is asked for this mission, with today's bases. Raises NothingToPlan, or InvalidRequest where a base is missing."""
+    """Return the planning request of a mission, with current bases. Raises NothingToPlan, or InvalidRequest where a base is missing."""
     request = request_of_mission(mission=mission)
     if not request.uavs or not request.targets:
         raise NothingToPlan
@@ -93,10 +93,10 @@ def plannable_request(*, mission: Mission) -> PlanRequest:
 
 
 def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, search_s: float, message: Callable[[], Reason]) -> None:
-    """Plan the job's mission, and store the plan and the job's end together: neither is ever there without the other.
+    """Plan the job's mission, and store the plan and the job's end in one transaction.
 
-    Once the user stops it, the best plan found until then is stored; `message` says at the end how it went. Raises JobCancelled if
-    another worker holds the job by now, and what plan_mission raises.
+    If the user stops the job, the best plan found until then is stored; `message` is called at the end for the result. Raises JobCancelled
+    if another worker holds the job by now, and what plan_mission raises.
     """
     mission = Mission.objects.get(pk=job.parameters["mission"])
     request = plannable_request(mission=mission)
@@ -108,9 +108,9 @@ def plan_mission_for_job(*, job: Job, stop: Stop, on_progress: OnPlanProgress, s
 
 
 def store_plan(*, mission: Mission, actor: User | None, revision: int, plan: dict[str, Any]) -> Mission:
-    """Replace the mission's routes by the plan's, in one transaction that holds the mission's row.
+    """Replace the mission's routes by the plan's, in one transaction that locks the mission's row.
 
-    `revision` is the mission's that the plan was made for: a second plan, or one for older targets, raises MissionChanged.
+    `revision` is the mission's for which the plan was made. Raises MissionChanged for a second plan, or one for older targets.
     """
     with transaction.atomic():
         locked = lock_mission(mission_id=mission.pk, expected_revision=revision)
@@ -199,7 +199,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
 
 
 def _timed(route: dict[str, Any]) -> Iterator[tuple[Any, ...]]:
-    """Each waypoint with its arrival, energy and battery; a plan of before, or of a UAV without a battery, has none."""
+    """Yield each waypoint with its arrival, energy and battery; an old plan, or a UAV without a battery, has none."""
     count = len(route["waypoints"])
     columns = (route.get(name) or [None] * count for name in ("arrival_s", "used_wh", "battery_left_percent"))
     return zip(route["waypoints"], *columns, strict=True)

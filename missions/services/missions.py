@@ -1,4 +1,4 @@
-"""Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
+"""Missions from creation to deletion. Every write locks the mission's row, increments its revision and writes a history entry."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -41,13 +41,13 @@ from planning.request import (
 from workspace.audit import record_change
 from workspace.models import Organisation, User
 
-BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
-MAX_NAMES = 5  # that an entry of the history keeps
+BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # do not affect routes
+MAX_NAMES = 5  # in a history entry
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
 
 def as_stated_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
-    """Own figures that are sent again as they were are not said anew: what the stored UAV had when they were said is kept."""
+    """Return the UAV with its earlier fleet values for those of its own values that were sent again unchanged."""
     old = next((other for other in before if other.uav is not None and other.uav == uav.uav), None)
     if old is None or not old.fleet_figures:
         return uav
@@ -57,30 +57,30 @@ def as_stated_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavReques
 
 
 class MissionChanged(Exception):
-    """Somebody else was faster: the mission is not the one that the caller has seen."""
+    """Raised when another user changed the mission after the caller read it."""
 
 
 class MissionFrozen(Exception):
-    """Only drafts and planned missions can be changed."""
+    """Raised when the mission is neither a draft nor planned, so that it cannot be changed."""
 
 
 @dataclass(frozen=True)
 class Departure:
-    """When to depart; None: at any time."""
+    """Departure of a mission; None: at any time."""
 
     at: datetime | None
 
 
 @dataclass(frozen=True)
 class Charging:
-    """The power of charging at towers [W]; None: there is none."""
+    """Power of charging at towers [W]; None: no charging."""
 
     power_w: float | None
 
 
 @dataclass(frozen=True)
 class MissionChange:
-    """What is to be changed; None leaves a part as it is."""
+    """Changes to a mission; None leaves a part as it is."""
 
     name: str | None = None
     uavs: tuple[UavRequest, ...] | None = None
@@ -109,7 +109,7 @@ def create_mission(
     external_id: str = "",
     attributes: Mapping[str, Any] | None = None,
 ) -> Mission:
-    """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
+    """Store a draft. Raises InvalidRequest if a target is not on the map, or constraints contradict each other."""
     refuse_contradictions(request)
     targets = _target_rows(request.targets)
     with transaction.atomic():
@@ -134,10 +134,9 @@ def create_mission(
 
 
 def change_mission(*, mission: Mission, actor: User, change: MissionChange, expected_revision: int | None = None) -> Mission:
-    """Change a mission; new targets, UAVs or options drop its plan, and new targets its locks, where no new ones come with them.
+    """Change a mission. New targets, UAVs or options drop its plan; new targets also drop its locks unless new ones are given.
 
-    What is done without a link leaves the routes: it is checked anew on them. Raises MissionChanged, MissionFrozen, InvalidRequest or
-    NoGraph.
+    A new lost-link action keeps the routes and is checked on them. Raises MissionChanged, MissionFrozen, InvalidRequest or NoGraph.
     """
     targets = None if change.targets is None else _target_rows(change.targets)
     with transaction.atomic():
@@ -145,7 +144,7 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         before = _summary(locked)
         picked = _what_is_picked(locked)
         if change.drops_plan:
-            drop_plan(mission=locked)  # remembered with the options that it was made with
+            drop_plan(mission=locked)  # stored with the options that it was made with
         if change.name is not None:
             locked.name = change.name
         if change.objective is not None:
@@ -197,7 +196,7 @@ def _what_is_picked(mission: Mission) -> dict[str, list[str]]:
 
 
 def _differences(before: dict[str, list[str]], after: dict[str, list[str]]) -> dict[str, Any]:
-    """For the history: how many there are now, and the names of the first that came and went."""
+    """Return the differences for the history: the current count, and the names of the first added and removed items."""
     found: dict[str, Any] = {}
     for what, now in after.items():
         came, went = Counter(now) - Counter(before[what]), Counter(before[what]) - Counter(now)
@@ -207,7 +206,7 @@ def _differences(before: dict[str, list[str]], after: dict[str, list[str]]) -> d
 
 
 def delete_mission(*, mission: Mission, actor: User, expected_revision: int | None = None) -> Mission:
-    """Put the mission away; it can be brought back."""
+    """Mark the mission deleted; it can be restored."""
     with transaction.atomic():
         locked = lock_mission(mission_id=mission.pk, expected_revision=expected_revision)
         before = _summary(locked)
@@ -228,7 +227,7 @@ def restore_mission(*, mission: Mission, actor: User) -> Mission:
 
 
 def lock_mission(*, mission_id: UUID, expected_revision: int | None) -> Mission:
-    """The mission's row, held until the caller's transaction ends. Raises MissionChanged or MissionFrozen."""
+    """Return the mission's row, locked until the caller's transaction ends. Raises MissionChanged or MissionFrozen."""
     mission = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
     if mission.deleted_at is not None or (expected_revision is not None and mission.revision != expected_revision):
         raise MissionChanged
@@ -238,7 +237,7 @@ def lock_mission(*, mission_id: UUID, expected_revision: int | None) -> Mission:
 
 
 def drop_plan(*, mission: Mission) -> None:
-    """Back to a draft; the caller holds the row and saves it. The plan that goes is remembered in short."""
+    """Turn the mission into a draft and keep a summary of its plan; the caller holds the row and saves it."""
     mission.last_plan = summary_of_plan(mission=mission) or mission.last_plan
     mission.routes.all().delete()
     mission.targets.update(unassigned_reason="", unassigned_message="", unassigned_why=[], unassigned_missing={})
@@ -251,12 +250,12 @@ def drop_plan(*, mission: Mission) -> None:
 
 
 def check_lost_link(*, mission: Mission) -> None:
-    """On the routes as they are stored; the caller holds the row and saves it. Raises NoGraph or InvalidRequest."""
+    """Check the lost-link action on the stored routes; the caller holds the row and saves it. Raises NoGraph or InvalidRequest."""
     mission.lost_link_check = lost_link_of_stored(mission, request_of_mission(mission=mission))
 
 
 def request_of_mission(*, mission: Mission) -> PlanRequest:
-    """What the planner is asked for this mission, UAVs and targets in their order."""
+    """Return the planning request of this mission, with UAVs and targets in their order."""
     return PlanRequest(
         uavs=tuple(
             UavRequest(
@@ -301,7 +300,7 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
 
 
 def _performance(row: MissionUav) -> Performance:
-    """As stored with the mission."""
+    """Return the performance as stored with the mission."""
     try:
         return performance_from_json(row.performance)
     except InvalidPerformance as error:
@@ -309,7 +308,7 @@ def _performance(row: MissionUav) -> Performance:
 
 
 def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
-    """Unsaved rows with the label and the task that each target has today. Raises InvalidRequest."""
+    """Return unsaved rows with each target's current label and task. Raises InvalidRequest."""
     places, _ = resolved_targets(targets)
     rows = []
     for place in places:

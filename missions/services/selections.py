@@ -1,4 +1,4 @@
-"""Selections kept for later: what somebody picked and will want again."""
+"""Selections of targets that users save for later."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,15 +13,15 @@ from workspace.models import Organisation, User
 
 
 class SelectionNameTaken(Exception):
-    """Another selection of the organisation has this name."""
+    """Raised when another selection of the organisation has this name."""
 
 
 class SelectionChanged(Exception):
-    """Somebody else was faster: the selection is not the one that the caller has seen."""
+    """Raised when another user changed the selection after the caller read it."""
 
 
 def create_selection(*, organisation: Organisation, author: User, name: str, targets: Sequence[TargetRequest]) -> SavedSelection:
-    """Raises SelectionNameTaken, and InvalidRequest if a target is not on the ground."""
+    """Create a selection. Raises SelectionNameTaken, and InvalidRequest if a target is not on the map."""
     selection = SavedSelection(organisation=organisation, author=author, name=name, targets=_as_kept(targets))
     return _save(selection, author, "create", before=None)
 
@@ -29,7 +29,7 @@ def create_selection(*, organisation: Organisation, author: User, name: str, tar
 def change_selection(
     *, selection: SavedSelection, actor: User, name: str | None, targets: Sequence[TargetRequest] | None, expected_revision: int | None
 ) -> SavedSelection:
-    """Raises SelectionChanged, SelectionNameTaken and InvalidRequest; None leaves a part as it is."""
+    """Change a selection; None leaves a part as it is. Raises SelectionChanged, SelectionNameTaken and InvalidRequest."""
     with transaction.atomic():
         locked = _locked(selection, expected_revision)
         before = _summary(locked)
@@ -42,7 +42,7 @@ def change_selection(
 
 
 def delete_selection(*, selection: SavedSelection, actor: User, expected_revision: int | None) -> None:
-    """Raises SelectionChanged."""
+    """Delete a selection. Raises SelectionChanged."""
     with transaction.atomic():
         locked = _locked(selection, expected_revision)
         before, key = _summary(locked), locked.pk
@@ -51,7 +51,7 @@ def delete_selection(*, selection: SavedSelection, actor: User, expected_revisio
 
 
 def _as_kept(targets: Sequence[TargetRequest]) -> list[dict[str, Any]]:
-    """As in a mission's request, each with the label it has today: a name is left where the asset goes."""
+    """Return the targets as in a mission's request, each with its current label, which remains if the asset is deleted."""
     places, _ = resolved_targets(targets)
     return [
         {

@@ -1,4 +1,4 @@
-"""The stored routes of a mission as the planner has them before they are stored."""
+"""Stored routes of a mission in the planner's types."""
 
 import numpy as np
 
@@ -11,10 +11,11 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind,
 
 
 def stored_routes(mission: Mission) -> list[PlannedRoute] | None:
-    """In the order of the mission's UAVs, with heights, times and Wh to the digits that are stored; without their lines. Points of
-    one target share its key: what hangs at a target may be passed near there.
+    """Return the routes in the order of the mission's UAVs, without lines; heights, times and Wh have the stored precision.
 
-    None where it has no plan, or one of before there were times.
+    Points of one target share its key: what is attached to a target may be passed near there. Returns None without a plan, or for an old
+    plan
+    without times.
     """
     found = list(mission.routes.select_related("mission_uav").prefetch_related("waypoints"))
     if not found or any(waypoint.arrival_s is None for route in found for waypoint in route.waypoints.all()):
@@ -46,7 +47,7 @@ def _stored(route: Route) -> PlannedRoute:
 
 
 def _timing(route: Route, rows: list[Waypoint]) -> Timing:
-    """With what was charged on the way taken off what was used: the stored percentages are too coarse to reckon with."""
+    """Return the timing, with charged energy subtracted from the energy used: the stored percentages are too coarse."""
     arrival_s = np.array([row.arrival_s for row in rows], dtype=np.float64) - route.departs_s
     used_wh = _column(rows, "used_wh")
     if used_wh is not None:
@@ -56,6 +57,6 @@ def _timing(route: Route, rows: list[Waypoint]) -> Timing:
 
 
 def _column(rows: list[Waypoint], name: str) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]] | None:
-    """None where a waypoint has no figure."""
+    """Return a column of the waypoints; None where a waypoint has no value."""
     values = [getattr(row, name) for row in rows]
     return None if any(value is None for value in values) else np.array(values, dtype=np.float64)

@@ -1,4 +1,4 @@
-"""The API's doors to planning, missions and UAVs."""
+"""API endpoints of planning, missions and UAVs."""
 
 from missions.views.credentials import UavCredentialDetail, UavCredentials
 from missions.views.fleet import BaseDetail, BaseList, BaseRestore, UavTypeDetail, UavTypeList, UavTypeRestore

@@ -1,4 +1,4 @@
-"""Approving missions, taking that back, sending them to UAVs, aborting and closing them."""
+"""Approving missions, revoking approvals, sending missions to UAVs, aborting and closing them."""
 
 from typing import Any
 from uuid import UUID

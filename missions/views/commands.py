@@ -1,4 +1,4 @@
-"""Commands to UAVs: given, listed, followed."""
+"""Giving, listing and following commands to UAVs."""
 
 from typing import Any
 from uuid import UUID

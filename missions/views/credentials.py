@@ -1,4 +1,4 @@
-"""What a UAV proves itself with: made, replaced, revoked."""
+"""Making, replacing and revoking credentials of UAVs."""
 
 from typing import Any
 
@@ -97,7 +97,7 @@ class UavCredentialDetail(APIView):
 
 
 def _insist_reason(request: SignedInRequest, values: dict[str, Any]) -> str:
-    """Raises ApiProblem 403 for a reason of anybody but an administrator."""
+    """Return the reason to insist. Raises ApiProblem 403 for a reason of a user who is no administrator."""
     reason = str(values.get("insist_reason", ""))
     if reason and request.user.role not in ADMINISTRATORS:
         raise ApiProblem(403, "permission_denied", _("Only administrators replace or revoke it now."))

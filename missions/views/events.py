@@ -1,4 +1,4 @@
-"""The event log: of one mission, and of all that live pages show."""
+"""The event log of one mission, and of all that live pages show."""
 
 from collections.abc import Collection
 from datetime import datetime

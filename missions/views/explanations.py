@@ -1,4 +1,4 @@
-"""Why a plan is as it is. Nothing is stored: whoever may read a mission may ask."""
+"""Explanations of plans. Nothing is stored: every user who may read a mission may request them."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -39,10 +39,11 @@ TARGETS = WholeNumber("target", "these targets alone, by their index", minimum=0
 def explain_mission(
     *, mission: Mission, request: PlanRequest, uavs: Collection[int] | None = None, targets: Collection[int] | None = None
 ) -> dict[str, Any]:
-    """On the ground of now, as explain_route and explain_unreached_target tell; mission: with its routes, waypoints and targets loaded.
+    """Explain routes and unassigned targets on current map data; mission: with its routes, waypoints and targets loaded.
 
-    uavs, targets: those that are asked about, by their places in the mission; None: all of them, up to MAX_EXPLAINED of each. A route
-    that can no longer be explained, as the ground has changed, tells why under `fault`. Raises NoGraph.
+    uavs, targets: those requested, by their places in the mission; None: all of them, up to MAX_EXPLAINED of each. A route that can no
+    longer
+    be explained, as the map data have changed, has the reason under `fault`. Raises NoGraph.
     """
     place_of = {target.pk: target.sequence for target in mission.targets.all()}
     orders: list[list[int]] = [[] for _ in request.uavs]
@@ -121,7 +122,7 @@ class LaterDeparture(_Explanation):
     def post(self, request: SignedInRequest) -> Response:
         organisation = request.user.organisation
         asked = plan_request(PlanInputSerializer.read(request.data, organisation=organisation))
-        asked = replace(asked, organisation=organisation.pk)  # with a departure it is kept apart from others
+        asked = replace(asked, organisation=organisation.pk)  # with a departure it is separated from others
         if not is_small(len(asked.targets)):
             raise ApiProblem(400, "too_many_targets", _("Departures are compared for few targets: pick those that are left out."))
         with api_problems():

@@ -1,4 +1,4 @@
-"""When a mission or a plan may depart, zone by zone. Nothing is stored: whoever may read a mission may ask."""
+"""When a mission or a plan may depart, zone by zone. Nothing is stored: every user who may read a mission may request it."""
 
 import math
 from datetime import datetime
@@ -76,7 +76,7 @@ def _moment(text: str) -> datetime:
 
 
 def _window(begin: datetime | None) -> Span:
-    """Of whole seconds."""
+    """Return the window of departures, in whole seconds."""
     begin = begin or timezone.now()
     if abs((begin - timezone.now()).days) > MAX_DAYS_AHEAD:
         raise serializers.ValidationError({"from": [_("A departure lies within two years of today.")]})

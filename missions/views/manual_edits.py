@@ -1,4 +1,4 @@
-"""Routes changed by hand."""
+"""Manual edits of routes."""
 
 from typing import Any
 from uuid import UUID
@@ -107,7 +107,7 @@ class LegChecks(APIView):
         return Response(manual_edits.LegChecksSerializer({"legs": found}).data)
 
     def _flyer(self, request: SignedInRequest, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
-        """Who flies the legs that have a speed."""
+        """Return the UAV that flies the legs that have a speed."""
         if all(leg.speed_mps is None for leg in legs):
             return None
         with api_problems():

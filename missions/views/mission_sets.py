@@ -1,4 +1,4 @@
-"""Several missions at once, copies, and who else is there."""
+"""Several missions at once, copies, and presence of users."""
 
 from collections.abc import Callable
 from uuid import UUID
@@ -85,7 +85,7 @@ class MissionFollowUp(APIView):
 
 
 def _each(request: SignedInRequest, do: Callable[[Mission], object], *, deleted: bool) -> Response:
-    """What can be done is done, each mission for itself; what cannot be says why."""
+    """Apply an action to each mission separately; the response lists what was done, and each refusal with its reason."""
     serializer = inputs.MissionsInputSerializer(data=request.data)
     serializer.is_valid(raise_exception=True)
     done, refused = [], []
@@ -124,7 +124,7 @@ class MissionsRestore(APIView):
 
 
 class MissionPresence(APIView):
-    """Whoever may see a mission may be seen at it."""
+    """Presence of users at a mission; every user who may see it takes part."""
 
     write_roles = frozenset(Role)
 

@@ -1,4 +1,4 @@
-"""Missions: create, list, open, change, plan, delete, bring back."""
+"""Missions: create, list, open, change, plan, delete, restore."""
 
 from dataclasses import replace
 from typing import Any
@@ -65,7 +65,7 @@ IF_MATCH = OpenApiParameter(
     "If-Match", str, OpenApiParameter.HEADER, required=True,
     description="the ETag of the mission as last seen, or * for whatever is there; 412 if it has changed",
 )  # fmt: skip
-# What stops UAVs, or takes from them what they would fly, is never held up by a header that is missing.
+# Requests that stop UAVs, or take missions from them, never fail for a missing header.
 IF_MATCH_OPTIONAL = OpenApiParameter(
     "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen: 412 if it has changed; without it any"
 )
@@ -81,7 +81,7 @@ PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Sto
 
 
 def asked_filter(request: Request) -> MissionFilter:
-    """Raises ApiProblem 400 for what no list can be asked for."""
+    """Return the filter of a request. Raises ApiProblem 400 for invalid filters."""
     ask = request.query_params
     states = tuple(state for state in ask.get("state", "").split(",") if state)
     if unknown := [state for state in states if state not in MissionState.values]:
@@ -120,7 +120,7 @@ def mission_or_404(user: User, mission_id: UUID, *, deleted: bool = False) -> Mi
 
 def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Response:
     mission = mission_or_404(user, mission_id)
-    # A browser that kept the answer would ask with the ETag by itself, and show what the ground was then: only pages may ask so.
+    # A browser that stored the response would send the ETag by itself and show old map data: only pages may do so.
     headers = {"ETag": f'"{mission.revision}"', "Cache-Control": "no-store"}
     if status == 201:
         headers["Location"] = reverse("api-mission", args=[mission.pk])
@@ -128,13 +128,13 @@ def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Respon
 
 
 def expected_revision(request: Request) -> int | None:
-    """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header."""
+    """Return the revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header."""
     need_if_match(request)
     return stated_revision(request)
 
 
 def stated_revision(request: Request) -> int | None:
-    """The revision that If-Match names; None without the header or for any (*)."""
+    """Return the revision that If-Match names; None without the header or for any (*)."""
     text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
     if text == "*":
         return None
@@ -144,7 +144,7 @@ def stated_revision(request: Request) -> int | None:
 
 
 def _change(values: dict[str, Any]) -> MissionChange:
-    """A departure or charging of null is a change, too."""
+    """Return the change. A departure or charging of null is a change, too."""
     if "departs_at" in values:
         values["departure"] = Departure(values.pop("departs_at"))
     if "charging_w" in values:
@@ -153,7 +153,7 @@ def _change(values: dict[str, Any]) -> MissionChange:
 
 
 def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int = 200, plan_of: UUID | None = None) -> Response:
-    """Plan the stored mission: by the plan of a job that was asked for the same, else now, or by a job if it is large."""
+    """Plan the stored mission: with the plan of a job for the same request, else now, or in a job if it is large."""
     made = Job.objects.filter(organisation=user.organisation, pk=plan_of).first() if plan_of else None
     if made and services.take_plan(mission=mission, actor=user, revision=revision, job=made):
         return answer_mission(user, mission.pk, status=status)
@@ -167,7 +167,7 @@ def _plan_and_answer(user: User, mission: Mission, *, revision: int, status: int
 
 
 class _PlansWhenAsked(APIView):
-    """Only what plans counts against the rate of plans."""
+    """Base view that throttles only requests that plan."""
 
     throttle_scope = "plans"
 
@@ -213,7 +213,7 @@ class MissionList(_PlansWhenAsked):
         serializer = inputs.MissionInputSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
         values = serializer.validated_data
-        with api_problems(), transaction.atomic():  # a mission that cannot be planned as asked is not left behind
+        with api_problems(), transaction.atomic():  # a mission that cannot be planned as requested is rolled back
             mission = services.create_mission(
                 organisation=user.organisation,
                 author=user,

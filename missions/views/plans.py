@@ -1,4 +1,4 @@
-"""Plans that are answered, not stored."""
+"""Plans that are returned without being stored."""
 
 from typing import Any
 from uuid import UUID
@@ -94,7 +94,7 @@ class PlanList(APIView):
         with api_problems():
             if is_small(len(asked.targets)):
                 return Response(plan_with_texts(services.make_plan(request=asked, as_text=True)))
-            services.resolved_targets(asked.targets)  # says at once what a worker would find wrong later
+            services.resolved_targets(asked.targets)  # reports at once what a worker would reject later
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
 
 
@@ -103,13 +103,13 @@ def is_small(targets: int) -> bool:
 
 
 def _target_count(body: Any) -> int:
-    """Of a body that nobody has looked at yet."""
+    """Return the number of targets of an unvalidated body."""
     targets = body.get("targets") if isinstance(body, dict) else None
     return len(targets) if isinstance(targets, list) else 0
 
 
 def refuse_too_many_jobs(user: User) -> None:
-    """429 for whoever has as many large plans waiting and running as one may have: before any work."""
+    """Raise ApiProblem 429, before any work, for a user with the maximum number of large plans waiting and running."""
     try:
         refuse_jobs_beyond(settings.MAX_OPEN_PLANS, user=user, task=SOLVE_PLAN)
     except TooManyJobs as error:
@@ -117,7 +117,7 @@ def refuse_too_many_jobs(user: User) -> None:
 
 
 def planning_job(user: User, task: str, parameters: dict[str, Any], targets: int) -> Job:
-    """A job that plans so many targets, on its way to a worker once this transaction is committed."""
+    """Create a job that plans this many targets; it is sent to a worker once this transaction commits."""
     try:
         job = create_job_within(
             settings.MAX_OPEN_PLANS,
@@ -127,7 +127,7 @@ def planning_job(user: User, task: str, parameters: dict[str, Any], targets: int
             parameters=parameters,
             message=Reason("planning_targets", {"count": targets}),
         )
-    except TooManyJobs as error:  # two requests at the same moment
+    except TooManyJobs as error:  # two concurrent requests
         raise _too_many(error) from error
     send_job_on_commit(job)
     return job
@@ -142,7 +142,7 @@ def job_answer(job: Job, **more: str) -> Response:
 
 
 def _awaited(response: Response, wait_s: int) -> Response:
-    """The plan itself if its job ends in time; else the answer as it was, with the job's address."""
+    """Return the plan itself if its job ends in time; else the given response with the job's URL."""
     try:
         job = wait_for_job(UUID(response.data["job"]), wait_s)
     except NoRoomToWait:

@@ -1,4 +1,4 @@
-"""What the errors of planning and missions are as answers."""
+"""HTTP responses for the errors of planning and missions."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -40,7 +40,7 @@ RETRY_AFTER_S = 3  # a new graph is built within seconds
 
 @contextmanager
 def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
-    """current: the row as it is now, for whoever was too late; None where it is gone."""
+    """Translate errors of fleet services. current: returns the current row for a client with an outdated one; None where it is deleted."""
     try:
         yield
     except NameTaken as error:
@@ -88,7 +88,7 @@ def _changed(error: FleetChanged, current: Any) -> ApiProblem:
 
 @contextmanager
 def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
-    """has_precondition: the request said with If-Match which revision it means."""
+    """Translate errors of planning and missions. has_precondition: the request named its revision with If-Match."""
     try:
         yield
     except InvalidRequest as error:
@@ -112,7 +112,7 @@ def api_problems(*, has_precondition: bool = False) -> Iterator[None]:
 
 @contextmanager
 def refusals() -> Iterator[None]:
-    """409 with every reason why something is not done."""
+    """Translate Refused to a 409 with every reason."""
     try:
         yield
     except Refused as error:

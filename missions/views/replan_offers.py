@@ -1,4 +1,4 @@
-"""Offers of another plan for what is left of a mission that flies: asked for, seen, accepted, declined."""
+"""Offers of another plan for the rest of a flying mission: request, read, accept, decline."""
 
 from collections.abc import Callable
 from uuid import UUID

@@ -1,4 +1,4 @@
-"""Saved selections: list, keep, load, rename, change, delete."""
+"""Saved selections: list, save, load, rename, change, delete."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

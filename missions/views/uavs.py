@@ -59,7 +59,7 @@ def _answer(user: User, uav_id: int, *, status: int = 200) -> Response:
 
 
 def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
-    """Of a new one, or what is to be changed of one that is stored."""
+    """Return the values of a new UAV, or the changes of a stored one."""
     context = {"organisation": request.user.organisation}
     serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
     serializer.is_valid(raise_exception=True)
@@ -71,7 +71,7 @@ def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
 
 
 def _filters(request: Request) -> dict[str, Any]:
-    """Raises ApiProblem for what is no state or no id."""
+    """Return the filters. Raises ApiProblem for an invalid state or id."""
     words = {name: request.query_params.get(name, "").strip()[:100].replace("\0", "") for name in ("text", "state", "sensor")}
     asked_choice(request, "state", STATES)
     ids = {"base": BASE.asked(request), "uav_type": TYPE.asked(request)}

@@ -154,6 +154,6 @@ def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState,
 
 
 def _flights(mission: Mission) -> dict[int, int]:
-    """How many each UAV has to fly, as approved."""
+    """Return the number of flights of each UAV, as approved."""
     approval = approval_in_force(mission)
     return {} if approval is None else {route["uav"]: len(route["flights"]) for route in approval.document["routes"]}

@@ -1,7 +1,7 @@
-"""The outbox of commands to UAVs. Rows are the truth: whoever carries one holds it by a lease, and writes to it only while it does.
+"""The outbox of commands to UAVs. Rows are authoritative: a dispatcher holds one by a lease, and writes to it only while it does.
 
-All times are the database's, so that the clocks of those who carry do not matter. A command is fenced by its attempt and its holder:
-once another one has taken it over, or it has ended, nothing that the first one writes meets a row.
+All times are the database's, so that the dispatchers' clocks do not matter. A command is fenced by its attempt and its holder: once
+another holder has taken it over, or it has ended, writes of the first holder match no row.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -38,7 +38,7 @@ from workspace.live.changes import publish_live
 from workspace.models import User
 from workspace.reason_texts import text_and_column, why_of_column
 
-CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
+CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV with a command that waits or was cancelled
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNACKNOWLEDGED = "superseded", "not-delivered", "unconfirmed", "unheard"
 WITHDRAWN = "withdrawn"
 
@@ -55,12 +55,11 @@ def queue_command(
     expires_in_s: float | None = None,
     wait_s: float = 0.0,
 ) -> UavCommand:
-    """Give a UAV a command; unfinished ones about the same thing no longer count.
+    """Queue a command for a UAV; unfinished ones on the same axis expire.
 
-    Raises Refused while one of them makes the UAV safer than this one would: that one is not called off. Without `expires_in_s` it is
-    wanted for as long as the settings say of its kind. After `wait_s` it is carried, and until then any other command about the same thing
-    takes its place. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
-    takes it before.
+    Raises Refused while one of them makes the UAV safer than this one would: that one is not replaced. Without `expires_in_s` the command
+    is valid for as long as the settings define for its kind. It is delivered after `wait_s`; until then any other command on the same axis
+    replaces it. Rows are locked in the order mission, UAV, command: a caller that needs a mission's row locks it before.
     """
     wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
     waits = {"lease_expires_at": from_now(wait_s)} if wait_s > 0.0 else {}
@@ -114,14 +113,15 @@ def claim_commands(
     axes: Collection[CommandAxis] | None = None,
     to_unreachable: bool = False,
 ) -> list[UavCommand]:
-    """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
+    """Claim up to `limit` commands to these UAVs, the most urgent first, then the oldest; commands that others hold are skipped.
 
-    With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unreachable`:
-    those that are right for a UAV of which nothing is heard: what makes it safe, and is neither a step that others are to follow nor a
-    return that depends on where it is.
+    With `link`, only commands of this link to UAVs that use it now; with `axes`, only commands on these axes. `to_unreachable`: only
+    commands
+    suitable for a UAV that sends nothing: safety commands that are neither a step that others follow nor a return that depends on its
+    position.
 
-    Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
-    program: a gateway that starts anew has another name.
+    Claims commands that nobody holds and those whose lease has run out, and increments the attempts of each. `holder` names one run of one
+    program: a restarted gateway has another name.
     """
     waiting = UavCommand.objects.filter(is_free(), _wanted(), uav__in=uav_ids, state__in=OPEN_COMMANDS)
     if link is not None:
@@ -136,18 +136,18 @@ def claim_commands(
 
 
 def renew_claims(*, holder: str, lease_s: float) -> dict[UUID, int]:
-    """Hold on to what is held. Returns the attempt of each command still held: whatever is missing is to be dropped at once.
+    """Renew the leases of a holder. Returns the attempt of each command still held; the caller drops every other command at once.
 
-    What was not sent in its time is no longer held.
+    A command that expired before it was sent is no longer held.
     """
     held = UavCommand.objects.filter(holder=holder, state__in=OPEN_COMMANDS, lease_expires_at__isnull=False)
     return renew(held.exclude(sent_at=None, expires_at__lte=Now()), lease_s=lease_s, column="attempts")
 
 
 def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
-    """Of UAVs that another gateway serves now: what the one before had claimed waits for no lease. Returns how many.
+    """Release what other gateways claimed for UAVs that this one serves now, without waiting for their leases. Returns how many.
 
-    The row keeps its holder, which the history of the command names, until another one takes it.
+    The row keeps its holder, which the command's history names, until another one claims it.
     """
     if not uav_ids:
         return 0
@@ -156,25 +156,25 @@ def release_claims_of_others(*, uav_ids: Collection[int], holder: str) -> int:
 
 
 def note_sent(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """It goes out now; an attempt after another one sends it again. False also once nobody wants it any more."""
+    """Record that it is being sent; a later attempt sends it again. Returns False also once it has expired."""
     now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": "", **_outcome(())}
     return _note(command_id, attempt, holder, CommandState.SENT, now, only=_wanted())
 
 
 def note_sent_unacknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """It goes out now and again, to a UAV of which nothing is heard. False also once nobody wants it any more."""
+    """Record that it is being sent repeatedly to a UAV that sends nothing. Returns False also once it has expired."""
     why = (Reason("unacknowledged"),)
     now = {"sent_at": Coalesce("sent_at", Now()), "outcome_code": UNACKNOWLEDGED, **_outcome(why)}
     return _note(command_id, attempt, holder, CommandState.SENT, now, why, only=_wanted())
 
 
 def is_wanted(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """Whether it is still held, and its time not over."""
+    """Whether it is still held and has not expired."""
     return _held(command_id, attempt, holder).filter(_wanted()).exists()
 
 
 def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
-    """The vehicle has it. That is not yet what it does."""
+    """Record that the vehicle acknowledged it, which does not mean that it was done."""
     held = _held(command_id, attempt, holder)
     if held.filter(state=CommandState.ACKNOWLEDGED).exists():
         return True
@@ -183,7 +183,7 @@ def note_acknowledged(command_id: UUID, *, attempt: int, holder: str) -> bool:
 
 
 def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
-    """So many items of an upload are over."""
+    """Record how many items of an upload are transferred."""
     with transaction.atomic():
         if not _held(command_id, attempt, holder).update(progress={"done": done, "total": total}):
             return False
@@ -192,9 +192,9 @@ def note_progress(command_id: UUID, *, attempt: int, holder: str, done: int, tot
 
 
 def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, total: int) -> bool:
-    """So many items of what is on board were read, before it is sent: from now on it is wanted as long as it was when it was given.
+    """Record how many onboard items were read back before the command is sent, and extend its expiry.
 
-    That is put off by `read_back_s` at most. False once nobody wants it any more.
+    It then expires `motion_s` from now, at most `read_back_s` later than originally. Returns False once it has expired.
     """
     rules = settings.COMMAND_RULES
     latest = F("created_at") + timedelta(seconds=rules.motion_s + rules.read_back_s)
@@ -204,26 +204,26 @@ def note_read_back(command_id: UUID, *, attempt: int, holder: str, done: int, to
 
 
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: Why = (), warnings: Why = ()) -> bool:
-    """The vehicle was seen to do it. `warnings` are for whoever gave the command."""
+    """Record that the vehicle did it. `warnings` are shown to the user who gave the command."""
     ended = {"sent_at": Coalesce("sent_at", Now()), "finished_at": Now(), "lease_expires_at": None, **_outcome(warnings)}
     return _note(command_id, attempt, holder, CommandState.APPLIED, ended, " ".join(filter(None, [english(note), english(warnings)])))
 
 
 def note_failed(command_id: UUID, code: str, why: Why, *, attempt: int, holder: str) -> bool:
-    """The vehicle refused it, or did not do it: why."""
+    """Record that the vehicle refused it or did not do it, with the reason."""
     ended = {"finished_at": Now(), "lease_expires_at": None, "outcome_code": code[:50], **_outcome(why)}
     return _note(command_id, attempt, holder, CommandState.FAILED, ended, why)
 
 
 def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: Why = (), code: str = "") -> bool:
-    """Given back, for anybody to take after so many seconds. With a `code` the row keeps why it has to wait, which `note` tells."""
+    """Release the command for any holder after `retry_in_s`. With a `code` the row stores why it waits, as `note` describes."""
     back: dict[str, Any] = {"holder": "", "lease_expires_at": from_now(retry_in_s) if retry_in_s else None}
     back |= {"outcome_code": code[:50], **_outcome(note)} if code else {}
     return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
 
 
 def expire_overdue() -> int:
-    """End what nobody wants any more and nobody is carrying; returns how many. Of one that had to wait the reason is kept."""
+    """End expired commands that nobody holds; returns how many. A command that had to wait keeps its reason."""
     overdue = UavCommand.objects.filter(is_free(), expires_at__lte=Now())
     with transaction.atomic():
         unsent = overdue.filter(sent_at=None)
@@ -238,7 +238,7 @@ def expire_overdue() -> int:
 
 
 def end_commands(commands: QuerySet[UavCommand], *, code: str, why: Sequence[Reason]) -> int:
-    """No longer wanted, for another reason than a later command."""
+    """End commands for another reason than a later command."""
     with transaction.atomic():
         ended = list(commands.filter(state__in=OPEN_COMMANDS).values_list("uav_id", flat=True))
         number = _end(commands, code, why)
@@ -261,7 +261,7 @@ def _outcome(why: Why) -> dict[str, Any]:
 
 
 def _not_in_time(stored: str, column: dict[str, Any] | None) -> tuple[Reason, ...]:
-    """With the reason for which it had to wait."""
+    """Return the reason for an expiry with the reason for which the command had to wait."""
     waited_for = why_of_column(column, stored)
     return (Reason("not_sent_in_time"), *(reasons_of(waited_for) or [text_reason(stored)]))
 
@@ -286,7 +286,7 @@ def _note(
 
 
 def withdraw(command_ids: Collection[UUID]) -> int:
-    """End those of these commands that were not sent; how many. Whoever carries one is told that it no longer counts."""
+    """End those of these commands that were not sent; returns how many. Their holders are notified."""
     with transaction.atomic():
         unsent = UavCommand.objects.filter(pk__in=command_ids, sent_at=None)
         uavs = list(unsent.filter(state__in=OPEN_COMMANDS).values_list("uav", flat=True))
@@ -297,7 +297,7 @@ def withdraw(command_ids: Collection[UUID]) -> int:
 
 
 def _end(commands: QuerySet[UavCommand], code: str, why: Sequence[Reason], *, skip_locked: bool = False) -> int:
-    """The caller has begun a transaction."""
+    """End commands; the caller has begun a transaction."""
     outcome = _outcome(why)
     found = list(commands.filter(state__in=OPEN_COMMANDS).select_for_update(skip_locked=skip_locked).order_by("pk"))
     UavCommand.objects.filter(pk__in=[command.pk for command in found]).update(
@@ -314,13 +314,13 @@ def _end(commands: QuerySet[UavCommand], code: str, why: Sequence[Reason], *, sk
 
 
 def _notify(uav_id: int) -> None:
-    """Whoever listens hears it once the transaction is committed, and not at all if it is not."""
+    """Notify listeners when the transaction commits; a rollback sends nothing."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_notify(%s, %s)", [CHANNEL, str(uav_id)])
 
 
 def _notify_pages(organisations: Iterable[int]) -> None:
-    """Once the transaction is committed."""
+    """Notify live pages after the commit."""
     for organisation_id in organisations:
         transaction.on_commit(partial(publish_live, organisation_id))
 

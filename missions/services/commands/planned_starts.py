@@ -35,9 +35,9 @@ from missions.services.missions import note
 from workspace.models import User
 
 LEAD_S = 10.0  # before the first start: time to stop it
-MAX_GAP_S = 60.0  # after which starts that were due meanwhile are no longer expected by anybody
+MAX_GAP_S = 60.0  # an interruption this long ends the run: its overdue starts would be a surprise
 WHY = "Start in planned order"
-WAITS_FOR = frozenset({"start_slot", "too_early"})  # reasons that pass by themselves
+WAITS_FOR = frozenset({"start_slot", "too_early"})  # temporary reasons
 BEGUN = (*OPEN_COMMANDS, CommandState.APPLIED)
 STOPPING = frozenset({*SAFETY_RANKS, "pause"})
 
@@ -50,7 +50,7 @@ class StartState(StrEnum):
 
 @dataclass
 class PlannedStart:
-    """One UAV's start. `why` tells what a waiting one waits for after its time, or why it was refused."""
+    """One UAV's start. `why` is what it waits for after its time, or why it was refused."""
 
     uav: int
     name: str
@@ -64,16 +64,15 @@ class PlannedStart:
 def begin_planned_starts(
     *, mission: Mission, actor: User, uavs: Collection[int] | None = None, pilot_checked: bool = False
 ) -> PlannedStarts:
-    """Plan the first starts of the UAVs that have their route and did not start yet; the first one in LEAD_S seconds.
+    """Plan the first starts of the UAVs that have their route and have not started; the first one in LEAD_S seconds.
 
-    uavs: ids of those to start, the others wait on the ground; None: all of them. Each is checked once more by what later apps know of
-    it: link, position, battery.
+    uavs: ids of those to start, the others wait on the ground; None: all. Later apps check each again: link, position, battery.
 
-    pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
+    pilot_checked: the actor has confirmed the checks that only a pilot can make; the history records it.
     Raises Refused, also where one of them does not have its route as approved.
     """
     wanted = [uav_id for route in waiting_for_start(mission) if (uav_id := route.mission_uav.uav_id)] if uavs is None else uavs
-    against = reasons_against_starts(mission, wanted)  # before the row is held: it may take seconds, for which no abort shall wait
+    against = reasons_against_starts(mission, wanted)  # before the lock: it may take seconds, and an abort must not wait
     with transaction.atomic():
         held = locked_mission(mission.pk, None)
         approval = approval_in_force(held)
@@ -105,7 +104,7 @@ def begin_planned_starts(
 
 
 def _chosen(routes: Sequence[Route], uavs: Collection[int]) -> list[Route]:
-    """Raises Refused where one of these UAVs does not wait for its first start."""
+    """Return the routes of these UAVs. Raises Refused where one of them does not wait for its first start."""
     chosen = [route for route in routes if route.mission_uav.uav_id in uavs]
     if len(chosen) < len(set(uavs)):
         raise refuse("not_waiting", _("One of these UAVs does not wait for its first start in this mission."))
@@ -113,7 +112,7 @@ def _chosen(routes: Sequence[Route], uavs: Collection[int]) -> list[Route]:
 
 
 def uavs_being_started(mission: Mission) -> set[int]:
-    """Those whose start in planned order is due later."""
+    """Return the UAVs whose start in planned order is still due."""
     return {
         entry["uav"]
         for starts in mission.planned_starts.filter(ended_at=None)
@@ -123,13 +122,13 @@ def uavs_being_started(mission: Mission) -> set[int]:
 
 
 def waiting_for_start(mission: Mission) -> list[Route]:
-    """Routes of the UAVs that would be started in planned order now, in that order; none where the mission is not on its way."""
+    """Return the routes that could be started in planned order now, in that order; none where the mission is not on its way."""
     approval = approval_in_force(mission)
     return [] if approval is None or mission.state not in ON_ITS_WAY else _routes_to_start(mission, approval)
 
 
 def stop_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
-    """Start no further UAV; a start that was given and not sent yet is withdrawn. UAVs in the air fly on. Raises Refused."""
+    """Stop starting UAVs and withdraw a start that was given and not yet sent. UAVs in the air fly on. Raises Refused."""
     with transaction.atomic():
         starts = PlannedStarts.objects.select_for_update().filter(mission=mission, ended_at=None).first()
         if starts is None:
@@ -141,7 +140,7 @@ def stop_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
 
 
 def carry_on_planned_starts() -> None:
-    """Give the starts that are due now, of all missions. Safe to run twice at once: each run is looked after by one."""
+    """Give the starts of all missions that are due now. Safe to run concurrently: each run of starts is locked by one worker."""
     for key in PlannedStarts.objects.filter(ended_at=None).values_list("pk", flat=True):
         _carry_on(key)
 
@@ -167,7 +166,7 @@ def _carry_on(key: UUID) -> None:
 
 
 def _end_of(starts: PlannedStarts, now: datetime) -> StartsEnd | None:
-    """Why no further UAV is started; None where the starts go on."""
+    """Return why no further UAV is started; None where the starts continue."""
     if starts.mission.state not in ON_ITS_WAY or starts.mission.deleted_at is not None:
         return StartsEnd.MISSION_OVER
     if now - starts.looked_at > timedelta(seconds=MAX_GAP_S) or starts.created_by is None or not starts.created_by.is_active:
@@ -178,10 +177,10 @@ def _end_of(starts: PlannedStarts, now: datetime) -> StartsEnd | None:
 
 
 def _start(starts: PlannedStarts, entry: PlannedStart, actor: User) -> None:
-    """By the same checks as a single start: what is on the UAV, zones, and the actual state of those in the air."""
+    """Start a UAV with the checks of a single start: its onboard mission, zones, and the UAVs in the air."""
     mission = starts.mission
     given = mission.commands.filter(uav=entry.uav, kind=CommandKind.START, created_at__gt=starts.created_at, state__in=BEGUN).first()
-    if given is not None:  # somebody has started it alone meanwhile
+    if given is not None:  # a user has started it separately meanwhile
         entry.state, entry.command, entry.why = StartState.STARTED, str(given.pk), ""
         return
     try:
@@ -204,7 +203,7 @@ def _end(starts: PlannedStarts, end: StartsEnd, actor: User | None = None) -> No
 
 
 def routes_not_begun(mission: Mission, approval: Approval) -> QuerySet[Route]:
-    """Routes of fleet UAVs whose first flight has not begun and is not about to, in the order of their departures."""
+    """Return routes of fleet UAVs whose first flight has not begun and has no open start, in the order of their departures."""
     begun = approval.commands.filter(kind=CommandKind.START, state__in=BEGUN).values("uav")
     routes = mission.routes.select_related("mission_uav").filter(
         mission_uav__uav__isnull=False, geometry__isnull=False, begun_by=None, continued_by=None, has_failed=False, flights_flown=0

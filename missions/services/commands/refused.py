@@ -1,4 +1,4 @@
-"""Why something is not done that was asked for: reasons with a code for programs and a sentence for people."""
+"""Refusals: reasons with a code for programs and a sentence for users."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,9 @@ from workspace.reason_texts import reason_text
 
 @dataclass(frozen=True)
 class RefusalReason:
-    """`uav` is a place in the mission, where it is about one UAV. `why` is the message as it is stored: as a reason where it has a code."""
+    """One reason. `uav` is its place in the mission, where the reason concerns one UAV. `why` is the stored form of a
+    reason with a code.
+    """
 
     code: str
     message: str
@@ -22,7 +24,7 @@ class RefusalReason:
 
 
 class Refused(Exception):
-    """It cannot be done as things are; `reasons` has at least one."""
+    """Raised when an action is not possible in the current state; `reasons` has at least one."""
 
     def __init__(self, reasons: Sequence[RefusalReason]) -> None:
         super().__init__(" ".join(reason.message for reason in reasons))
@@ -34,6 +36,6 @@ def refuse(code: str, message: str | Reason, uav: int | None = None) -> Refused:
 
 
 def refuse_for(reasons: Sequence[RefusalReason]) -> None:
-    """Raises Refused where there is any."""
+    """Raise Refused where there is any reason."""
     if reasons:
         raise Refused(reasons)

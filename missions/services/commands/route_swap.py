@@ -1,7 +1,7 @@
-"""From one route to another in the air, step by step: held, seen holding, loaded while it hovers, read back, started.
+"""Route swap in the air, step by step: hold, confirmed holding, upload while it hovers, readback, start.
 
-Each step is given when the one before was seen to be done, in the same transaction. Whoever gives the UAV another command about its
-flight meanwhile ends it: that command counts. Where a step fails the UAV stays where it is held.
+Each step is given in the transaction that records the previous one as done. Another flight command given to the UAV meanwhile ends the
+swap and takes effect. If a step fails, the UAV keeps hovering where it is.
 """
 
 from missions.command_rules import HAND_OVER
@@ -13,7 +13,7 @@ NEXT = {CommandKind.HOLD: CommandKind.UPLOAD_MISSION, CommandKind.UPLOAD_MISSION
 
 
 def go_on_after(command: UavCommand) -> UavCommand | None:
-    """The next step after one that was just seen to be done; None where there is none. The caller holds the mission's row."""
+    """Queue the next step after one that was just confirmed; returns None where there is none. The caller holds the mission's row."""
     kind = NEXT.get(CommandKind(command.kind))
     if kind is None or not command.parameters.get(HAND_OVER) or command.mission is None or command.approval is None:
         return None
@@ -34,9 +34,9 @@ def _is_to_fly(mission: Mission, uav: Uav) -> bool:
 
 
 def stuck_hand_overs() -> list[UavCommand]:
-    """The steps that failed, or expired, of UAVs that hover since, without their other route.
+    """Return the failed or expired steps of UAVs that have been hovering since without their other route.
 
-    One to which somebody has given another command about its flight since is in their hands.
+    A UAV that was given another flight command since is left out.
     """
     routes = Route.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, begun_by__isnull=False, continued_by=None)
     found = []

@@ -1,4 +1,4 @@
-"""What is in the way when an autopilot is told to return or abort: it flies home by itself, as high as its own parameters say."""
+"""Obstacles and zones on the RTL path: an autopilot told to return or abort flies by its own parameters."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -29,25 +29,25 @@ from planning.clearance.rtl_paths import InTheWay, Places, ReturnPoint, RtlPaths
 from planning.clearance.surroundings import Surroundings
 from planning.clearance.zone_clearance import ZoneFacts
 
-STEP_M = 5.0  # by which a height is looked for that is clear
+STEP_M = 5.0  # step of the search for a clear height
 
 
 class ReturnState(StrEnum):
     CLEAR = "clear"
     IN_THE_WAY = "in_the_way"
-    UNKNOWN = "unknown"  # where it would fly: not read from it, or not straight
-    NOT_CHECKED = "not_checked"  # nothing that can be looked at here
+    UNKNOWN = "unknown"  # its path: not read from it, or not straight
+    NOT_CHECKED = "not_checked"  # it cannot be checked here
 
 
 @dataclass(frozen=True)
 class ReturnCheck:
-    """Of one UAV; `place` is its own in a mission, None without one.
+    """The check of one UAV; `place` is its place in a mission, None without one.
 
-    `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
+    `height_m` counts from its take-off; `warnings` are sentences, empty where the path is clear.
 
-    `fence_warning` tells that its autopilot ignores the fence that goes with the mission; empty where it does not, or is not known to.
-    `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
-    `detail` names parameters of the autopilot that were not read, for whoever sets it up; empty: none.
+    `fence_warning` states that its autopilot ignores the mission's fence; empty where it does not, or where that is unknown.
+    `safe_height_m` is a height without obstacles; None where the path is clear, or where no height is.
+    `detail` names parameters of the autopilot that were not read, for its installer; empty where there are none.
     """
 
     place: int | None
@@ -64,7 +64,7 @@ class ReturnCheck:
 
 
 def note_rtl_behaviour(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
-    """Read from the vehicle just now; what has nothing to do with its return is left out. No edit: the row's revision stays."""
+    """Store RTL parameters just read from the vehicle, and ignore others. This is no edit: the row's revision stays."""
     own = {name: value for name, value in parameters.items() if name in NAMES.get(autopilot, ())}
     if own:
         autopilot_return = {"autopilot": autopilot, "parameters": own}
@@ -72,7 +72,7 @@ def note_rtl_behaviour(*, uav_id: int, autopilot: str, parameters: dict[str, flo
 
 
 def return_checks(mission: Mission) -> list[ReturnCheck]:
-    """For each UAV that flies a route, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
+    """Return a check for each UAV with a route, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
     routes = [route for route in mission.routes.all() if route.geometry is not None]
     return [replace(_check(mission, route), fence_warning=_fence_warning(mission, route)) for route in routes]
 
@@ -93,7 +93,7 @@ def _fence_warning(mission: Mission, route: Route) -> str:
 
 @dataclass(frozen=True)
 class ReportedReturn:
-    """How a UAV flies home by itself, as far as it was read from it: `own` is None where that is not known, and `why` tells the reason."""
+    """How a UAV returns, as read from it: `own` is None where that is unknown, and `why` is the reason."""
 
     own: RtlBehaviour | None
     state: ReturnState = ReturnState.CLEAR
@@ -110,7 +110,7 @@ class ReportedReturn:
 
 
 def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedReturn:
-    """has_rally: its mission gives it rally points, so that those that it holds are known."""
+    """Return the RTL behaviour read from a UAV. has_rally: its mission has rally points, so the ones onboard are known."""
     values = {"uav": name}
     if uav is None:
         words = _("%(uav)s is not a UAV of the fleet: how it returns is not known.")
@@ -144,7 +144,7 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
 
 
 def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[RtlPaths], table: ZoneTable, *, where: str = "") -> ReturnCheck:
-    """The check with what is in these ways. where: from where they lead, in words; empty: from waypoints of a route, by their numbers."""
+    """Return the check with the troubles on these paths. where: text for their start; empty: waypoints of a route, by their numbers."""
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
         return checked
@@ -155,17 +155,17 @@ def checked_ways(checked: ReturnCheck, own: RtlBehaviour, ways: Sequence[RtlPath
 
 @dataclass(frozen=True, eq=False)
 class WaysNow:
-    """Ways home from where a UAV may be now, and the zones that apply meanwhile."""
+    """RTL paths from where a UAV may be now, and the zones that apply meanwhile."""
 
     ways: tuple[RtlPaths, ...]
     table: ZoneTable
 
     def checked(self, check: ReturnCheck, own: RtlBehaviour) -> ReturnCheck:
-        """Return the check with what is in these ways."""
+        """Return the check with the troubles on these paths."""
         return checked_ways(check, own, self.ways, self.table, where=_("From where it is now"))
 
     def clear_heights_m(self, own: RtlBehaviour, lowest_m: float, step_m: float) -> list[float]:
-        """Return heights from `lowest_m` on, so many metres apart, at which nothing is in the way and which flights may have."""
+        """Return the heights from `lowest_m` on, `step_m` metres apart, that are clear and permitted for flights."""
         most_m = settings.FLIGHT_RULES.max_agl_m
         found, height_m = [], float(math.ceil(lowest_m))
         while height_m <= most_m:
@@ -180,9 +180,9 @@ class WaysNow:
 def ways_now(
     own: RtlBehaviour, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
 ) -> WaysNow:  # fmt: skip
-    """The way home from places at which a UAV may be now, and that to the rally point that it would take instead.
+    """Return the RTL paths from positions at which a UAV may be now, to its home or to the rally point it would take instead.
 
-    window: from when to when it flies home, in seconds since the epoch. Raises NoGraph.
+    window: from when to when it returns, in seconds since the epoch. Raises NoGraph.
     """
     ground = planning_read().ground()
     home_amsl_m = float(ground_heights_m(np.array([home]))[0])
@@ -201,7 +201,7 @@ def ways_now(
 
 
 def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tuple[float, float]) -> tuple[ZoneTable, ZoneFacts]:
-    """The zones near positions (n, 2), lon, lat [deg], that apply at any moment of a window."""
+    """Return the zones near positions (n, 2), lon, lat [deg], that apply at any moment of a window."""
     margins = zone_margins()
     near, _facts = zones_near(table, positions, margins)
     in_force = near.only(near.active_within(window[0] - margins.time_s, window[1] + margins.time_s)) if len(near) else near
@@ -209,7 +209,7 @@ def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tup
 
 
 def _why_unknown(own: RtlBehaviour, name: str, *, has_rally: bool) -> str:
-    """Why nobody can say here where it flies on its way home; empty where that is known."""
+    """Return why the UAV's RTL path is unknown; empty where it is known."""
     if own.untold:
         words = _("Return path of %(uav)s unknown: its autopilot has not reported how it returns. It is not checked.")
         return words % {"uav": name}
@@ -223,13 +223,13 @@ def _why_unknown(own: RtlBehaviour, name: str, *, has_rally: bool) -> str:
 
 
 def _height_names(autopilot: str) -> str:
-    """Parameters that set the return altitude: the autopilot's own, or those of all where it is not known which one it is."""
+    """Return the parameters that set the return altitude: the autopilot's, or those of all types where its type is unknown."""
     own = {autopilot: PARAMETERS[autopilot]} if autopilot in PARAMETERS else PARAMETERS
     return " / ".join(dict.fromkeys(name for groups in own.values() for name in groups[0]))
 
 
 def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[RtlPaths]]:
-    """Of each flight: home from everywhere, and to the nearest rally point from where that is nearer, or from everywhere."""
+    """Return for each flight the paths home from everywhere, and to the nearest rally point from where it is nearer, or from everywhere."""
     ground, margins = planning_read().ground(), zone_margins()
     rally = rally_points(mission, route.mission_uav.sequence)
     positions = [waypoint.position for flight in flights for waypoint in flight.waypoints]
@@ -282,7 +282,9 @@ def _levels(way: RtlPaths, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.
 
 
 def _safe_height_m(ways: Sequence[RtlPaths], own: RtlBehaviour) -> float | None:
-    """The lowest in whole metres, or a little above it, that is clear from everywhere and comes no higher than flights may."""
+    """Return the lowest clear height for all paths, in whole metres or slightly above, within the flight limit; None
+    where there is none.
+    """
     most_m = settings.FLIGHT_RULES.max_agl_m
     highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))
     lowest_m = max(own.height_m, *(way.lowest_safe_m() for way in ways))
@@ -301,7 +303,7 @@ def _safe_height_m(ways: Sequence[RtlPaths], own: RtlBehaviour) -> float | None:
 
 
 def _along(trouble: Trouble) -> str:
-    """From where on a route something is in the way."""
+    """Return the text for the part of a route from which the trouble exists."""
     values = {"first": trouble.first + 1, "last": trouble.last + 1}
     if trouble.to_end and trouble.last > trouble.first:
         return _("From waypoint %(first)s on") % values

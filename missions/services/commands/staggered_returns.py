@@ -1,7 +1,7 @@
-"""A return that begins after something else: a hold of some seconds, another return height, or both, in this order.
+"""A return after a hold of some seconds, a new return height, or both, in this order.
 
-Each step is given when the one before was seen to be done, in the same transaction. Whoever gives the UAV another command about its
-flight meanwhile ends it: that command counts. Where a step fails no return is sent.
+Each step is given in the transaction that records the previous one as done. Another flight command given to the UAV meanwhile ends the
+sequence and takes effect. If a step fails, no return is sent.
 """
 
 from collections.abc import Mapping
@@ -16,12 +16,12 @@ from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandStat
 from missions.services.commands.outbox import SUPERSEDED, WITHDRAWN, queue_command
 from workspace.models import User
 
-HEIGHT_WANTED_S = 60.0  # for which a return height is wanted that a return waits for
+HEIGHT_WANTED_S = 60.0  # lifetime of a return height that a return waits for
 STUCK_FOR_S = 4 * 3_600.0
 
 
 def return_in_steps(*, uav: Uav, parameters: Mapping[str, Any], actor: User | None, why: str = "", **about: object) -> UavCommand:
-    """Give the first step of a return with a wait, a height, or both. about: mission and approval."""
+    """Queue the first step of a return with a wait, a height, or both. about: mission and approval."""
     steps: dict[str, Any] = {name: parameters[name] for name in (WAIT_S, HEIGHT_M) if name in parameters} | {THEN_RETURN: True}
     if WAIT_S in steps:
         return queue_command(uav=uav, kind=CommandKind.HOLD, actor=actor, why=why, parameters=steps, **about)  # type: ignore[arg-type]
@@ -32,7 +32,7 @@ def return_in_steps(*, uav: Uav, parameters: Mapping[str, Any], actor: User | No
 
 
 def return_after(command: UavCommand) -> UavCommand | None:
-    """The next step after one that was just seen to be done; None where its UAV was given another command about its flight since."""
+    """Queue the next step after one that was just confirmed; returns None where its UAV got another flight command since."""
     later = UavCommand.objects.filter(uav=command.uav_id, axis=CommandAxis.FLIGHT, sequence__gt=command.sequence)
     if later.exists():
         return None
@@ -49,9 +49,9 @@ def return_after(command: UavCommand) -> UavCommand | None:
 
 
 def stuck_returns() -> list[UavCommand]:
-    """Steps of returns that failed or expired, so that no return followed, and returns that failed.
+    """Return steps of returns that failed or expired, so that no return followed, and returns that failed.
 
-    One to whose UAV somebody has given another command about its flight since is in their hands.
+    UAVs that were given another flight command since are left out.
     """
     since = timezone.now() - timedelta(seconds=STUCK_FOR_S)
     steps = Q(**{f"parameters__{THEN_RETURN}": True}) | Q(**{f"parameters__{ALONG_ROUTE}": True})

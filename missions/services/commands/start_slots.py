@@ -1,4 +1,4 @@
-"""Whether a UAV may be started now, beside those that are in the air: planned delays keep routes apart only if they are kept."""
+"""Whether a UAV may start now beside those in the air: planned delays separate routes only if they are kept."""
 
 import math
 from dataclasses import replace
@@ -21,24 +21,24 @@ from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts, keep_apart
 from workspace.leases import lock_until_end
 
-START_SLOT = "start-slot"  # what a command failed with
-OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same
+START_SLOT = "start-slot"  # outcome code of a refused start
+OUT_OF_SLOT = "out_of_slot"  # a start's parameter: its user confirmed the take-off although it conflicts
 STARTS_LOCK = 0x05A7_0031  # advisory lock, with the organisation
 NOT_CONFIRMED = (CommandState.FAILED, CommandState.EXPIRED)
-FREE_MARGIN_M = 300.0  # about a route, for UAVs of which no flight is known: they go where somebody steers them
-KEPT_SHARE = 0.5  # of the planned time between two UAVs, which has to be left after all that a start is late or early
+FREE_MARGIN_M = 300.0  # about a route, for UAVs without a known flight, which are steered manually
+KEPT_SHARE = 0.5  # of the planned time between two UAVs that must remain after early or late starts
 
 
 def hold_starts(organisation_id: int) -> None:
-    """One start of an organisation is decided on at a time, to the end of the transaction."""
+    """Lock the starts of an organisation until the end of the transaction."""
     lock_until_end(STARTS_LOCK, organisation_id)
 
 
 def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[RefusalReason]:
-    """Return why this flight cannot start now beside those that are in the air, with how long it has to wait; empty where it may.
+    """Return why this flight cannot start now beside those in the air, with the time to wait; empty where it may.
 
-    given_at: of a start that was given already, so that those given later do not count until they are sent. One that goes on in the air
-    does not take off.
+    given_at: when an already given start was given; starts given later do not count until they are sent. A route that continues in the air
+    has no take-off and is not checked.
     """
     if route.begun_by is not None:
         return []
@@ -81,14 +81,15 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
 def _in_the_air(
     uav: Uav, now: datetime, given_at: datetime | None
 ) -> tuple[list[TimedRoute], list[TimedRoute], list[tuple[str, LonLat | None]]]:
-    """Flights of the organisation that were started and have not ended, in seconds from now; one that is about to start counts from now.
+    """Return the organisation's flights that have started and not ended, in seconds from now; a pending start counts from now.
 
-    First those that are where their plan has them by now, then those in the air of which that is not known: held, told to return or to
-    fly at another speed since, failed, aborted, or of a start that was sent and not confirmed. Then UAVs in the air of which no such
-    flight is known, by their names, with where they were last: flown by hand, say.
+    First those that are as planned. Then those in the air of which that is unknown: held, told to return or to fly at another speed since,
+    failed, aborted, or with a start that was sent and not confirmed. Then UAVs in the air without such a flight, for example manually
+    flown,
+    by name with their last position.
     """
     since = now - timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
-    is_real = uav.twin_of_id is None  # twins and other UAVs are in nobody's way of each other
+    is_real = uav.twin_of_id is None  # twins and other UAVs do not obstruct each other
     waits = Q(state=CommandState.QUEUED) if given_at is None else Q(state=CommandState.QUEUED, created_at__lt=given_at)
     starts = list(
         UavCommand.objects.filter(
@@ -107,7 +108,7 @@ def _in_the_air(
     later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
     last = dict(later.values_list("uav_id").annotate(Max("sequence")))
     others = Uav.objects.filter(organisation=uav.organisation_id, twin_of__isnull=is_real).exclude(pk=uav.pk)
-    gone = {"is_simulated": True, "state": UavState.RETIRED}  # in the middle of a flight, say; real ones are not retired in the air
+    gone = {"is_simulated": True, "state": UavState.RETIRED}  # possibly in mid-flight; real ones are not retired in the air
     names = dict(others.exclude(**gone).values_list("pk", "name"))
     in_the_air = places_in_the_air(names)
     planned = Route.objects.filter(mission__in=[start.mission_id for start in starts], mission_uav__uav__in=uav_ids)
@@ -133,7 +134,7 @@ def _in_the_air(
 
 
 def _share_an_area(one: TimedRoute, other: TimedRoute, margin_m: float) -> bool:
-    """Whether the boxes about two routes come within the margin of each other: ways home are inside of them."""
+    """Whether the bounding boxes of two routes come within the margin of each other; they include the RTL paths."""
     return _come_near(one, other.position.min(axis=0), other.position.max(axis=0), margin_m)
 
 
@@ -142,7 +143,7 @@ def _is_near(route: TimedRoute, place: LonLat, margin_m: float) -> bool:
 
 
 def _come_near(route: TimedRoute, other_low: np.ndarray, other_high: np.ndarray, margin_m: float) -> bool:
-    """Whether a box comes within the margin of the box about a route."""
+    """Whether a box comes within the margin of the bounding box of a route."""
     low, high = route.position.min(axis=0), route.position.max(axis=0)
     metres_per_degree_lon = METRES_PER_DEGREE_LON * max(math.cos(math.radians(low[1])), 0.01)
     margin_deg = margin_m / np.array([metres_per_degree_lon, METRES_PER_DEGREE_LAT])
@@ -150,7 +151,7 @@ def _come_near(route: TimedRoute, other_low: np.ndarray, other_high: np.ndarray,
 
 
 def _since(route: Route, flight: int, *, started_s: float) -> TimedRoute | None:
-    """One flight of a route as it is flown when it takes off at started_s; None where its times are not known."""
+    """Return one flight of a route as flown with a take-off at started_s; None where its times are unknown."""
     timed = route_in_time(route)
     if timed is None:
         return None
@@ -159,8 +160,8 @@ def _since(route: Route, flight: int, *, started_s: float) -> TimedRoute | None:
 
 
 def _flight_of(timed: TimedRoute, flight: int) -> TimedRoute:
-    """Cut at the waypoints where it stands between two flights."""
-    assert timed.on_ground is not None  # noqa: S101 - asked for by the caller
+    """Return one flight, cut at the waypoints where the UAV is on the ground between two flights."""
+    assert timed.on_ground is not None  # noqa: S101 - the caller has checked it
     stands = np.flatnonzero(timed.on_ground)
     first = 0 if flight == 1 else int(stands[flight - 2])
     last = len(timed.position) - 1 if flight > len(stands) else int(stands[flight - 1])
@@ -181,7 +182,7 @@ def _flight_of(timed: TimedRoute, flight: int) -> TimedRoute:
 
 
 def reasons_to_carry_later(start: UavCommand) -> list[RefusalReason]:
-    """The same for a start that was given some time ago and is about to be carried out; one that was sent may be in the air."""
+    """Return reasons to delay a start that was given some time ago and is about to be delivered; a sent one may be in the air."""
     if start.parameters.get(OUT_OF_SLOT) or start.sent_at is not None:
         return []
     route = (

@@ -1,4 +1,4 @@
-"""Commands that a person gives to one UAV: what is possible in its state, and with which figures."""
+"""Commands of a user to one UAV: what is possible in its state, and with which values."""
 
 from datetime import datetime, timedelta
 from typing import Any
@@ -43,11 +43,12 @@ BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_
 
 
 def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", parameters: dict[str, Any] | None = None) -> UavCommand:
-    """Give one UAV a command, as part of the mission that it has in hand if there is one.
+    """Give one UAV a command, as part of its current mission if there is one.
 
-    parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off, `out_of_slot`
-    for a start although others in the air are near its route, `height_m` above the take-off for a return height, with `then_return` where
-    it is to return at that; of a return `wait_s`, which it holds before, `height_m`, which is set before, or `along_route`.
+    parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off for a take-off, `out_of_slot` for a
+    start although others in the air are near its route, `height_m` above the take-off for a return height, with `then_return` where it is
+    to
+    return at that. For a return `wait_s`, which it holds before, `height_m`, which is set before, or `along_route`.
     Raises Refused.
     """
     if kind not in BY_HAND:
@@ -58,7 +59,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
     mission = mission_in_hand(uav)
     check = check_approval(mission, now=timezone.now()) if mission is not None and kind == CommandKind.START else None
     with transaction.atomic():
-        if mission is not None and kind in SETS_IN_MOTION:  # what stops a UAV waits for nobody who holds its mission
+        if mission is not None and kind in SETS_IN_MOTION:  # stopping a UAV does not wait for the lock of its mission
             mission = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         approval = None if mission is None else approval_in_force(mission)
         if kind in SETS_IN_MOTION:
@@ -74,7 +75,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
 
 
 def mission_in_hand(uav: Uav) -> Mission | None:
-    """The dispatched or active mission in which it flies a route: that of which it was sent one last, else the newest that plans one."""
+    """Return the dispatched or active mission in which it flies a route: the one sent to it last, else the newest that plans one."""
     missions = list(
         Mission.objects.filter(
             deleted_at=None,
@@ -89,12 +90,12 @@ def mission_in_hand(uav: Uav) -> Mission | None:
 
 
 def speed_limits_mps(uav: Uav) -> tuple[float, float]:
-    """Between which it can be told to fly: its airspeed is the most, or what it cruises at where that is not stated."""
+    """Return the lowest and highest speed it can be commanded: its airspeed, or its cruise speed where that is not stated."""
     return MIN_SPEED_MPS, performance_of(uav).max_airspeed_mps or uav.speed_mps
 
 
 def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str, Any]:
-    """Those that the kind has, in their bounds."""
+    """Return the parameters of the kind, within their bounds."""
     if kind == CommandKind.CHANGE_SPEED:
         return {"speed_mps": _within("speed_mps", given, *speed_limits_mps(uav), "m/s")}
     if kind == CommandKind.TAKE_OFF:
@@ -111,7 +112,7 @@ def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str,
 
 
 def _of_return(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
-    """Along its route, or after a wait, at a height that is set before, or both. Raises Refused."""
+    """Return a return's parameters: along its route, after a wait, at a height set before, or both. Raises Refused."""
     if set(given) == {ALONG_ROUTE}:
         if given[ALONG_ROUTE] and uav.link == LinkKind.HTTP:
             raise refuse(
@@ -126,7 +127,9 @@ def _of_return(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
-    """Raises Refused, also of a UAV whose autopilot has not told how it returns: what to set on it is not known then."""
+    """Return a return height's parameters. Raises Refused, also if the autopilot's RTL behaviour was never read: its
+    parameters are unknown.
+    """
     values = {"uav": uav.name}
     if uav.link == LinkKind.HTTP:
         raise refuse("not_by_companion", _("The return height of %(uav)s is set by its companion, not from here.") % values)
@@ -147,7 +150,7 @@ def _within(name: str, given: dict[str, Any], low: float, high: float, unit: str
 
 
 def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval: Approval | None) -> tuple[Mission, Approval]:
-    """A UAV moves for a mission that is approved and on its way, and goes on with one that was started. Raises Refused."""
+    """Return the mission and approval for which the UAV moves: on its way, and started if it resumes. Raises Refused."""
     values = {"uav": uav.name}
     if mission is None or approval is None or mission.state not in ON_ITS_WAY:
         raise refuse("no_mission", _("%(uav)s has no mission.") % values)
@@ -167,7 +170,7 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
 def _flight_to_start(
     uav: Uav, mission: Mission, approval: Approval, check: ApprovalCheck | None, now: datetime, *, out_of_slot: bool
 ) -> int:
-    """That is on the UAV, seen there, and due. Raises Refused."""
+    """Return the flight that is onboard, read back, and due. Raises Refused."""
     values = {"uav": uav.name}
     upload = upload_of(approval, uav.pk)
     if upload is None or upload.state != CommandState.APPLIED:
@@ -186,12 +189,12 @@ def _flight_to_start(
 
 
 def _reasons_for(place: int, check: ApprovalCheck) -> list[RefusalReason]:
-    """As things are now, for this UAV: zones may have come since the mission was sent. Its own departure is looked at by itself."""
+    """Return current reasons for this UAV: zones may be newer than the upload. Its departure is checked separately."""
     return [reason for reason in check.reasons if reason.uav in (None, place) and reason.code != "departure_past"]
 
 
 def _refuse_untimely(departs_at: datetime, now: datetime, values: dict[str, str]) -> None:
-    """Zones and other missions were looked at for one departure, with a margin."""
+    """Raise Refused outside the margin of the departure for which zones and other missions were checked."""
     margin = timedelta(seconds=settings.ZONE_RULES.time_margin_s)
     if now < departs_at - margin:
         words = _("%(uav)s departs at %(time)s UTC; it cannot be started yet.")

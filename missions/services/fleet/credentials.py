@@ -1,6 +1,6 @@
-"""What a UAV proves itself with: a token for the HTTP link, a key that signs MAVLink.
+"""Credentials of UAVs: a token for the HTTP link, a key that signs MAVLink.
 
-Each is shown once. Kept is only what is needed to check it: a token's SHA-256, the salt of a key.
+Each is shown once. Only what is needed to check it is stored: a token's SHA-256, the salt of a key.
 """
 
 import secrets
@@ -27,11 +27,11 @@ KEY_PURPOSE = "missions.mavlink-signing-key"
 @dataclass(frozen=True)
 class NewCredential:
     credential: UavCredential
-    secret: str  # nobody can read it again
+    secret: str  # cannot be read again
 
 
 def make_credential(*, uav: Uav, actor: User, kind: CredentialKind, insist_reason: str = "") -> NewCredential:
-    """A new token or key. One before it that was used counts until the new one is used; one that nobody used counts no more.
+    """Make a token or key. A used predecessor stays valid until the new one is used; an unused one is revoked at once.
 
     Raises Refused where one is replaced in flight, or with a command on its way, without a reason to insist.
     """
@@ -56,7 +56,7 @@ def make_credential(*, uav: Uav, actor: User, kind: CredentialKind, insist_reaso
 
 
 def revoke_credential(*, credential: UavCredential, actor: User, insist_reason: str = "") -> None:
-    """It counts no more from this moment, nor do those that it replaced. Nothing happens to one that was revoked.
+    """Revoke a credential and those that it replaced, at once. A revoked one is left unchanged.
 
     Raises Refused as make_credential.
     """
@@ -72,14 +72,16 @@ def revoke_credential(*, credential: UavCredential, actor: User, insist_reason: 
         _note(credential.uav, actor, "revoke", credential, insist_reason)
 
 
-# Nobody waits for the disk, as for the tokens of users.
+# No request waits for the disk, as for the tokens of users.
 _NOTE_USE = """
     WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
     UPDATE missions_uavcredential SET last_used_at = %s FROM quick WHERE id = %s"""
 
 
 def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) -> None:
-    """When a UAV proved itself with this token last, to the minute: it asks every few seconds. The first use ends those before it."""
+    """Record when a UAV last authenticated with this token, to the minute, as it polls every few seconds. The first
+    use ends earlier tokens.
+    """
     now = timezone.now()
     if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
         prepared_rows(_NOTE_USE, [now, credential_id])
@@ -88,13 +90,13 @@ def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) ->
 
 
 def note_mavlink_key_use(*, credential_ids: Collection[int]) -> None:
-    """UAVs have signed with these. Those before them count no more."""
+    """Record that UAVs have signed with these keys, which revokes earlier ones."""
     UavCredential.objects.filter(pk__in=credential_ids).update(last_used_at=timezone.now())
     _revoke_replaced_by(credential_ids)
 
 
 def _revoke_replaced_by(used_ids: Collection[int]) -> None:
-    """The newest of its kind was used: the UAV has it."""
+    """Revoke the predecessors of the newest credential of a kind after its first use: the UAV has it."""
     newest = UavCredential.objects.filter(pk__in=used_ids, revoked_at=None, replaced_at=None)
     for uav_id, kind in newest.values_list("uav", "kind"):
         replaced = UavCredential.objects.filter(uav=uav_id, kind=kind, revoked_at=None, replaced_at__isnull=False)
@@ -102,7 +104,7 @@ def _revoke_replaced_by(used_ids: Collection[int]) -> None:
 
 
 def mavlink_signing_key(*, credential: UavCredential) -> bytes:
-    """The 32 bytes that both ends sign with: made from the salt and this installation's secret key, and stored nowhere."""
+    """Return the 32 bytes that both ends sign with. They are derived from the salt and this installation's secret key, and never stored."""
     return salted_hmac(KEY_PURPOSE, f"{credential.uav_id}:{credential.key_salt}", algorithm="sha256").digest()
 
 

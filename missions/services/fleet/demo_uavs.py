@@ -11,7 +11,7 @@ TYPE_FIGURES = ("max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "max
 
 
 def create_demo_uavs(*, organisation: Organisation) -> int:
-    """Return how many are new; what is there already stays as it is, a UAV wherever it stands now."""
+    """Create the missing demo UAVs and return how many are new; existing ones keep their values and positions."""
     return sum(_create_uav(uav, _base(base, organisation), organisation) for base in BASES for uav in base.uavs)
 
 
@@ -21,7 +21,7 @@ def _base(planned: DemoBase, organisation: Organisation) -> Base:
 
 
 def _create_uav(uav: BasedUav, base: Base, organisation: Organisation) -> bool:
-    """Range, speed, sensors and performance are its type's: the UAV's name without its number."""
+    """Create a UAV. Its type, named like it without the number, supplies range, speed, sensors and performance."""
     facts = {name: getattr(uav, name) for name in TYPE_FIGURES} | {"sensors": list(uav.sensors)}
     uav_type, _ = UavType.objects.get_or_create(organisation=organisation, name=uav.type_name, defaults=facts)
     _, is_new = Uav.objects.get_or_create(

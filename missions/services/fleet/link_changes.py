@@ -1,4 +1,4 @@
-"""By which door, and under which number, a UAV is reached: this stays as it is while anything is on its way to it."""
+"""Guards of a UAV's link and system id, which may not change while a flight or command depends on them."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -15,19 +15,19 @@ ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 
 
 def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
-    """Raises Refused for a change after which a command that waits, be it an abort, would reach nobody or somebody else.
+    """Raise Refused for a change after which a waiting command, such as an abort, would reach no UAV or another one.
 
-    Nor is a UAV that flies taken for a simulated one: somebody else would answer in its place. That it is real can be said at any time.
+    Nor may a flying UAV become simulated: another vehicle would answer in its place. It can become a real one at any time.
 
     The caller holds the UAV's row, so that no command is given meanwhile. before: its facts.
     """
     changed = [name for name in REACHED_BY if getattr(uav, name) != before[name]]
     if uav.is_simulated and not before["is_simulated"]:
         changed.append("is_simulated")
-    is_retired = uav.state == UavState.RETIRED != before["state"]  # it is let in no more, and has no system id
+    is_retired = uav.state == UavState.RETIRED != before["state"]  # it may no longer connect, and has no system id
     if is_retired:
         changed.append("state")
-    if not changed or (changed == ["mavlink_system_id"] and before["mavlink_system_id"] is None):  # one without an id reached nobody
+    if not changed or (changed == ["mavlink_system_id"] and before["mavlink_system_id"] is None):  # without an id it had no link
         return
     if is_retired:
         refuse_for(_removal_reasons(uav, is_flight_one=not before["is_simulated"])[:1])
@@ -40,7 +40,7 @@ def removal_reasons(uav: Uav) -> list[RefusalReason]:
 
 
 def refuse_while_needed(uav: Uav) -> None:
-    """Raises Refused for a key or token that is replaced or revoked while the UAV flies, or anything is on its way to it."""
+    """Raise Refused for a key or token that is replaced or revoked while the UAV flies, or a command is on its way to it."""
     refuse_for(_reasons(uav, is_flight_one=True))
 
 
@@ -63,7 +63,7 @@ def _removal_reasons(uav: Uav, *, is_flight_one: bool) -> list[RefusalReason]:
 
 
 def _needs(uav: Uav, *, is_flight_one: bool) -> Iterator[str]:
-    """What the UAV has to be reached for."""
+    """Yield the reasons for which the UAV must stay reachable."""
     if uav.commands.filter(state__in=OPEN_COMMANDS).exists():
         yield COMMANDS_WAITING
     flown = MissionUav.objects.filter(uav=uav, mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)

@@ -1,4 +1,4 @@
-"""What UAVs report of themselves moves their rows forward: where each was last seen, its heading, its battery."""
+"""Updates of UAV rows from reports: last position, heading, battery."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ class ReportedPosition:
 
 
 def note_reported_positions(*, reports: Sequence[ReportedPosition]) -> int:
-    """At most one report a UAV. One that is older than what the row holds changes nothing. Returns how many rows moved.
+    """Store at most one report per UAV, unless it is older than the row. Returns how many rows changed.
 
     A report is no edit: the row's revision stays.
     """

@@ -1,4 +1,4 @@
-"""What every write to the fleet has in common: one lock, one revision, one entry in the history, and a way back after a deletion."""
+"""What all writes to the fleet share: one lock, one revision, one history entry, and restoring after a deletion."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
@@ -19,7 +19,7 @@ Facts = Callable[[Any], dict[str, Any]]
 
 
 class NameTaken(Exception):
-    """Another row of the same kind has this name; `subject` says which kind."""
+    """Raised when another row of the same kind has this name; `subject` is the kind."""
 
     def __init__(self, subject: str = "uav") -> None:
         super().__init__(subject)
@@ -27,15 +27,15 @@ class NameTaken(Exception):
 
 
 class UavExternalIdTaken(Exception):
-    """Another UAV of the organisation has this external id."""
+    """Raised when another UAV of the organisation has this external id."""
 
 
 class SystemIdTaken(Exception):
-    """Another UAV has this MAVLink system id."""
+    """Raised when another UAV has this MAVLink system id."""
 
 
 class SystemIdQuota(Exception):
-    """The organisation has as many MAVLink system ids as one may have."""
+    """Raised when the organisation has its maximum number of MAVLink system ids."""
 
     def __init__(self, limit: int) -> None:
         super().__init__(str(limit))
@@ -43,7 +43,7 @@ class SystemIdQuota(Exception):
 
 
 class FleetChanged(Exception):
-    """Somebody else was faster: the row is not the one that the caller has seen."""
+    """Raised when another user changed the row after the caller read it."""
 
     def __init__(self, subject: str, key: int) -> None:
         super().__init__(f"{subject} {key}")
@@ -52,7 +52,7 @@ class FleetChanged(Exception):
 
 
 class FleetRowInUse(Exception):
-    """Something points at the row: missions at a UAV, UAVs at a type or a base."""
+    """Raised when other rows refer to the row: missions to a UAV, UAVs to a type or a base."""
 
     def __init__(self, subject: str, users: int) -> None:
         super().__init__(f"{subject}: {users}")
@@ -61,14 +61,14 @@ class FleetRowInUse(Exception):
 
 
 class NotDeleted(Exception):
-    """There is nothing to bring back."""
+    """Raised when there is no deleted row to restore."""
 
 
 def locked(row: Row, expected_revision: int | None) -> Row:
-    """The row as it is now, held until the caller's transaction ends. Raises FleetChanged.
+    """Return the current row, locked until the caller's transaction ends. Raises FleetChanged.
 
-    Also against rows that come to point at it, as a UAV's records do all the time: a name or a system id is a key, and who changes one
-    while he holds less than that, and a report of the UAV is being stored, is in its way, and it in his.
+    The lock also blocks new rows that refer to it, such as a UAV's records. A name or a system id is a key: changing one under a weaker
+    lock while a report of the UAV is being stored would deadlock.
     """
     held = type(row)._default_manager.select_for_update().filter(pk=row.pk).first()
     if held is None or (expected_revision is not None and held.revision != expected_revision):
@@ -77,7 +77,7 @@ def locked(row: Row, expected_revision: int | None) -> Row:
 
 
 def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] | None, facts: Facts) -> Row:
-    """Save a row that is new, changed or brought back, with its entry in the history.
+    """Save a row that is new, changed or restored, with its history entry.
 
     Raises NameTaken, ExternalIdTaken or SystemIdTaken.
     """
@@ -100,7 +100,7 @@ def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] 
 
 
 def deleted(row: Row, *, actor: User, expected_revision: int | None, facts: Facts) -> None:
-    """Delete a row that nothing points at. Raises FleetChanged or FleetRowInUse."""
+    """Delete a row that no other row refers to. Raises FleetChanged or FleetRowInUse."""
     subject, key = SUBJECTS[type(row)], row.pk
     try:
         with transaction.atomic():
@@ -113,7 +113,7 @@ def deleted(row: Row, *, actor: User, expected_revision: int | None, facts: Fact
 
 
 def facts_to_restore(model: type[Row], *, organisation: Organisation, key: int) -> dict[str, Any]:
-    """Raises NotDeleted."""
+    """Return the facts of a deleted row. Raises NotDeleted."""
     facts = facts_when_deleted(organisation, SUBJECTS[model], key)
     if facts is None or model._default_manager.filter(pk=key).exists():
         raise NotDeleted

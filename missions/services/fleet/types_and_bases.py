@@ -18,12 +18,12 @@ TYPE_FIELDS = (
 
 
 def create_uav_type(*, organisation: Organisation, actor: User, values: dict[str, Any]) -> UavType:
-    """values has some of TYPE_FIELDS, name among them. Raises NameTaken."""
+    """Create a type. values has some of TYPE_FIELDS, name among them. Raises NameTaken."""
     return stored(UavType(organisation=organisation, **values), actor=actor, action="create", before=None, facts=_type_facts)
 
 
 def change_uav_type(*, uav_type: UavType, actor: User, values: dict[str, Any], expected_revision: int | None) -> UavType:
-    """Raises FleetChanged or NameTaken."""
+    """Change a type. Raises FleetChanged or NameTaken."""
     with transaction.atomic():
         held = locked(uav_type, expected_revision)
         before = _type_facts(held)
@@ -34,26 +34,26 @@ def change_uav_type(*, uav_type: UavType, actor: User, values: dict[str, Any], e
 
 
 def delete_uav_type(*, uav_type: UavType, actor: User, expected_revision: int | None) -> None:
-    """Raises FleetChanged, or FleetRowInUse while a UAV is of this type."""
+    """Delete a type. Raises FleetChanged, or FleetRowInUse while a UAV is of this type."""
     deleted(uav_type, actor=actor, expected_revision=expected_revision, facts=_type_facts)
 
 
 def restore_uav_type(*, organisation: Organisation, actor: User, key: int) -> UavType:
-    """Raises NotDeleted or NameTaken."""
+    """Restore a deleted type. Raises NotDeleted or NameTaken."""
     facts = facts_to_restore(UavType, organisation=organisation, key=key)
-    values = {field: facts[field] for field in TYPE_FIELDS if field in facts}  # it may have gone before a field was there
+    values = {field: facts[field] for field in TYPE_FIELDS if field in facts}  # it may have been deleted before a field existed
     row = UavType(pk=key, organisation=organisation, revision=facts["revision"] + 1, **values)
     return stored(row, actor=actor, action="restore", before=None, facts=_type_facts)
 
 
 def create_base(*, organisation: Organisation, actor: User, position: LonLat, values: dict[str, Any]) -> Base:
-    """values has the name and perhaps a note. Raises NameTaken."""
+    """Create a base. values has the name and optionally a note. Raises NameTaken."""
     row = Base(organisation=organisation, location=Point(*position, srid=4326), **values)
     return stored(row, actor=actor, action="create", before=None, facts=_base_facts)
 
 
 def change_base(*, base: Base, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None) -> Base:
-    """Its UAVs follow a new name; where they stand is theirs. Raises FleetChanged or NameTaken."""
+    """Change a base. Its UAVs take over a new name and keep their own positions. Raises FleetChanged or NameTaken."""
     with transaction.atomic():
         held = locked(base, expected_revision)
         before = _base_facts(held)
@@ -68,12 +68,12 @@ def change_base(*, base: Base, actor: User, position: LonLat | None, values: dic
 
 
 def delete_base(*, base: Base, actor: User, expected_revision: int | None) -> None:
-    """Raises FleetChanged, or FleetRowInUse while it is the base of a UAV."""
+    """Delete a base. Raises FleetChanged, or FleetRowInUse while it is the base of a UAV."""
     deleted(base, actor=actor, expected_revision=expected_revision, facts=_base_facts)
 
 
 def restore_base(*, organisation: Organisation, actor: User, key: int) -> Base:
-    """Raises NotDeleted or NameTaken."""
+    """Restore a deleted base. Raises NotDeleted or NameTaken."""
     facts = facts_to_restore(Base, organisation=organisation, key=key)
     row = Base(
         pk=key, organisation=organisation, name=facts["name"], note=facts["note"], location=Point(facts["position"], srid=4326),

@@ -27,7 +27,7 @@ OF_LINK = ("link", "mavlink_system_id", "is_simulated", "allows_unsigned")
 
 
 def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
-    """values has some of FIELDS, name among them, and perhaps `base` and `uav_type`; without a position it stands at its base.
+    """Create a UAV. values has some of FIELDS, name among them, and optionally `base` and `uav_type`; its base supplies a missing position.
 
     Raises NameTaken, ExternalIdTaken, SystemIdTaken or SystemIdQuota.
     """
@@ -48,10 +48,10 @@ def change_uav(
     expected_revision: int | None = None,
     by_simulation: bool = False,
 ) -> Uav:
-    """Retired, it gives its MAVLink system id back.
+    """Change a UAV. When it is retired, its MAVLink system id is released.
 
-    Raises FleetChanged, what create_uav raises, or Refused for another link or system id while anything is on its way. Those of a
-    simulated twin, which no real aircraft may answer for, change `by_simulation` alone.
+    Raises FleetChanged, what create_uav raises, or Refused for another link or system id while a command or flight depends on it. Only
+    `by_simulation` changes those of a simulated twin, for which no real aircraft may answer.
     """
     with transaction.atomic():
         held = locked(uav, expected_revision)
@@ -69,10 +69,10 @@ def change_uav(
 
 
 def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -> None:
-    """Its credentials go with it.
+    """Delete a UAV and its credentials.
 
-    Raises FleetChanged, FleetRowInUse where a mission points at it, or Refused while it flies or a command to it is on its way, and of a
-    simulated twin, which goes with its UAV.
+    Raises FleetChanged, FleetRowInUse where a mission refers to it, or Refused while it flies or a command to it is on its way, and for a
+    simulated twin, which is deleted with its UAV.
     """
     if uav.twin_of_id is not None:
         raise refuse_twin(uav)
@@ -82,22 +82,22 @@ def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -
 
 
 def refuse_twin(uav: Uav) -> Refused:
-    """What is not done with the simulated twin of another UAV."""
+    """Return the refusal of an action on another UAV's simulated twin."""
     return refuse("simulated_twin", _("%(uav)s is the simulated twin of another UAV.") % {"uav": uav.name})
 
 
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
-    """As it was when it was deleted, but without credentials. Raises NotDeleted, or what create_uav raises."""
+    """Restore a deleted UAV without its credentials. Raises NotDeleted, or what create_uav raises."""
     facts = facts_to_restore(Uav, organisation=organisation, key=key)
     type_key, base_key = facts.get("uav_type"), facts.get("base")
-    uav = Uav(  # an entry of before there were states, types and bases says nothing of them
+    uav = Uav(  # an entry older than states, types and bases has none of them
         pk=key, organisation=organisation, revision=facts.get("revision", 1) + 1,
         **{field: facts[field] for field in FIELDS if field in facts},
         uav_type=None if type_key is None else UavType.objects.filter(organisation=organisation, pk=type_key).first(),
     )  # fmt: skip
     base = None if base_key is None else Base.objects.filter(organisation=organisation, pk=base_key).first()
     if base is not None:
-        uav.base, uav.base_name = base, base.name  # perhaps it has another name by now
+        uav.base, uav.base_name = base, base.name  # it may have been renamed
     uav.location = Point(facts["position"], srid=4326)
     located_at = facts.get("located_at")
     uav.located_at = located_at and datetime.fromisoformat(located_at)
@@ -107,9 +107,9 @@ def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
 
 
 def _refuse_beyond_quota(uav: Uav) -> None:
-    """Raises SystemIdQuota. An installation has 254 ids; one organisation alone may take them all.
+    """Raise SystemIdQuota at the quota: an installation has 254 ids, which one organisation could use up.
 
-    Two that take the last one at once wait for each other.
+    Concurrent requests for the last id are serialised.
     """
     if uav.mavlink_system_id is None or Organisation.objects.count() == 1:
         return
@@ -120,7 +120,7 @@ def _refuse_beyond_quota(uav: Uav) -> None:
 
 
 def _put(uav: Uav, values: dict[str, Any]) -> None:
-    """A base gives its name; a name alone means the base that has it, if there is one."""
+    """Set the values. A base supplies the base name; a name alone selects the base of that name, if there is one."""
     for field, value in values.items():
         setattr(uav, field, value)
     if values.get("base") is not None:

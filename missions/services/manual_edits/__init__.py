@@ -1,1 +1,1 @@
-"""Routes changed by hand, and what of the changes is kept when the mission is planned again."""
+"""Manually edited routes, and which edits are kept when the mission is planned again."""

@@ -1,4 +1,4 @@
-"""What is wrong with a route as somebody wishes it by hand, and what it would take: the same whether it is dragged or to be kept."""
+"""Faults and figures of a manually edited route: the same checks while it is dragged and before it is saved."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -38,7 +38,7 @@ HIGHER_M = 0.05
 
 @dataclass(frozen=True, eq=False)
 class ManualEditContext:
-    """What a look stands on. heights: of the terrain model; None: there is none."""
+    """Map data of a check. heights: of the terrain model; None: there is none."""
 
     network: Network
     heights: GroundHeights | None
@@ -46,14 +46,14 @@ class ManualEditContext:
 
 
 def manual_edit_context() -> ManualEditContext:
-    """Of now. Raises NoGraph."""
+    """Return the current context. Raises NoGraph."""
     ground = planning_read().ground()
     return ManualEditContext(ground.network(), heights_at(ground.dataset_version), ground.dataset_version)
 
 
 @dataclass(frozen=True)
 class FlownEditedPoint:
-    """What is flown at a wished point: seconds after the departure, battery left then, and the speed over ground on the way there."""
+    """What is flown at a requested point: seconds after the departure, remaining battery, and the speed over ground on the leg to it."""
 
     arrival_s: float
     battery_left_percent: float | None
@@ -62,9 +62,9 @@ class FlownEditedPoint:
 
 @dataclass(frozen=True)
 class ManualEditCheck:
-    """A route as it is wished. faults: what is wrong, by its place, all of it; without `flown` it cannot be drawn or flown at all.
+    """Check of an edited route. faults: all faults by their place; without `flown` the route can neither be drawn nor flown.
 
-    points: for each wished point.
+    points: for each requested point.
     """
 
     faults: dict[str, str]
@@ -73,7 +73,9 @@ class ManualEditCheck:
 
 
 def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[EditedPoint]) -> ManualEditCheck:
-    """What would be refused of these points, and what flying them would take. Nothing is kept. Raises InvalidRequest where nobody flies."""
+    """Return the faults of these points and the figures of flying them, and store nothing. Raises InvalidRequest if
+    the UAV has no route.
+    """
     ground = manual_edit_context()
     route = kept_route(mission, uav, ground.dataset_version)
     if route is None:
@@ -93,7 +95,7 @@ def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[EditedPoin
 
 
 def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest, uav: int) -> tuple[FlownEditedPoint, ...]:
-    assert flown.waypoints is not None and flown.timing is not None  # noqa: S101 - just drawn
+    assert flown.waypoints is not None and flown.timing is not None  # noqa: S101 - the call above sets them
     asked, clock = request.uavs[uav], flown.timing
     speeds_mps = ground_speeds(
         flown.waypoints, cruise_speed_mps=asked.cruise_speed_mps, performance=asked.performance, conditions=request.conditions
@@ -116,7 +118,7 @@ def _points_flown(flown: PlannedRoute, wished: RoutePoints, request: PlanRequest
 
 
 def point_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint], ground: ManualEditContext) -> dict[str, str]:
-    """What is wrong with single points: their places, heights and speeds."""
+    """Return the faults of single points: their positions, heights and speeds."""
     faults: dict[str, str] = {}
     flight, network = settings.FLIGHT_RULES, ground.network
     heights_m = _node_heights_m(network, {waypoint.asset.key for waypoint in until_now if waypoint.asset is not None})
@@ -134,7 +136,7 @@ def point_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint
 
 
 def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str, str]:
-    """Where waypoints and legs as they are wished, straight from one to the next, pass something tall too low."""
+    """Return the faults of points and straight legs, as requested, that pass an obstacle too low."""
     flight = settings.FLIGHT_RULES
     under_m = np.full(len(points), np.nan) if ground.heights is None else ground.heights(points.position)
     amsl_m = None if np.isnan(under_m).any() else points.agl_m + under_m
@@ -144,8 +146,8 @@ def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str,
         return {}
     near = legs_too_near(
         waypoints, spans, ground.heights, flight
-    )  # rounded to centimetres a planned route may seem too low, but is not too near
-    stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # straight up or down to the next one
+    )  # rounded to centimetres a planned route may appear too low, but not too near
+    stands = np.append((points.position[:-1] == points.position[1:]).all(axis=1), False)  # vertical to the next point
     faults: dict[str, str] = {}
     for place, is_leg, agl_m, span in zip(low.place.tolist(), low.is_leg.tolist(), low.agl_m.tolist(), low.span.tolist(), strict=True):
         legs = [place] if is_leg else [leg for leg in (place - 1, place) if stands[leg]]
@@ -155,29 +157,29 @@ def obstacle_faults(points: RoutePoints, ground: ManualEditContext) -> dict[str,
 
 
 def _wire_faults(flown: PlannedRoute, ground: ManualEditContext) -> dict[str, str]:
-    """The last look at the route as it is drawn over the ground."""
-    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    """Return the faults of the final check against wires, of the route as drawn over the terrain."""
+    assert flown.waypoints is not None  # noqa: S101 - set by the drawing
     heights = None if flown.is_flat else ground.heights
     near = spans_too_near(flown.waypoints, spans_of(ground.network), heights, settings.FLIGHT_RULES)
     return {"waypoints": _("The route passes a mast or wires too near.")} if near else {}
 
 
 def _least_agl_m(waypoint: KeptWaypoint, network: Network, node_heights_m: Mapping[int, float]) -> float:
-    """How low a waypoint may be that stays: with clearance above what is there, and where that is not known as high as between targets."""
+    """Return the minimum height of a kept waypoint [m AGL]: clearance above its asset, or the transit height where that is unknown."""
     flight, asset = settings.FLIGHT_RULES, waypoint.asset
     if asset is None:
         return min(waypoint.altitude_agl_m, flight.transit_agl_m)
     height_m = asset_height_m(kind=asset.kind, subtype=asset.subtype, tagged_m=asset.height_m, voltage_v=asset.max_voltage_v)
     if waypoint.stretch is not None:
         height_m = max(height_m, tallest_support_m(network, asset.key, waypoint.stretch))
-    elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # by its line's voltage it may be taken to be taller
+    elif asset.kind in {AssetKind.TOWER, AssetKind.BRIDGE}:  # its line's voltage may imply a taller one
         height_m = max(height_m, node_heights_m.get(asset.key, height_m))
     least_m = height_m + flight.clearance_m
     return least_m if waypoint.target is not None else max(least_m, flight.transit_agl_m)
 
 
 def _node_heights_m(network: Network, assets: Collection[int]) -> dict[int, float]:
-    """The greatest known height of each asset's nodes."""
+    """Return the greatest known height of each asset's nodes."""
     nodes = np.flatnonzero(np.isin(network.node_asset, np.array(sorted(assets), dtype=np.int64)) & ~np.isnan(network.node_height_m))
     found: dict[int, float] = {}
     for asset, height_m in zip(network.node_asset[nodes].tolist(), network.node_height_m[nodes].tolist(), strict=True):
@@ -215,8 +217,8 @@ def _clock(waypoints: Waypoints, request: PlanRequest, uav: int) -> Timing:
 def faults_as_flown(
     flown: PlannedRoute, wished: RoutePoints, mission: Mission, request: PlanRequest, uav: int, ground: ManualEditContext
 ) -> Iterator[dict[str, str]]:
-    """What is wrong with a route as it is drawn, one kind after the other: speeds, wires, zones at their times, range and battery."""
-    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    """Yield the faults of a route as drawn, one kind after the other: speeds, wires, zones at their times, range and battery."""
+    assert flown.waypoints is not None  # noqa: S101 - set by the drawing
     leads_to = _leads_to(wished, flown.waypoints.points)
     yield _speed_faults(flown, leads_to, request, uav)
     yield _wire_faults(flown, ground)
@@ -225,7 +227,7 @@ def faults_as_flown(
 
 
 def _leads_to(wished: RoutePoints, flown: RoutePoints) -> list[int]:
-    """For each point that is flown the wished one that its leg leads to: where a leg is divided, its parts lead to one."""
+    """Return for each flown point the requested one at the end of its leg; the parts of a divided leg share one."""
     leads_to, number = [], 0
     for position, agl_m in zip(flown.position, flown.agl_m.tolist(), strict=True):
         leads_to.append(number)
@@ -235,7 +237,7 @@ def _leads_to(wished: RoutePoints, flown: RoutePoints) -> list[int]:
 
 
 def _speed_faults(flown: PlannedRoute, leads_to: Sequence[int], request: PlanRequest, uav: int) -> dict[str, str]:
-    assert flown.waypoints is not None  # noqa: S101 - just drawn
+    assert flown.waypoints is not None  # noqa: S101 - set by the drawing
     asked = request.uavs[uav]
     flyer = LegFlyer(asked.name, asked.cruise_speed_mps, asked.performance, request.conditions)
     found = speeds_out_of_range(
@@ -255,7 +257,7 @@ def _zone_faults(flown: PlannedRoute, leads_to: Sequence[int], mission: Mission)
 
 
 def leg_of(meeting: MetZone) -> int:
-    """The leg's number, the column up to the first waypoint counting as part of the first."""
+    """Return the leg's number; the climb to the first waypoint counts as part of the first."""
     return max(meeting.breach.leg, TAKE_OFF + 1)
 
 

@@ -1,4 +1,4 @@
-"""A route changed by hand: waypoints moved, put in, taken out, flown higher or at another speed; checked like any other, and taken back."""
+"""Manual edits of a route: waypoints moved, added, removed, set higher or to another speed; checked like any other route, and undoable."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -29,23 +29,23 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 
 SAME_SPEED_MPS = 0.005
-MAX_STEPS = 5  # that can be taken back
+MAX_STEPS = 5  # that can be undone
 
 
 def change_route(
     *, mission: Mission, actor: User, uav: int, points: Sequence[EditedPoint], expected_revision: int | None = None
 ) -> Mission:
-    """Fly the route of one UAV, by its place in the mission, over these points. Its targets stay, and their order.
+    """Route one UAV, by its place in the mission, over these points. Its targets and their order stay.
 
-    Raises InvalidRequest with what is wrong by its place (a point too low or too high, a leg that meets a zone, a speed that the wind does
-    not leave, a battery that does not do), MissionChanged or MissionFrozen. Nothing is kept then.
+    Raises InvalidRequest with the faults by place (a point too low or too high, a leg that meets a zone, a speed impossible in the wind, an
+    insufficient battery), MissionChanged or MissionFrozen. Nothing is stored then.
     """
     with transaction.atomic():
         locked, route = _locked_route(mission, uav, expected_revision)
         rows, ground = list(route.waypoints.select_related("asset", "target")), manual_edit_context()
         until_now = kept_waypoints(rows)
         _refuse(list_faults(points, until_now) or point_faults(points, until_now, ground))
-        if len(route.before_hand) == MAX_STEPS:  # the route as planned is forgotten, and with it what was proven of it
+        if len(route.before_hand) == MAX_STEPS:  # the planned route is dropped, and what was proven of it
             locked.plan_quality = {name: value for name, value in (locked.plan_quality or {}).items() if name != "planned"}
         route.before_hand = [*route.before_hand, [step_row(row) for row in rows]][-MAX_STEPS:]
         moved = zip(points, are_moved(points, until_now), strict=True)
@@ -56,7 +56,7 @@ def change_route(
 
 
 def take_back_change(*, mission: Mission, actor: User, uav: int, expected_revision: int | None = None) -> Mission:
-    """The route as it was before it was changed by hand last, checked against what holds now. Raises as change_route."""
+    """Undo the last manual edit of a route and check the result against current data. Raises as change_route."""
     with transaction.atomic():
         locked, route = _locked_route(mission, uav, expected_revision)
         if not route.before_hand:
@@ -80,7 +80,7 @@ def _locked_route(mission: Mission, uav: int, expected_revision: int | None) -> 
 
 
 def checked_manual_edit(locked: Mission, route: Route, wished: RoutePoints, ground: ManualEditContext) -> PlannedRoute:
-    """The route over these points as it is flown. Raises InvalidRequest with the first thing that is wrong."""
+    """Return the route over these points as it is flown. Raises InvalidRequest with the faults of the first check that fails."""
     _refuse(obstacle_faults(wished, ground))
     request, uav = request_of_mission(mission=locked), route.mission_uav.sequence
     flown = flown_manual_edit(request, uav, wished, route.departs_s, ground)
@@ -90,7 +90,7 @@ def checked_manual_edit(locked: Mission, route: Route, wished: RoutePoints, grou
 
 
 def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[float, float, float]], ground: ManualEditContext) -> None:
-    """Checks the points, stores them as the route, and what follows from it on the mission. by_hand: which of them a person changed."""
+    """Check the points, store them as the route, and update the mission. by_hand: the points that a user edited."""
     store_manual_edit(locked, route, checked_manual_edit(locked, route, wished, ground), by_hand)
     settle_manual_edits(locked)
     locked.revision += 1
@@ -98,7 +98,7 @@ def _fly(locked: Mission, route: Route, wished: RoutePoints, by_hand: set[tuple[
 
 
 def settle_manual_edits(locked: Mission) -> None:
-    """What follows from changed routes on the mission; the caller saves it."""
+    """Update the mission after edited routes; the caller saves it."""
     locked.total_length_m = round(sum(own.length_m for own in locked.routes.all()), 3)
     locked.longest_route_m = max(own.length_m for own in locked.routes.all())
     counted = [own.energy_wh for own in locked.routes.all() if own.energy_wh is not None]
@@ -109,10 +109,10 @@ def settle_manual_edits(locked: Mission) -> None:
 
 
 def _quality(mission: Mission) -> dict[str, Any]:
-    """Nothing is proven of a plan that a hand has changed; once every change is taken back, what was proven before is."""
+    """Return the plan's quality: unproven while any route is edited; once every edit is undone, the planned quality returns."""
     quality = mission.plan_quality or {}
     planned = quality.get("planned", quality)
-    by_hand = Q(waypoints__is_by_hand=True) | ~Q(before_hand=[])  # of what was only taken out nothing is left to see
+    by_hand = Q(waypoints__is_by_hand=True) | ~Q(before_hand=[])  # a removed waypoint leaves no other trace
     if not mission.routes.filter(by_hand).exists():
         return dict(planned)
     return planned | {"is_proven": False, "gap": None, "method": "by hand", "planned": planned}
@@ -124,8 +124,8 @@ def _refuse(faults: dict[str, str]) -> None:
 
 
 def store_manual_edit(mission: Mission, route: Route, flown: PlannedRoute, by_hand: set[tuple[float, float, float]]) -> None:
-    """by_hand: places of the waypoints that a person changed, as `place_of` has them."""
-    assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - just drawn
+    """Store an edited route. by_hand: places of the waypoints that a user edited, as `place_of` returns them."""
+    assert flown.waypoints is not None and flown.timing is not None and flown.line is not None  # noqa: S101 - drawn before
     targets: dict[int, int] = dict(mission.targets.values_list("sequence", "pk"))
     clock = flown.timing
     route.geometry = LineString(flown.line.tolist(), srid=4326)
@@ -164,7 +164,7 @@ def _task(point: RoutePoint) -> dict[str, Any] | None:
 
 
 def _is_by_hand(point: EditedPoint, until_now: Sequence[KeptWaypoint]) -> bool:
-    """Of one that stays at its place."""
+    """Whether a point that stays at its place is a manual edit."""
     if point.was is None:
         return True
     waypoint = until_now[point.was]

@@ -1,4 +1,4 @@
-"""The legs of a route that a person changed, as they are remembered when the plan goes: between which fixed points, and over what."""
+"""Manually edited legs, remembered when the plan is dropped: their fixed endpoints and the points between."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,7 +18,7 @@ Step = dict[str, Any]
 
 
 def step_row(waypoint: Waypoint) -> Step:
-    """A waypoint as it is kept to be taken back to; its target by its place in the mission, which a copy shares."""
+    """Return a waypoint as stored for an undo; its target by its place in the mission, which a copy shares."""
     return {
         "position": list(waypoint.position.coords),
         "agl_m": waypoint.altitude_agl_m,
@@ -49,9 +49,9 @@ def step_points(rows: Sequence[Step]) -> list[RoutePoint]:
 
 @dataclass(frozen=True)
 class EditedLeg:
-    """From one fixed point of a route to the next, told by what they are: start, target, end.
+    """A leg from one fixed point of a route to the next, identified by what they are: start, target, end.
 
-    points: between them, as step_row has them; None: as they are planned. end_agl_m and end_speed_mps: of the end, where it is by hand.
+    points: between them, as from step_row; None: as planned. end_agl_m and end_speed_mps: of an edited end.
     """
 
     start: str
@@ -63,7 +63,7 @@ class EditedLeg:
 
 
 def hand_legs_json(mission: Mission) -> list[dict[str, Any]]:
-    """Of all routes, by the names of their UAVs; those without any are left out."""
+    """Return the edited legs of all routes, by the names of their UAVs; routes without any are left out."""
     targets = target_keys(mission)
     found = []
     for route in mission.routes.select_related("mission_uav"):
@@ -78,7 +78,7 @@ def hand_legs_from_json(value: Sequence[Mapping[str, Any]]) -> dict[str, list[Ed
 
 
 def target_keys(mission: Mission) -> dict[int, Any]:
-    """By their places in the mission, what tells targets apart whatever their places are."""
+    """Return what identifies each target, by its place in the mission, independent of the places."""
     return {
         target.sequence: [
             target.asset_id,
@@ -90,7 +90,7 @@ def target_keys(mission: Mission) -> dict[int, Any]:
 
 
 def legs_between(rows: Sequence[Step], targets: Mapping[int, Any]) -> Iterator[tuple[str, str, int, int]]:
-    """The fixed points at the ends of each leg, and the places of these in the route."""
+    """Yield the fixed points at the ends of each leg, and their places in the route."""
     fixed = [place for place, row in enumerate(rows) if row["kind"] != WaypointKind.PASS or row["target"] is not None]
     for first, last in pairwise(fixed):
         yield _key(rows[first], targets), _key(rows[last], targets), first, last

@@ -1,4 +1,4 @@
-"""Waypoints as somebody wishes them by hand, set against those of the route until now."""
+"""Manually edited waypoints compared with those of the current route."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ MAX_LENGTH_M = 1_000_000.0
 
 @dataclass(frozen=True)
 class EditedPoint:
-    """A waypoint as it is wished. `was` is its place in the route until now; None: it is put in.
+    """A requested waypoint. `was` is its place in the current route; None: it is added.
 
-    speed_mps: over ground on the leg that leads here; None: the UAV's own.
+    speed_mps: over ground on the leg to it; None: the UAV's own.
     """
 
     position: LonLat
@@ -31,7 +31,7 @@ class EditedPoint:
 
 
 def list_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> dict[str, str]:
-    """What is wrong with the list itself: with such a fault nothing else can be said of it."""
+    """Return the faults of the list itself, which prevent any further check."""
     if len(points) > MAX_WAYPOINTS:
         return {"waypoints": _("At most %(limit)s waypoints.") % {"limit": MAX_WAYPOINTS}}
     kept = [point.was for point in points if point.was is not None]
@@ -46,14 +46,14 @@ def list_faults(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]
 
 
 def are_moved(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> list[bool]:
-    """Whether each point is put in, or elsewhere than the waypoint that it was."""
+    """Return for each point whether it is added or moved from its former waypoint."""
     before = [point.position if point.was is None else until_now[point.was].position for point in points]
     away_m = distance_m(np.array([point.position for point in points]), np.array(before)).tolist()
     return [point.was is None or metres > MOVED_M for point, metres in zip(points, away_m, strict=True)]
 
 
 def route_points(points: Sequence[EditedPoint], until_now: Sequence[KeptWaypoint]) -> RoutePoints:
-    """A point that was moved passes nothing."""
+    """Return the route points. A moved pass point no longer refers to an asset."""
     drawn = []
     for point, is_moved in zip(points, are_moved(points, until_now), strict=True):
         waypoint = None if point.was is None else until_now[point.was]

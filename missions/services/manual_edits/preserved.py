@@ -1,4 +1,4 @@
-"""What a person changed of routes stays when the mission is planned again: legs whose ends follow each other as before, and are clear."""
+"""Manual edits that survive planning again: legs with the same endpoints that are still clear."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,10 +25,10 @@ class _Kept:
 
 
 def keep_by_hand(mission: Mission) -> int:
-    """Puts the legs by hand of the plan before into the routes that are planned now, as many as can be; returns how many.
+    """Apply as many edited legs of the previous plan as possible to the newly planned routes; returns how many.
 
-    The caller holds the mission's row, has stored the plan and saves the row. Routes as planned can be gone back to like any change by
-    hand. Of what is not kept the plan warns.
+    The caller holds the mission's row, has stored the plan and saves the row. The planned routes can be restored like any undo. The plan
+    warns of legs that were discarded.
     """
     remembered = hand_legs_from_json((mission.last_plan or {}).get("by_hand", ()))
     if not remembered:
@@ -57,7 +57,7 @@ def _warning(name: str, uav: int, missed: int, count: int) -> dict[str, Any]:
 
 
 def _kept(mission: Mission, route: Route, legs: Sequence[EditedLeg], targets: dict[int, Any], ground: ManualEditContext) -> _Kept | None:
-    """All legs that are there still, together; where these are not clear, one after the other as long as the route stays clear."""
+    """Return the route with all legs whose endpoints still exist; where these are not clear together, with each leg that stays clear."""
     planned = [step_row(row) for row in route.waypoints.select_related("target")]
     there = {(start, end) for start, end, _first, _last in legs_between(planned, targets)}
     left = [leg for leg in legs if (leg.start, leg.end) in there]

@@ -1,4 +1,4 @@
-"""Whether the stored routes of a mission keep apart after one of them was changed; nothing is put off or raised."""
+"""Separation of a mission's stored routes after an edit; no route is delayed or raised."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ from planning.separation.separation import Separation, closest_encounter, confli
 
 
 def separation_of_stored(mission: Mission) -> dict[str, Any] | None:
-    """In the shape of the plan's; None where the times of a route are not known."""
+    """Return the separation in the shape of the plan's; None where the times of a route are unknown."""
     found = routes_of_mission_in_time(mission)
     timed = tuple(route for route in found if route is not None)
     if len(timed) < len(found):

@@ -1,4 +1,4 @@
-"""A stored route in plain values: what a person changes by hand is set against it, several times a second while it is dragged."""
+"""A stored route in plain values, against which an edit is checked several times a second while it is dragged."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ MAX_KEPT = 32  # routes in a process
 
 
 class KeptAsset(NamedTuple):
-    """What a waypoint stands at; height_m as tagged."""
+    """The asset of a waypoint; height_m as tagged."""
 
     key: int
     kind: str
@@ -29,7 +29,7 @@ class KeptAsset(NamedTuple):
 
 @dataclass(frozen=True)
 class KeptWaypoint:
-    """target: its place in the mission; stretch: of the target, where it is one. speed_mps: over ground, where it is set by hand."""
+    """A stored waypoint. target: its place in the mission; stretch: of the target, if any. speed_mps: over ground, if set manually."""
 
     position: LonLat
     altitude_agl_m: float
@@ -44,7 +44,7 @@ class KeptWaypoint:
 
 @dataclass(frozen=True, eq=False)
 class KeptRoute:
-    """request: what the mission asks for, all its UAVs."""
+    """A stored route. request: of the whole mission with all its UAVs."""
 
     departs_s: float
     waypoints: tuple[KeptWaypoint, ...]
@@ -52,11 +52,11 @@ class KeptRoute:
 
 
 class _ChangedMeanwhile(Exception):
-    """The rows that were read may be of another revision."""
+    """Raised when the rows that were read may be of another revision."""
 
 
 def kept_route(mission: Mission, uav: int, dataset_version: DatasetVersion) -> KeptRoute | None:
-    """Of one UAV, by its place in the mission; None where it flies none. Read once for each revision of the mission and of the ground."""
+    """Return the route of a UAV, by its place in the mission; None where it has none. Cached per revision and dataset version."""
     try:
         return _kept(mission.pk, mission.revision, uav, dataset_version)
     except _ChangedMeanwhile:
@@ -64,7 +64,7 @@ def kept_route(mission: Mission, uav: int, dataset_version: DatasetVersion) -> K
 
 
 def kept_waypoints(rows: Iterable[Waypoint]) -> tuple[KeptWaypoint, ...]:
-    """rows: with their assets and targets."""
+    """Return the waypoints in plain values. rows: with their assets and targets."""
     return tuple(
         KeptWaypoint(
             LonLat(*row.position.coords),

@@ -1,4 +1,4 @@
-"""Why no route visits a target: the zone, the distance or the range behind it, and which UAV could fly there."""
+"""Why no route visits a target: the zone, distance or range that prevents it, and which UAV could serve it."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -31,12 +31,12 @@ from planning.trajectory.heights import is_above_limit
 from workspace.models import Organisation
 from workspace.reason_texts import why_text
 
-MAX_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there
-MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are not worth a flight
+MAX_SPARE = 8  # UAVs of the fleet, the nearest first, that are tried as alternatives
+MIN_STRETCH_M = 50.0  # shorter parts of a line outside its zones are ignored
 
 
 def _airspace(request: PlanRequest, *, is_by_length: bool) -> Airspace:
-    """With the zones that can be in force while the request is flown. Raises InvalidRequest or NoGraph."""
+    """Return the airspace with the zones that can be in force while the request is flown. Raises InvalidRequest or NoGraph."""
     ground, targets, deleted = read_targets(request)
     context = planning_context(request, ground, targets, deleted)
     chosen = zone_choice(context.zones, request.departs_at, context.rules.flight).widest
@@ -44,7 +44,7 @@ def _airspace(request: PlanRequest, *, is_by_length: bool) -> Airspace:
 
 
 def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav: int, is_by_length: bool = False) -> dict[str, Any]:
-    """routes: for each UAV of the request its targets in order; is_by_length: the plan takes the shortest paths.
+    """Explain a UAV's route. routes: for each UAV of the request its targets in order; is_by_length: the plan uses the shortest paths.
 
     Raises InvalidRequest or NoGraph.
     """
@@ -52,8 +52,8 @@ def explain_route(*, request: PlanRequest, routes: Sequence[Sequence[int]], uav:
 
 
 def explain_unreached_target(*, request: PlanRequest, target: int, organisation: Organisation) -> dict[str, Any]:
-    """target is its place in the request. Raises InvalidRequest or NoGraph."""
-    airspace = _airspace(request, is_by_length=True)  # what is out of reach on the shortest ways is so on all
+    """Explain an unassigned target, by its place in the request. Raises InvalidRequest or NoGraph."""
+    airspace = _airspace(request, is_by_length=True)  # a target beyond reach on the shortest paths is so on all
     found = [one for one in airspace.context.targets if one.target == target]
     reported: dict[str, Any] = {
         "target": target,
@@ -85,7 +85,7 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
     asked = [*request.uavs, *_spare_uavs(request, place, organisation)]
     on_the_ground = groundings(asked, airspace)
     grounded = [number in on_the_ground for number in range(len(asked))]
-    fleet = replace(request, uavs=tuple(asked), bases=stored_bases(organisation))  # a spare UAV may land at one where none asked does
+    fleet = replace(request, uavs=tuple(asked), bases=stored_bases(organisation))  # another UAV may land at a base
     ways, needed_m = _needs(fleet, place, airspace)
     uavs = [
         {
@@ -114,7 +114,7 @@ def explain_unreached_target(*, request: PlanRequest, target: int, organisation:
 
 
 def _refused_alone(request: PlanRequest, target: int) -> dict[str, Any] | None:
-    """Why the mission's UAVs cannot do it in this wind and with these batteries, if they had nothing else to do; None if they can."""
+    """Return why the mission's UAVs cannot serve the target alone in this wind and with these batteries; None if they can."""
     refused = make_plan(request=replace(request, targets=(request.targets[target],), locks=()))["unassigned"]
     return refused[0] if refused else None
 
@@ -135,7 +135,7 @@ def _reason(
 
 
 def _network_m(place: ResolvedTarget, airspace: Airspace) -> float:
-    """Metres to the nearest node of the network from the nearer end."""
+    """Return the distance to the nearest node of the network from the nearer end [m]."""
     gaps_m = []
     for end in (place.course[0], place.course[-1]):
         for node in node_tree(airspace.graph).nearest(end, 1).tolist():
@@ -144,7 +144,7 @@ def _network_m(place: ResolvedTarget, airspace: Airspace) -> float:
 
 
 def _zones_at(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]:
-    """Zones that hold the place, or that its course meets, the clearance included."""
+    """Return the zones that contain the place or meet its course, clearance included."""
     shape = shapely.Point(place.course[0]) if len(place.course) == 1 else LineString(place.course)
     polygons = airspace.zones.polygons
     if not len(polygons):
@@ -154,7 +154,7 @@ def _zones_at(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]
 
 
 def _zones_around(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, Any]]:
-    """Zones within reach of the place, the nearest first: what bars the straight ways to it."""
+    """Return the zones within reach of the place, nearest first, that block the straight paths to it."""
     polygons = airspace.zones.polygons
     here = np.array([place.course[0]])
     found = []
@@ -167,13 +167,13 @@ def _zones_around(place: ResolvedTarget, airspace: Airspace) -> list[dict[str, A
 
 
 def _reported(zone: int, airspace: Airspace) -> dict[str, Any]:
-    """What cannot be flown over counts as a zone and is none: it has no id."""
+    """Return a zone's JSON. An obstacle that cannot be overflown counts as a zone without an id."""
     key = int(airspace.zones.ids[zone])
     return {"id": None if key == NO_ZONE else key, "name": airspace.zones.names[zone]}
 
 
 def _stretches_outside(place: ResolvedTarget, airspace: Airspace) -> list[list[list[float]]]:
-    """The parts of a line's course that keep clear of every zone, as pairs of ends."""
+    """Return the parts of a line's course that are clear of every zone, as pairs of ends."""
     if not place.is_stretch or place.asset is None:
         return []
     barred = shapely.union_all(widen(airspace.zones.polygons, 1.5 * airspace.access.zone_clearance_m + 1.0))
@@ -183,7 +183,7 @@ def _stretches_outside(place: ResolvedTarget, airspace: Airspace) -> list[list[l
 
 
 def _spare_uavs(request: PlanRequest, place: ResolvedTarget, organisation: Organisation) -> list[UavRequest]:
-    """UAVs of the fleet that are fit to fly, are not in the request and have the range at least straight, the nearest first."""
+    """Return UAVs of the fleet that are in service, not in the request, and within range in a straight line, nearest first."""
     taken = {uav.uav for uav in request.uavs if uav.uav is not None}
     found = []
     for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken):
@@ -196,7 +196,7 @@ def _spare_uavs(request: PlanRequest, place: ResolvedTarget, organisation: Organ
 
 
 def _needs(fleet: PlanRequest, place: ResolvedTarget, airspace: Airspace) -> tuple[TargetPaths, np.ndarray]:
-    """The least range with which each UAV could do the place alone; inf where there is no way."""
+    """Return the least range with which each UAV could serve the place alone; inf where there is no path."""
     visits, courses = visits_of_targets([place])
     ways = paths_between(
         airspace.graph,

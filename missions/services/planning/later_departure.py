@@ -1,4 +1,4 @@
-"""Whether departing later brings a better plan: when zones that bar the way, or a target, are no longer in force."""
+"""Whether a later departure gives a better plan, when zones that block a path or a target are no longer in force."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -17,15 +17,15 @@ from planning.request import PlanRequest, moment_to_json
 
 AHEAD_S = 48 * 3_600.0
 MAX_TRIES = 12
-BETTER = 0.99  # of a value: less of a change is not worth the wait
+BETTER = 0.99  # of a value: a smaller improvement does not justify the wait
 STEP_S = 60.0
 
 
 def better_departure(*, request: PlanRequest, now: datetime) -> dict[str, Any]:
-    """The first moment, of those at which a zone near the mission ends, at which a plan leaves out less or has less of its objective.
+    """Return the first end of a nearby zone at which a plan has fewer unassigned targets or a lower objective value.
 
-    Looked at are the first MAX_TRIES of them in the AHEAD_S after the departure; without one, after now, and now itself. Each is a whole
-    plan. Raises InvalidRequest, NoGraph or GraphOutdated.
+    Tries the first MAX_TRIES of them within AHEAD_S after the departure; without a departure, after now, and now itself. Each try is a
+    complete plan. Raises InvalidRequest, NoGraph or GraphOutdated.
     """
     before = make_plan(request=request)
     looked_until: datetime | None = None
@@ -38,7 +38,7 @@ def better_departure(*, request: PlanRequest, now: datetime) -> dict[str, Any]:
 
 
 def _moments(request: PlanRequest, now: datetime) -> Iterator[datetime]:
-    """On full minutes, in order, after the margin that is kept from a zone's times."""
+    """Yield candidate departures in order, on full minutes, after the margin of a zone's times."""
     from_s = (request.departs_at or now).timestamp()
     ground, targets, _deleted = read_targets(request)
     ends = [*(uav.position for uav in request.uavs), *(base.position for base in request.bases)]

@@ -1,4 +1,4 @@
-"""Plans on the map of now: the context read, the plan made, and checked again where the map has changed meanwhile."""
+"""Plans on current map data: read the context, make the plan, and check it again if the map data changed meanwhile."""
 
 import logging
 from collections.abc import Callable, Mapping
@@ -23,18 +23,18 @@ from planning.request import PlanRequest
 from planning.solver.solver import Stop, never
 from workspace.jobs.planning_lock import hold_planning_lock, release_planning_lock
 
-SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
+SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # maximum of targets, and the label
 ABOVE_ALL_SIZES = "201-"
 P = ParamSpec("P")
 PLANNER_FAULTS = (ZoneNotAvoided, ArithmeticError, AssertionError, LookupError, TypeError, ValueError)
-MAX_KEPT_CONTEXTS = 20  # of plans that failed
+MAX_KEPT_CONTEXTS = 20  # of failed plans
 
 logger = logging.getLogger(__name__)
-MAX_CONTEXTS = 5  # that may follow one another while one plan is made
+MAX_CONTEXTS = 5  # successive ones for one plan
 
 
 class GraphOutdated(Exception):
-    """The zones change faster than a plan can be made."""
+    """Raised when zones change faster than a plan can be made."""
 
     def __init__(self) -> None:
         super().__init__(str(Reason("zones_changing")))
@@ -45,7 +45,7 @@ def size_of(targets: int) -> str:
 
 
 def counted(make: Callable[P, dict[str, Any]]) -> Callable[P, dict[str, Any]]:
-    """Of a function that makes a plan of its keyword argument `request`, or raises why it cannot."""
+    """Decorate a function that makes a plan of its keyword argument `request` to count its plans and exceptions."""
 
     @wraps(make)
     def make_and_count(*args: P.args, **kwargs: P.kwargs) -> dict[str, Any]:
@@ -70,7 +70,7 @@ def _method_of(plan: Mapping[str, Any]) -> str:
 
 
 def _keep_context(context: PlanningContext, request: PlanRequest) -> None:
-    """Write what a plan that failed was made from, for replay_plan, if the settings name a folder and it holds few yet."""
+    """Write the context of a failed plan for replay_plan, if the settings name a folder with fewer than MAX_KEPT_CONTEXTS files."""
     folder = settings.PLAN_CONTEXT_DIR
     if folder is None or len(list(folder.glob("*.zip"))) >= MAX_KEPT_CONTEXTS:
         return
@@ -94,7 +94,7 @@ def make_plan(
     search_s: float = 0.0,
     as_text: bool = False,
 ) -> dict[str, Any]:
-    """The plan in the shape of the API, on demand with parts of it `as_text` (see plan_to_json).
+    """Return the plan in the shape of the API, optionally with parts of it `as_text` (see plan_to_json).
 
     Raises InvalidRequest, NoGraph or GraphOutdated.
     """
@@ -112,10 +112,10 @@ def make_plan(
         except PLANNER_FAULTS:
             _keep_context(context, request)
             raise
-        release_planning_lock()  # which is the caller's, if it had one already: nobody waits for another turn after the last check
+        release_planning_lock()  # taken here or by the caller: the final check is done
         if current_dataset_version() == ground.dataset_version:
             return answer
-        # Only what was checked against the zones of this moment, over the terrain that its heights belong to, leaves.
+        # Only a plan checked against the current zones, on the terrain version of its heights, is returned.
         ground = planning_read().ground()
         context = planning_context(request, ground, targets, deleted)
         still_clear = plan_on_map(found, context) if terrain_at(ground.dataset_version) == terrain else None

@@ -1,4 +1,4 @@
-"""Which assets the chosen UAVs can inspect from where they stand, or from chosen bases, and why the others they cannot."""
+"""Which assets the chosen UAVs can inspect from their positions or from chosen bases, and why not the others."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -36,18 +36,17 @@ NO_UAV = "no_uav"
 
 @dataclass(frozen=True)
 class _Start:
-    """A UAV of the request, and the base that it is to start from; None for where it stands."""
+    """A UAV of the request, and the base from which it starts; None for its own position."""
 
     uav: int
     base: str | None
 
 
 def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), box: Box | None = None) -> dict[str, Any]:
-    """In the shape of the API; the request's targets do not matter. Raises NoGraph.
+    """Return the reachability in the shape of the API; the request's targets are ignored. Raises NoGraph.
 
-    starts: bases from each of which each UAV might fly, instead of from where it stands; box: west, south, east, north of what is wanted.
-    Zones that can be in force at any time of the flight are kept clear of, as a plan first does, and the shortest ways count, as they do
-    before a plan refuses anything.
+    starts: bases from each of which each UAV might fly, instead of its own position; box: west, south, east, north of the wanted area.
+    As in a plan's first stage, all zones that can be in force during the flight are avoided, and the shortest paths count.
     """
     context = planning_context(request, planning_read().ground())
     airspace = airspace_on(context, zone_choice(context.zones, request.departs_at, context.rules.flight).widest, is_by_length=True)
@@ -84,7 +83,7 @@ def reachability(*, request: PlanRequest, starts: Sequence[BaseRequest] = (), bo
 def _flights(
     request: PlanRequest, starts: Sequence[BaseRequest], airspace: Airspace
 ) -> tuple[list[_Start], list[Flight], list[dict[str, Any]]]:
-    """The flights that can take off, and why the others cannot."""
+    """Return the flights that can take off, and the reasons of the others."""
     starting, flights, grounded = [], [], []
     for base in starts or (None,):
         uavs = request.uavs if base is None else [replace(uav, position=base.position) for uav in request.uavs]
@@ -103,22 +102,22 @@ def _flights(
 
 
 def _class_of(uav: UavRequest, request: PlanRequest) -> FlightClass | None:
-    """None for a UAV whose battery is not known and which there is no wind to stop."""
+    """Return the flight class; None for a UAV with an unknown battery in calm air."""
     if uav.performance.battery_wh is None and request.conditions.is_calm:
         return None
     return FlightClass(uav.performance, uav.cruise_speed_mps)
 
 
 def _no_landing(airspace: Airspace, flights: Sequence[Flight]) -> np.ndarray | None:
-    """Nodes of the graph over zones that end below the flight there; None where no flight lands at its target."""
+    """Return the nodes over zones whose ceiling is below the flight; None where no flight lands at its target."""
     if not any(one.lands_there for one in flights):
         return None
-    low = airspace.zones.where(np.isfinite(airspace.zones.ceiling_agl_m))  # nothing is flown where the others are
+    low = airspace.zones.where(np.isfinite(airspace.zones.ceiling_agl_m))  # the others are avoided altogether
     return low.contains(airspace.graph.position, airspace.access.zone_clearance_m, *column_m(0.0, airspace))
 
 
 def _may_charge(request: PlanRequest, starting: Sequence[_Start]) -> bool:
-    """Whether a flight may charge at towers on its way; with a charger that gives more than the UAV takes while it stands."""
+    """Whether a flight may charge at towers, with a charger that supplies more than the UAV consumes on the ground."""
     uavs = [request.uavs[start.uav].performance for start in starting if request.may_charge(start.uav)]
     return any(uav.battery_wh is not None and (request.charging_w or 0.0) > uav.avionics_w for uav in uavs)
 
@@ -126,7 +125,7 @@ def _may_charge(request: PlanRequest, starting: Sequence[_Start]) -> bool:
 def _in_box(found: Reach, box: Box) -> np.ndarray:
     west, south, east, north = box
     in_lat = (found.box[:, 1] <= north) & (found.box[:, 3] >= south)
-    if west > east:  # over the 180th meridian
+    if west > east:  # across the 180th meridian
         return in_lat & ((found.box[:, 2] >= west) | (found.box[:, 0] <= east))
     return in_lat & (found.box[:, 0] <= east) & (found.box[:, 2] >= west)
 
@@ -134,9 +133,9 @@ def _in_box(found: Reach, box: Box) -> np.ndarray:
 def _reasons(
     found: Reach, chosen: np.ndarray, zone_names: Sequence[str], *, has_flights: bool, may_charge: bool
 ) -> tuple[np.ndarray, list[dict[str, Any]]]:
-    """A number for each asset, 0 for those that can be inspected, and what the others mean, from 1 on."""
+    """Return a number for each asset, 0 for those that can be inspected, and the meaning of the others, from 1 on."""
     reachability, zone = found.state[chosen].astype(np.int64), found.zone[chosen].astype(np.int64)
-    missing = found.missing_m[chosen] + found.missing_wh[chosen]  # of the one or the other
+    missing = found.missing_m[chosen] + found.missing_wh[chosen]  # only one of them is set
     kinds = len(Reachability)
     key = reachability + np.where(reachability == Reachability.INSIDE_ZONE, (zone + 1) * kinds, 0)
     keys, number, count = np.unique(key, return_inverse=True, return_counts=True)

@@ -1,4 +1,4 @@
-"""What a process does before it plans for anybody."""
+"""Warm-up of a process before its first plan."""
 
 import logging
 
@@ -16,7 +16,7 @@ logger = logging.getLogger(__name__)
 
 
 def warm_up() -> None:
-    """Load the compiled core, the graph and its index. Without a graph or a database the first plan will look for them again."""
+    """Load the compiled core, the graph and its index. Without a graph or a database the first plan loads them."""
     rehearse_ways()
     rehearse_solvers()
     rehearse_drawing()

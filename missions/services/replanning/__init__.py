@@ -1,4 +1,4 @@
-"""Another way to do what is left of a mission that flies: worked out, offered, and flown once somebody confirms it."""
+"""Another plan for the rest of a flying mission: computed, offered, and flown once a user confirms it."""
 
 from missions.services.replanning.accepting import accept_offer
 from missions.services.replanning.offers import REPLAN, ask_for_offer, decline_offer, settle_offers, suggest, withdraw

@@ -1,7 +1,7 @@
-"""Taking an offer: one confirmation, after which each UAV concerned is held, given its other route, and goes on.
+"""Accept an offer: after one confirmation each UAV concerned is held, gets its other route, and continues.
 
-What is left of the flying mission goes over to the continuing one in one transaction: routes, targets, approval and first commands, or
-nothing of it. No mission is mixed from two plans.
+One transaction moves the rest of the flying mission to the continuing one: routes, targets, approval and first commands. No mission mixes
+two plans.
 """
 
 from collections.abc import Mapping
@@ -40,7 +40,7 @@ GIVEN_UP = ("changed", "recalled", "out")
 
 
 def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
-    """The continuing mission is approved and on its way. Accepted twice it is accepted once. Raises Refused with every reason."""
+    """Approve and dispatch the continuing mission. A repeated call changes nothing. Raises Refused with every reason."""
     with transaction.atomic():
         held = held_offer(offer)
         if held.state == OfferState.ACCEPTED:
@@ -85,7 +85,7 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
 
 
 def _is_on_its_own(uav: Uav, mission: Mission) -> bool:
-    """Whether it may fly on with what others have taken over: it was started, and not told to come down since."""
+    """Whether it may continue with what others took over: it was started, and has no later command to come down."""
     done = UavCommand.objects.filter(uav=uav, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
     last = done.order_by("-sequence").first()
     was_started = done.filter(mission=mission, kind=CommandKind.START).exists()
@@ -94,7 +94,7 @@ def _is_on_its_own(uav: Uav, mission: Mission) -> bool:
 
 
 def _hand_over_targets(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> None:
-    """Nothing is left undecided on a route that is not flown on: each target is the other mission's, done, or left out with the reason."""
+    """Settle each target of routes that end: moved to the other mission, done, or skipped with the reason."""
     now = timezone.now()
     rows = {target.sequence: target for target in mission.targets.all()}
     taken = sorted(target for uav in difference["uavs"] if uav["change"] == "changed" for target in uav["order"])
@@ -102,7 +102,7 @@ def _hand_over_targets(mission: Mission, continuation: Mission, difference: Mapp
     done = []
     for place, target in enumerate(taken):
         row = rows[target]
-        if row.state == TargetState.COMPLETE:  # on the way to where its UAV leaves its route
+        if row.state == TargetState.COMPLETE:  # before its UAV leaves the route
             done.append(place)
             continue
         row.state, row.state_at = TargetState.SKIPPED, now

@@ -1,4 +1,4 @@
-"""One UAV's continued route: what it flies of the old one until it leaves it, and what was planned from there."""
+"""One UAV's continued route: the part of the old route until it leaves it, and the new plan from there."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind,
 
 @dataclass(frozen=True, eq=False)
 class Continued:
-    """A route as the continuing mission stores it; `order` are its targets by their places in the mission that flies."""
+    """A route as stored by the continuing mission; `order` are its targets by their places in the flying mission."""
 
     leaving: Leaving
     route: PlannedRoute
@@ -31,10 +31,13 @@ class Continued:
 
 
 def continued_route(leaving: Leaving, planned: Mapping[str, Any], order: tuple[int, ...], conditions: Conditions) -> Continued:
-    """`planned`: the route in the shape of the API, whose targets are places in `order`'s mission already. Raises CannotLeave."""
+    """Compose the continued route. Raises CannotLeave.
+
+    `planned`: the route in the shape of the API, whose targets are already places in `order`'s mission.
+    """
     rows = planned["waypoints"]
     begun_by = len(leaving.prefix) - 1
-    skipped = 1 if abs(rows[0]["altitude_agl_m"] - leaving.prefix[-1].agl_m) < 0.01 else 0  # it is there already
+    skipped = 1 if abs(rows[0]["altitude_agl_m"] - leaving.prefix[-1].agl_m) < 0.01 else 0  # the prefix ends there
     points = RoutePoints.of([*leaving.prefix, *(_point(row) for row in rows[skipped:])])
     heights = [row["altitude_amsl_m"] for row in rows[skipped:]]
     home_m = leaving.rest.take_off_amsl_m
@@ -66,7 +69,7 @@ def _point(row: Mapping[str, Any]) -> RoutePoint:
 
 
 def _clock(leaving: Leaving, waypoints: Waypoints, action: EndAction, conditions: Conditions) -> Timing:
-    """From the first waypoint on: it is there already, with what its battery holds now."""
+    """Return the timing from the first waypoint on, which the UAV has reached, with its current battery level."""
     performance = leaving.stored.performance
     try:
         clock = timing_of_route(

@@ -1,28 +1,28 @@
-"""What an offer would change, beside what flies now, in the shape of the API.
+"""What an offer would change against what flies now, in the shape of the API.
 
     {
       "computed_at", "valid_until":  RFC 3339; later the offer is outdated,
-      "departs_at":  when the continued routes are reckoned to begin, RFC 3339,
+      "departs_at":  when the continued routes are estimated to begin, RFC 3339,
       "uavs": [                     each UAV of the flying mission that has something left, in the order of their places
         {
           "uav": key of the UAV or null, "place": its place in the flying mission (0 = A), "name",
           "change": "untouched" (flies on as approved) | "changed" (is held, gets another route, goes on) |
-                    "recalled" (is told to return: nothing is left for it, or it cannot go on) | "out" (dropped out before),
-          "why":    words: why it is out, must change, or can only go on as it does; may be empty,
+                    "recalled" (returns: nothing is left for it, or it cannot go on) | "out" (dropped out before),
+          "why":    text: why it is out, must change, or can only go on as it does; may be empty,
           "reasons": the same as codes and params,
           "kept", "lost", "gained":   targets by their places in the flying mission,
           "order":  targets that it flies to from now on, in their order,
           "before": {"length_m", "duration_s", "ends_at", "battery_percent"} or null: from here on, as approved,
-          "after":  the same of what is offered; null: it flies no route any more.
+          "after":  the same of the offer; null: it has no route any more.
                     battery_percent is what is left at the end, null without a battery; ends_at is the landing
-                    (or the last target, for one that hovers there), null where nobody knows where the UAV is,
+                    (or the last target, for one that hovers there), null where the UAV's position is unknown,
           "continuation_place": its place in the continuing mission, null where it is not in it
         }],
-      "targets": [                  those that change hands or are not reached, in the order of their places
+      "targets": [                  those that move to another UAV or are not reached, in the order of their places
         {"target": place in the flying mission, "label", "from": place of a UAV or null, "to": place of a UAV or null,
-         "reason": code, "message": words}     reason and message are empty where somebody takes it
+         "reason": code, "message": text}      reason and message are empty where a UAV takes it
       ],
-      "unreached": how many nobody can take,
+      "unreached": how many no UAV can take,
       "total": {"length_m_before", "length_m_after", "ends_at_before", "ends_at_after"}   of all UAVs that go on
     }
 
@@ -41,7 +41,7 @@ from planning.request import moment_to_json
 
 
 def difference_of(proposal: Proposal, *, now: datetime, valid_until: datetime) -> dict[str, Any]:
-    """The shape is the module's."""
+    """Return the difference in the shape that the module describes."""
     field = proposal.field
     rests = sorted(field.rests, key=lambda rest: rest.place)
     uavs = [_uav(proposal, rest, now) for rest in rests]

@@ -1,4 +1,4 @@
-"""From where on its way a UAV leaves its route for another one, and with which battery it does."""
+"""Where a UAV leaves its route for another one, and with which battery."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,13 +16,13 @@ from planning.request import EndAction, UavRequest, task_from_json
 from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
-LEAD_S = 60.0  # from working out to flying: a person decides, the UAV is held, and is given its route
-WAIT_S = 90.0  # for which it hovers meanwhile at most, by the reckoning with its battery
+LEAD_S = 60.0  # from computing to flying: a user decides, the UAV is held and gets its route
+WAIT_S = 90.0  # longest hover meanwhile, for the battery estimate
 MAX_RESERVE_PERCENT = 90.0  # that a plan can be asked to leave
 
 
 class CannotLeave(Exception):
-    """Why it cannot."""
+    """Raised when a UAV cannot leave its route, with the reason."""
 
     def __init__(self, reason: Reason) -> None:
         super().__init__(str(reason))
@@ -31,10 +31,10 @@ class CannotLeave(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Leaving:
-    """`prefix` is flown first: from where the UAV is, on its approved route, to the place where the new part begins.
+    """Where a UAV leaves. `prefix` is flown first, on its approved route, from the UAV's position to where the new part begins.
 
-    `amsl_m` are its heights above the sea, None where they are not known; `targets` those that it does there. `asked` is what the planner
-    is asked for the rest, `stored` what the mission keeps: with the figures of the whole.
+    `amsl_m` are its heights above the sea, None where they are unknown; `targets` are done on it. `asked` is the UAV in the request for the
+    rest, `stored` the UAV that the mission stores, with the values of the whole route.
     """
 
     rest: Rest
@@ -46,7 +46,7 @@ class Leaving:
 
 
 def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None) -> Leaving:
-    """before: the waypoint that it must not fly to any more. Raises CannotLeave."""
+    """Return where the UAV leaves. before: the waypoint that it must not fly to any more. Raises CannotLeave."""
     if rest.here is None or rest.uav is None or rest.trouble:
         raise CannotLeave(rest.trouble or Reason("nobody_knows_where", {"uav": rest.name}))
     prefix, amsl_m = _prefix(rest, before)
@@ -81,9 +81,9 @@ def leaving_of(rest: Rest, conditions: Conditions, *, before: int | None = None)
 
 
 def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tuple[float, ...] | None]:
-    """The first point is where the UAV is now."""
+    """Return the prefix and its heights; the first point is the UAV's current position."""
     here, points, rows = rest.here, rest.points, rest.rows
-    assert here is not None  # noqa: S101 - the caller has looked
+    assert here is not None  # noqa: S101 - the caller has checked it
     last, ahead = rows[here.ahead - 1], rows[here.ahead]
     agl_m = here.between(last.altitude_agl_m, ahead.altitude_agl_m)
     begin = RoutePoint(here.position, WaypointKind.START, agl_m)
@@ -97,7 +97,7 @@ def _prefix(rest: Rest, before: int | None) -> tuple[tuple[RoutePoint, ...], tup
             raise CannotLeave(Reason("too_little_route_left", {"uav": rest.name}))
     first = here.ahead
     if not rest.is_held and last.kind == WaypointKind.TARGET and points[here.ahead - 1].target in rest.ahead:
-        first -= 1  # it is still at work there
+        first -= 1  # it is still working there
     kept = range(first, (leave or 0) + 1) if leave is not None and leave >= first else range(0)
     entered: set[int | None] = set()
     prefix = [begin]
@@ -123,7 +123,7 @@ def _performance(stored: dict[str, object]) -> Performance:
 
 
 def _with_less(rest: Rest, performance: Performance, percent: float) -> Performance:
-    """So much of the battery kept besides the reserve."""
+    """Return the performance with this share of the battery kept in addition to the reserve."""
     if performance.battery_wh is None:
         return performance
     reserve_percent = performance.reserve_percent + percent
@@ -142,7 +142,7 @@ def _waiting_percent(rest: Rest, performance: Performance, conditions: Condition
 
 
 def _planned_percent(rest: Rest, prefix: Sequence[RoutePoint]) -> float:
-    """What the prefix was planned to take."""
+    """Return the battery share that was planned for the prefix."""
     here, left = rest.here, [row.battery_left_percent for row in rest.rows]
     if here is None or any(percent is None for percent in left):
         return 0.0
@@ -153,7 +153,7 @@ def _planned_percent(rest: Rest, prefix: Sequence[RoutePoint]) -> float:
 
 
 def _most_targets(rest: Rest, more: int) -> int | None:
-    """That it may do after the prefix, if the mission limits it."""
+    """Return how many targets it may do after the prefix, if the mission limits them."""
     most = rest.route.mission_uav.most_targets
     if most is None:
         return None

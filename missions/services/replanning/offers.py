@@ -1,4 +1,4 @@
-"""Offers of another plan while a mission flies: asked for, suggested, declined, outdated. Nothing here changes what is flown."""
+"""Offers of another plan for a flying mission: requested, suggested, declined, outdated. None of them changes what is flown."""
 
 from datetime import datetime, timedelta
 from functools import partial
@@ -22,12 +22,12 @@ from workspace.reason_texts import text_and_column
 REPLAN = "missions.tasks.replan_mission"
 ASKED_FOR = "asked-for"
 UNDECIDED = (OfferState.COMPUTING, OfferState.OPEN)
-WORKED_OUT_WITHIN = timedelta(seconds=120)  # else whoever worked on it is lost
-MAX_OFFERS_OF_CAUSE = 40  # of one flight: as long as nobody decides, the last one that is outdated is followed by another
+WORKED_OUT_WITHIN = timedelta(seconds=120)  # afterwards the worker counts as lost
+MAX_OFFERS_OF_CAUSE = 40  # of one flight: until a user decides, each outdated offer is followed by another
 
 
 def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
-    """Somebody wants to see another way to do the rest. An offer that is open goes, and a new one is worked out. Raises Refused."""
+    """Start computing an offer for a user and set an open one aside. Raises Refused."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.state != MissionState.ACTIVE:
@@ -37,10 +37,10 @@ def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
 
 
 def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffer | None:
-    """Once for each cause: `code` uav-out, zone-active or battery-short with the `uav` (its key) or the `zone`, and figures besides.
+    """Start an offer once per cause: `code` uav-out, zone-active or battery-short with `uav` (its key) or `zone`, and further values.
 
-    None where the mission does not fly, or an offer for this cause was made before and is not outdated. Its job is sent to the planners by
-    the schedule (tasks.look_after_offers), within seconds.
+    Returns None where the mission does not fly, or an offer for this cause exists and is not outdated. The schedule
+    (tasks.look_after_offers) sends its job to the planners within seconds.
     """
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).filter(pk=mission_id, state=MissionState.ACTIVE, deleted_at=None).first()
@@ -56,9 +56,9 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
 
 
 def withdraw(*, mission_id: UUID, code: str, uav_id: int) -> bool:
-    """End the undecided offer for a UAV that was out or short of battery, and is so no more; returns whether there was one.
+    """End the undecided offer for a UAV that was out or short of battery and has recovered; returns whether there was one.
 
-    It is outdated, and not worked out again. The same cause makes another offer when it comes back.
+    The offer becomes outdated and is not computed again. If the cause comes back, it makes another offer.
     """
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).filter(pk=mission_id).first()
@@ -74,7 +74,7 @@ def withdraw(*, mission_id: UUID, code: str, uav_id: int) -> bool:
 
 
 def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
-    """The mission goes on as it is. Declined twice it is declined once. Raises Refused."""
+    """Decline an offer; the mission continues unchanged. A repeated call changes nothing. Raises Refused."""
     with transaction.atomic():
         held = held_offer(offer)
         if held.state == OfferState.DECLINED:
@@ -86,9 +86,9 @@ def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
 
 
 def settle_offers(*, now: datetime | None = None) -> int:
-    """Marks those outdated from which the mission has moved on, or that nobody works out any more; returns how many.
+    """Mark offers outdated that the mission has passed or that no worker computes any more; returns how many.
 
-    While the mission flies, each is worked out again for the same cause.
+    While the mission flies, each is computed again for the same cause.
     """
     moment = now or timezone.now()
     found = 0
@@ -110,7 +110,7 @@ def settle_offers(*, now: datetime | None = None) -> int:
 
 
 def _compute_again(offer: ReplanOffer) -> None:
-    """Work an outdated offer out again. The caller holds the rows."""
+    """Compute an outdated offer again. The caller holds the rows."""
     mission = offer.mission
     if mission.state != MissionState.ACTIVE or mission.deleted_at is not None:
         return
@@ -119,13 +119,13 @@ def _compute_again(offer: ReplanOffer) -> None:
 
 
 def held_offer(offer: ReplanOffer) -> ReplanOffer:
-    """The row, held until the caller's transaction ends; the mission's before it, as everywhere."""
+    """Return the row, locked until the caller's transaction ends; the mission's row is locked before it, as everywhere."""
     Mission.objects.select_for_update(no_key=True).values_list("pk").get(pk=offer.mission_id)
     return ReplanOffer.objects.select_for_update(of=("self",)).select_related("mission", "continuation").get(pk=offer.pk)
 
 
 def end_offer(offer: ReplanOffer, state: OfferState, why: Why = (), *, actor: User | None = None) -> None:
-    """The caller holds the rows. The mission that was offered is put away unless it is taken."""
+    """End an offer; the caller holds the rows. The offered mission is deleted unless it is accepted."""
     offer.state = state
     offer.outcome, offer.outcome_why = text_and_column(why, 500, "\n")
     if actor is not None:

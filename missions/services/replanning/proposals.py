@@ -1,4 +1,4 @@
-"""Ways of sharing out what is left: from the one that disturbs least to the one in which everybody may do anything."""
+"""Ways to reassign the remaining targets, from the least disruptive to one in which any UAV may do anything."""
 
 import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
@@ -20,15 +20,15 @@ from planning.problem import Objective, Priority
 from planning.request import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from planning.solver.solver import Stop, never
 
-MAX_ALONE = 4  # UAVs of which it is tried that one of them takes all
+MAX_ALONE = 4  # UAVs that are tried as the one that takes all
 
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """All that the proposals for one mission have in common, UAVs by their places in it.
+    """What the proposals for one mission share, UAVs by their places in it.
 
-    `forced` cannot go on as they do, `recalled` can do nothing else either. `zones`: the names of those across routes. `troubles`: why
-    others cannot do anything else.
+    UAVs in `forced` cannot continue as they do; those in `recalled` cannot do anything else either. `zones`: names of zones across routes.
+    `troubles`: why other UAVs cannot change their route.
     """
 
     mission: Mission
@@ -47,7 +47,7 @@ class Field:
         return next(rest for rest in self.rests if rest.place == place)
 
     def why(self, place: int) -> list[Reason]:
-        """Why a UAV cannot go on as it does, or can do nothing else; empty where neither is so."""
+        """Return why a UAV cannot continue, or cannot change its route; empty where neither is so."""
         zone = self.zones.get(place)
         forced = Reason("zone_across_route", {"zone": zone}) if zone else Reason("battery_short_for_route")
         return [*([forced] if zone or place in self.forced else []), *([self.troubles[place]] if place in self.troubles else [])]
@@ -55,7 +55,7 @@ class Field:
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """`continued`: by their places the UAVs whose route changes. `recalled` are to come home. `unreached`: targets with the reason."""
+    """A reassignment. `continued`: by place the UAVs whose route changes. `recalled` return. `unreached`: targets with the reason."""
 
     field: Field
     continued: Mapping[int, Continued]
@@ -65,7 +65,7 @@ class Proposal:
 
     @property
     def merit(self) -> tuple[tuple[int, ...], int, float]:
-        """The smaller the better: what is left undone, the most wanted first; how many are disturbed; what is flown."""
+        """Return a sort key, smallest best: targets left undone by priority, number of disturbed UAVs, objective value."""
         wanted = [self.field.targets[target].priority for target in self.unreached]
         undone = tuple(sum(priority == level for priority in wanted) for level in sorted(Priority, reverse=True))
         value = sum(
@@ -77,7 +77,7 @@ class Proposal:
 
 @dataclass(frozen=True)
 class _Assignable:
-    """Who may be given something: all of these; `free` are those whose remaining order is not kept."""
+    """UAVs that may be given something: all of these; those in `free` may change their remaining order."""
 
     able: tuple[int, ...]
     free: frozenset[int]
@@ -116,7 +116,7 @@ def field_of(mission: Mission, rests: Sequence[Rest], cause: Cause, now: datetim
 
 
 def proposals(field: Field) -> Iterator[Proposal]:
-    """The one that disturbs least first. Raises what make_plan raises."""
+    """Yield proposals, the least disruptive first. Raises what make_plan raises."""
     seen: set[_Assignable] = set()
     for way in _ways(field):
         if way not in seen:
@@ -136,7 +136,7 @@ def _ways(field: Field) -> Iterator[_Assignable]:
 
 
 def _proposal(field: Field, way: _Assignable, recalled: frozenset[int]) -> Proposal:
-    """recalled: UAVs that are given nothing more and come home."""
+    """Return the proposal for one choice of UAVs. recalled: UAVs that get nothing more and return."""
     flying = [place for place in way.able if place not in recalled]
     loose = [target for rest in field.rests if rest.is_out or rest.place in recalled for target in rest.ahead]
     wanted = sorted(
@@ -165,7 +165,7 @@ def _proposal(field: Field, way: _Assignable, recalled: frozenset[int]) -> Propo
             continue
         try:
             continued[place] = continued_route(leaving, _with_places(route, wanted), whole, conditions_from_json(field.mission.conditions))
-        except CannotLeave as error:  # others may have been given what it would keep: the whole proposal falls
+        except CannotLeave as error:  # others may have got what it would keep, so the whole proposal fails
             return Proposal(field, {}, recalled, dict.fromkeys(wanted, _unreached("beyond_energy", [error.reason])))
     return Proposal(field, continued, recalled | more, unreached, plan)
 
@@ -175,7 +175,7 @@ def _unreached(code: str, why: Sequence[Reason]) -> tuple[str, str, list[dict[st
 
 
 def _comes_home(field: Field, place: int) -> bool:
-    """Whether a UAV that is given nothing more has lost what it had, or cannot go on with it."""
+    """Whether a UAV that gets nothing more has lost its targets, or cannot continue with them."""
     ahead = field.rest(place).ahead
     return bool(ahead) and (place in field.forced or set(field.leavings[place].targets) != set(ahead))
 
@@ -204,6 +204,6 @@ def _request(field: Field, way: _Assignable, flying: Sequence[int], wanted: Sequ
 
 
 def _with_places(route: Mapping[str, Any], wanted: Sequence[int]) -> dict[str, Any]:
-    """Its targets by their places in the mission that flies."""
+    """Return a route with its targets by their places in the flying mission."""
     rows = [replaced | {"target": None if replaced["target"] is None else wanted[replaced["target"]]} for replaced in route["waypoints"]]
     return {**route, "waypoints": rows}

@@ -1,4 +1,4 @@
-"""What is left of a mission that flies: where each UAV is, what it has still to do, and whether it can be given anything else."""
+"""The rest of a flying mission: where each UAV is, what it has still to do, and whether its route can change."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from missions.services.commands.flight_progress import FLIGHT_FAILED
 from operation.reasons import Reason
 from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
-AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done
+AT_TARGET_M = 15.0  # within this distance a target in progress is still being done
 LEFT = (TargetState.PENDING, TargetState.IN_PROGRESS)
 HOLDING = (CommandKind.HOLD, CommandKind.PAUSE)
 COMING_BACK = (CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
@@ -36,7 +36,7 @@ COMING_BACK = (CommandKind.RETURN, CommandKind.LAND, CommandKind.ABORT)
 
 @dataclass(frozen=True)
 class Cause:
-    """Why: `uav-out`, `zone-active`, `battery-short` or `asked-for`; the UAV (by its key) or zone that it is about."""
+    """Cause of an offer: `uav-out`, `zone-active`, `battery-short` or `asked-for`, with the UAV (by its key) or zone concerned."""
 
     code: str
     uav: int | None = None
@@ -45,10 +45,10 @@ class Cause:
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """Of one UAV. Its targets are told by their places in the mission, in the order in which it would do them.
+    """The rest of one UAV. Targets are places in the mission, in the order in which it would do them.
 
-    `trouble`: why it can only go on as it does, or not at all; None where it can be given another route. `is_out`: it does not go on.
-    `here` is None where its place is not known. `ahead` are the targets whose point of the route is still before it.
+    `trouble`: why it can only continue as it does, or not at all; None where it can get another route. `is_out`: it does not continue.
+    `here` is None where its position is unknown. `ahead` are the targets whose point of the route is still before it.
     """
 
     route: Route
@@ -75,7 +75,7 @@ class Rest:
 
 
 def rests_of(mission: Mission, cause: Cause, now: datetime) -> list[Rest]:
-    """Of the UAVs that have something left to fly, or something that is to be flown for them. The mission is as selectors load it."""
+    """Return the rests of UAVs that have targets left, or whose targets others must fly. The mission is as selectors load it."""
     approval = approval_in_force(mission)
     if approval is None:
         return []
@@ -129,7 +129,7 @@ def _rest(
 
 
 def _orders(uav: Uav | None, approval: Approval) -> list[UavCommand]:
-    """What it was told about its flight in this mission and has done, the newest first; the oldest is its start."""
+    """Return the flight commands that it got in this mission and has done, newest first; the oldest is its start."""
     if uav is None:
         return []
     done = UavCommand.objects.filter(uav=uav, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
@@ -138,7 +138,7 @@ def _orders(uav: Uav | None, approval: Approval) -> list[UavCommand]:
 
 
 def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cause) -> Reason | None:
-    """Why it does not go on; None where it does."""
+    """Return why it does not continue; None where it does."""
     values = {"uav": route.mission_uav.name}
     if route.has_failed:
         return Reason("flight_failed", values)
@@ -150,7 +150,7 @@ def _out(route: Route, uav: Uav | None, orders: Sequence[UavCommand], cause: Cau
 
 
 def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: Sequence[UavCommand], now: datetime) -> Reason | None:
-    """Why it can only go on as it does; None where it can be given another route in the air."""
+    """Return why it can only continue as it does; None where it can get another route in the air."""
     values = {"uav": route.mission_uav.name}
     if uav is None:
         return Reason("not_of_fleet", values)
@@ -168,7 +168,7 @@ def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: S
 def _left(
     route: Route, points: Sequence[PassedPoint], here: PlaceOnRoute | None, targets: Mapping[int, InspectionTarget], *, is_whole: bool
 ) -> tuple[int, ...]:
-    """is_whole: all that nobody has seen the end of, wherever the UAV is."""
+    """Return the targets left. is_whole: all without a reported end, wherever the UAV is."""
     of_place = {target.sequence: target for target in targets.values()}
     order = list(dict.fromkeys(point.target for point in points if point.target is not None))
     left = []
@@ -184,12 +184,12 @@ def _left(
 
 
 def _is_at(points: Sequence[PassedPoint], place: int, here: PlaceOnRoute) -> bool:
-    """Whether it is still where it does what is done at a waypoint."""
+    """Whether it is still doing the task of a waypoint."""
     return here.ahead == place + 1 and distance_apart_m(points[place].position, here.position) <= AT_TARGET_M
 
 
 def _percent(rows: Sequence[Waypoint], here: PlaceOnRoute | None, uav: Uav | None) -> float | None:
-    """Left in its battery: as it tells, else as it was planned for this place; None without a battery that is counted."""
+    """Return the remaining battery [%]: as reported, else as planned for this place; None where the battery is not computed."""
     if here is None or any(row.battery_left_percent is None for row in rows):
         return None
     if uav is not None and uav.battery_percent is not None:

@@ -1,4 +1,4 @@
-"""Whether things have moved on since an offer was worked out, so that it can no longer be taken."""
+"""Whether the flight has changed since an offer was computed, so that it can no longer be accepted."""
 
 from collections.abc import Iterable, Mapping
 from datetime import datetime, timedelta
@@ -14,11 +14,11 @@ from operation.reasons import Reason
 from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
 VALID_FOR = timedelta(seconds=120)
-MIN_LEFT_S = 15.0  # until a UAV is where it is to leave its route: it has to be held before
+MIN_LEFT_S = 15.0  # before a UAV reaches the point where it leaves its route: it must be held earlier
 
 
 def basis_of(uavs: Iterable[int]) -> dict[str, Any]:
-    """What an offer stands on besides its routes: by the keys of UAVs the last command about their flight."""
+    """Return what an offer depends on besides its routes: each UAV's last flight command, by the UAV's key."""
     return {"orders": {str(key): last_order(key) for key in uavs}}
 
 
@@ -28,19 +28,19 @@ def last_order(uav_id: int) -> int:
 
 
 def is_held(uav_id: int) -> bool:
-    """Whether the last thing that it has done about its flight is to stay where it is."""
+    """Whether its last completed flight command is one that holds it in place."""
     done = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
     return done.order_by("-sequence").values_list("kind", flat=True).first() in HOLDING
 
 
 def valid_until(continuation: Mission, now: datetime) -> datetime:
-    """When the first UAV comes too near to where it leaves its route, if all fly on as they do; VALID_FOR from now at the latest."""
+    """Return when the first UAV comes too near to where it leaves its route, if all fly on; at most VALID_FOR from now."""
     left_s = [left for route in _routes(continuation) if (left := _left_s(route, now)) is not None]
     return min([now + VALID_FOR, *(now + timedelta(seconds=left) for left in left_s)])
 
 
 def why_outdated(offer: ReplanOffer, now: datetime) -> Reason | None:
-    """None where it can still be taken."""
+    """Return why the offer is outdated; None where it can still be accepted."""
     mission, continuation, difference = offer.mission, offer.continuation, offer.difference
     if mission.state != MissionState.ACTIVE:
         return Reason("mission_not_flying")
@@ -64,7 +64,7 @@ def _other_orders(difference: Mapping[str, Any]) -> Reason | None:
 
 
 def _targets_reached(mission: Mission, continuation: Mission, difference: Mapping[str, Any]) -> Reason | None:
-    """Of those that change hands none may be done by now; what a UAV does on its way to where it leaves its route is its own."""
+    """Return a reason if a target that changes UAVs is done by now; targets before a UAV leaves its route are its own and do not count."""
     states = {target.sequence: target for target in mission.targets.all()}
     on_the_way = _done_on_the_way(continuation)
     for uav in difference["uavs"]:
@@ -94,7 +94,7 @@ def _routes(continuation: Mission) -> list[Route]:
 
 
 def _elsewhere(route: Route, now: datetime) -> Reason | None:
-    """Whether the UAV is no longer on the way that the offer keeps, or too near to its end."""
+    """Return a reason if the UAV has left the path that the offer keeps, or is too near to its end."""
     uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
     if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > RECEIVED_WITHIN_S:
         return Reason("place_unknown", values)
@@ -109,12 +109,12 @@ def _elsewhere(route: Route, now: datetime) -> Reason | None:
 
 
 def _kept_points(route: Route) -> list[PassedPoint]:
-    """The part of the route that the UAV flies already, to where it leaves it."""
+    """Return the part of the route that the UAV already flies, up to where it leaves it."""
     return [_point(row) for row in route.waypoints.all() if row.sequence <= (route.begun_by or 0)]
 
 
 def _left_s(route: Route, now: datetime) -> float | None:
-    """Until MIN_LEFT_S before the UAV leaves its route; None where it does not move or its place is unknown."""
+    """Return the seconds until MIN_LEFT_S before the UAV leaves its route; None where it does not move or its position is unknown."""
     uav, points = route.mission_uav.uav, _kept_points(route)
     if uav is None or uav.location is None or uav.located_at is None or len(points) == 1 or is_held(uav.pk):
         return None

@@ -1,4 +1,4 @@
-"""A proposal as a planned mission of its own, which continues the one that flies."""
+"""Store a proposal as a planned mission of its own, which continues the flying one."""
 
 from collections.abc import Collection
 from datetime import datetime
@@ -23,7 +23,7 @@ from planning.request import PlanRequest, lost_link_from_json
 
 
 def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[RefusalReason]]:
-    """The planned mission, or what speaks against flying it as it is: then nothing is stored."""
+    """Return the planned mission, or the reasons against flying it, in which case nothing is stored."""
     with transaction.atomic():
         continuation = _store(proposal)
         reasons = _reasons_against(proposal, continuation, now)
@@ -34,13 +34,13 @@ def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[R
 
 
 def given_up_routes(proposal: Proposal) -> list[int]:
-    """Keys of the flying mission's routes that are not flown on once this is."""
+    """Return the keys of the flying mission's routes that end when this proposal is flown."""
     changed = {*proposal.continued, *proposal.recalled, *(rest.place for rest in proposal.field.rests if rest.is_out)}
     return [rest.route.pk for rest in proposal.field.rests if rest.place in changed]
 
 
 def _reasons_against(proposal: Proposal, continuation: Mission, now: datetime) -> list[RefusalReason]:
-    """As if it had been taken over: the rest of the routes that it replaces is in nobody's way."""
+    """Return reasons as if the proposal had been accepted, so that the replaced parts of routes do not obstruct it."""
     with transaction.atomic():
         Route.objects.filter(pk__in=given_up_routes(proposal)).update(continued_by=continuation)
         separation = separation_of_stored(continuation)
@@ -83,7 +83,7 @@ def _store(proposal: Proposal) -> Mission:
 
 
 def _plan(proposal: Proposal, continued: Collection[Continued], targets: list[int]) -> dict[str, Any]:
-    """In the shape of the API, as far as it is stored."""
+    """Return the plan in the shape of the API, as far as it is stored."""
     routes = [one.route for one in continued]
     lengths_m = [round(route.length_m, 3) for route in routes]
     return {

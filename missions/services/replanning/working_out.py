@@ -1,4 +1,4 @@
-"""An offer worked out: the best of several ways that may be flown, stored as a mission beside what it would change."""
+"""Compute an offer: the best permitted proposal, stored as a mission with the difference to the flying one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -26,7 +26,7 @@ from workspace.reason_texts import why_of_column
 
 
 def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[float, Why], None]) -> None:
-    """The offer of the job becomes open, or impossible with the reasons; together with the job's end. Safe to run twice."""
+    """Open the job's offer, or end it as impossible with the reasons, together with the job's end. Safe to run twice."""
     offer = ReplanOffer.objects.select_related("mission__organisation").get(pk=job.parameters["offer"])
     if offer.state == OfferState.COMPUTING:
         _work_out(offer, stop, search_s, note)
@@ -51,7 +51,7 @@ def _work_out(offer: ReplanOffer, stop: Stop, search_s: float, note: Callable[[f
 
 
 def _open_the_best(offer: ReplanOffer, field: Field, note: Callable[[float, Why], None]) -> list[Reason]:
-    """Why there is none; empty where there is one. The first that leaves nothing undone is taken, else the best of all."""
+    """Open the first proposal without unreached targets, else the best of all; returns why there is none, empty where there is one."""
     found: list[Proposal] = []
     why: list[Reason] = []
     for number, proposal in enumerate(proposals(field)):
@@ -79,7 +79,7 @@ def _reasons(message: str, why: Sequence[Mapping[str, Any]]) -> list[Reason]:
 
 
 def _open(offer: ReplanOffer, proposal: Proposal) -> list[RefusalReason]:
-    """What speaks against it; none where it is open now."""
+    """Return the reasons against a proposal; empty where it is open now."""
     now = timezone.now()
     with transaction.atomic():
         held = held_offer(offer)

@@ -1,4 +1,4 @@
-"""Zones across what UAVs would still fly, by the zones of now."""
+"""Current zones across the remaining routes of UAVs."""
 
 from datetime import datetime
 
@@ -18,7 +18,7 @@ CHECKED_FOR_S = 3_600
 
 
 def zone_ahead(rest: Rest, now: datetime) -> MetZone | None:
-    """The first that it would meet; its leg leads from the waypoint of the breach, to which it may still fly."""
+    """Return the first zone that it would meet; the zone's leg starts at the last waypoint to which it may still fly."""
     if rest.here is None:
         return None
     began_s = now.timestamp() - rest.here.at_s(rest.points)
@@ -28,10 +28,11 @@ def zone_ahead(rest: Rest, now: datetime) -> MetZone | None:
 
 
 def suggest_for_zones() -> list[ReplanOffer]:
-    """For missions that fly while the ground changes: once for each zone that has come across what is left of one.
+    """Suggest offers for flying missions when the map data change: once for each zone that crosses a remaining route.
 
-    What has been looked at is kept in the cache, once it has been: a worker that is killed or runs out of time on the way leaves the rest
-    to the next. Without the cache it is looked at again, and suggested no more than once all the same.
+    The cache records each checked mission after its check: if a worker is killed or runs out of time, the next one does the rest. Without
+    the
+    cache missions are checked again, but suggested only once.
     """
     revision, now = ground_revision(), timezone.now()
     flying = Mission.objects.filter(state=MissionState.ACTIVE, deleted_at=None).exclude(ground_revision=revision)
