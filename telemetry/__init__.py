@@ -1,3 +1,3 @@
-"""What happens in the air: the UAV link, the log, and what it says."""
+"""The UAV link, the flight log, and what is derived from both: estimates, alerts and reports."""
 
 from telemetry import reasons as reasons

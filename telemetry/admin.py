@@ -1,4 +1,4 @@
-"""The admin's pages for what came over the links: to be looked at only."""
+"""Read-only admin pages for what the links received."""
 
 from django.contrib import admin
 from django.db.models import Q
@@ -9,7 +9,7 @@ from telemetry.models import UnknownVehicle
 
 @admin.register(UnknownVehicle)
 class UnknownVehicleAdmin(ReadOnlyAdmin):
-    """They belong to no organisation until one adopts them: administrators adopt or ignore them on the page of the fleet."""
+    """Unknown vehicles. They belong to no organisation until adopted; administrators adopt or ignore them on the fleet page."""
 
     organisation_path = "uav__organisation"
 

@@ -1,4 +1,4 @@
-"""Registers the app with Django, and with the missions: what it knows of UAVs, and what it asks before a mission is approved."""
+"""Registers the app with Django, and its data on UAVs and its checks before approval with missions."""
 
 from django.apps import AppConfig
 

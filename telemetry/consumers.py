@@ -15,21 +15,23 @@ from workspace.live.sockets import NO_MESSAGE, SignedInSocket
 from workspace.locale_negotiation import language_of_socket
 from workspace.models import User
 
-MAX_MESSAGE_LENGTH = 4_096  # characters that a page may say at once
-HEARTBEAT_INTERVAL_S = 2.0  # a page that hears nothing for 5 s says that it has no data (static/js/live/feed.js)
-STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
+MAX_MESSAGE_LENGTH = 4_096  # characters of one message of a page
+HEARTBEAT_INTERVAL_S = 2.0  # a page without a message for 5 s shows that it has no data (static/js/live/feed.js)
+STALLED_S = 60.0  # without an acknowledgement for so long a page counts as closed
 GONE, STALLED = 4404, 1013
 
 
 class LiveConsumer(SignedInSocket):
-    """`/ws/live` and `/ws/missions/{id}/live`: everything that such a page shows, then what changes.
+    """`/ws/live` and `/ws/missions/{id}/live`: a snapshot of everything that the page shows, then its changes.
 
-    `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […],
-    "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "removed": {"uavs": [… ids …], …}}`, numbered
-    one by one, and `{"type": "keepalive"}` after two seconds of silence. The page says `{"type": "ack", "sequence": n}` of each that has a
-    number of its own, and is told the latest of each object once it has the one before the last; or `{"type": "resync"}` where it has lost
-    count. Closed with 4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is
-    deleted, and at once with 4429 where the user or the network has as many websockets open as are allowed.
+    `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […], "offers":
+    […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "removed": {"uavs": [… ids …], …}}`, numbered
+    consecutively, and `{"type": "keepalive"}` after two seconds of silence. The page acknowledges each numbered message by `{"type": "ack",
+    "sequence": n}`, and receives the newest state of each object once it has acknowledged the last message but one. It sends `{"type":
+    "resync"}` if it has missed a number.
+
+    Close codes: 4400 after any other message, 4401 soon after the user has lost access, 4404 when the mission is deleted, 4429 at once when
+    the user or the network has too many open websockets.
     """
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
@@ -47,7 +49,7 @@ class LiveConsumer(SignedInSocket):
         mission: UUID | None = self.scope["url_route"]["kwargs"].get("mission_id")
         user = await self._user()
         if user is None or not (mission is None or await _has_mission(user, mission)):
-            await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
+            await self.close()  # before accepting: the handshake is refused with 403, whatever the reason
             return
         if await self.is_one_too_many(user):
             return
@@ -79,7 +81,7 @@ class LiveConsumer(SignedInSocket):
 
 
 def _heed(reader: Reader, stated: str | None) -> None:
-    """Raises ValueError where it is nothing that a page says."""
+    """Handle a message of a page. Raises ValueError if it is none of the protocol."""
     if stated is None or len(stated) > MAX_MESSAGE_LENGTH:
         raise ValueError
     match orjson.loads(stated):

@@ -1,1 +1,1 @@
-"""What an operator must know: an ordered list of detectors, one small module each."""
+"""Alerts for operators: an ordered list of detectors, one module each."""

@@ -1,6 +1,6 @@
-"""What is said beside an alert: what an act costs or why it is not offered, and what the UAV does by itself.
+"""Advice beside an alert: the cost of an act or why it is not offered, and what the UAV does by itself.
 
-Templates are English; values are put in when they are shown, in the reader's language (selectors/alert_words.py).
+Templates are English; values are inserted when shown, in the reader's language (selectors/alert_words.py).
 """
 
 from collections.abc import Mapping
@@ -26,7 +26,7 @@ NO_HEADWAY = "Return is not offered: the UAV makes no headway against the wind."
 COMES_DOWN_LOW = "It lands with about %(landing)s %% of the battery (reserve %(reserve)s %%)."
 FALLS_SHORT = "Its battery does not last for the return, which takes about %(home)s %%: %(percent)s %% is left."
 
-# What a silent UAV does, as it was last heard and as it was planned
+# What a UAV with a lost link does, by its last messages and its plan
 GOES_ON = "Planned for link loss: it continues its mission by itself. %(failsafe)s"
 HOLDS_THEN_RETURNS = "Planned for link loss: it holds for %(seconds)s s, then returns. %(failsafe)s"
 RETURNS_PLANNED = "Planned for link loss: it returns. %(failsafe)s"
@@ -44,14 +44,14 @@ _COMES_DOWN_BY = {ModeKind.RETURN: RETURN, ModeKind.LAND: LAND}
 
 
 def advice(template: str, **values: object) -> dict[str, Any]:
-    """Return an advice as alerts have it in their details."""
+    """Return advice in the form of an alert's details."""
     return {ADVICE: {"message": template, "values": values}}
 
 
 def own_act(mode: ModeKind | None, since_s: float | None, order: IssuedOrder | None) -> dict[str, Any]:
-    """Return what a UAV in a mode does about it by itself, as alerts have it in their details; empty where it neither returns nor lands.
+    """Return what a UAV in this mode does by itself, in the form of an alert's details; empty unless it returns or lands.
 
-    since_s: when it was first reported in this mode; None: it was in it when it was first heard.
+    since_s: when it was first reported in this mode; None: it was in it at its first message.
     """
     kind = None if mode is None else _COMES_DOWN_BY.get(mode)
     if kind is None:
@@ -62,12 +62,12 @@ def own_act(mode: ModeKind | None, since_s: float | None, order: IssuedOrder | N
 
 
 def answer_of(details: Mapping[str, Any]) -> tuple[Any, ...]:
-    """Return what of an alert's details an operator acts by, without figures that change each second."""
+    """Return the parts of an alert's details that affect an operator's decision, without values that change each second."""
     status_texts = details.get(ADVICE) or {}
     return details.get("acts"), details.get(OWN_ACT), status_texts.get("message")
 
 
 def figures_of(details: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the figures of an alert's advice; empty where it has none."""
+    """Return the values of an alert's advice; empty without advice."""
     values: Mapping[str, Any] = (details.get(ADVICE) or {}).get("values") or {}
     return values

@@ -1,4 +1,4 @@
-"""What a UAV's battery still allows: the way home, the rest of its route, and how soon the reserve is reached."""
+"""Battery forecast of a UAV: the flight home, the rest of its route, and the time until the reserve is reached."""
 
 import math
 from dataclasses import dataclass
@@ -19,16 +19,16 @@ USUAL_CRUISE_MPS = 8.0
 
 @dataclass(frozen=True, slots=True)
 class BatteryForecast:
-    """Percentages are of the full battery. None: not known.
+    """Percentages are of the full battery. None: unknown.
 
-    home_percent      takes the climb to the height of its return, the straight way home and the landing there; home_s its time
+    home_percent      used by the climb to its RTL height, the straight flight home and the landing there; home_s its duration
     landing_percent   the same to the nearest landing place other than home, landing_m away
-    rest_percent      takes the rest of the route, where it flies that
-    down_percent      takes a landing where it is
-    reserve_in_s      until the reserve is reached, flying on as on the way home
-    drain_per_s       now, in the kind of flight that it is in
-    hold_s            it can stay where it is, and then still return and land with the reserve
-    lands_percent     it has when it is down as it flies now: by its route, home or here; below 0 it does not last so long
+    rest_percent      used by the rest of the route, if it flies that
+    down_percent      used by a landing at its present position
+    reserve_in_s      until the reserve is reached, at the drain of the flight home
+    drain_per_s       now, in its present kind of flight
+    hold_s            time that it can hold and then still return and land with the reserve
+    lands_percent     left after landing as it flies now: by its route, home or here; negative: the battery does not last
     """
 
     left_percent: float
@@ -45,7 +45,7 @@ class BatteryForecast:
     lands_percent: float | None = None
 
     def as_json(self, level: str) -> dict[str, float | str | None]:
-        """As live pages show it; times in the UAV's own seconds."""
+        """Return the forecast for live pages; times are in the UAV's own seconds."""
         home_s = self.home_s if self.home_s is not None and math.isfinite(self.home_s) else None
         return {
             "level": level,
@@ -60,7 +60,7 @@ class BatteryForecast:
 
 
 def battery_forecast(inputs: DetectorInput, fresh: Report, left_percent: float) -> BatteryForecast:
-    """Of a UAV in flight with a fresh report. The situation's memory is written to."""
+    """Return the forecast of a UAV in flight with a fresh report. Updates the detector state."""
     reported, model, detector_state = fresh.measurement, inputs.model, inputs.detector_state
     consumption = None if model is None else model.consumption
     if consumption is None:
@@ -94,7 +94,7 @@ def battery_forecast(inputs: DetectorInput, fresh: Report, left_percent: float) 
 
 
 def _lands_percent(inputs: DetectorInput, left_percent: float, rest_percent: float | None, ways: "_ReturnEnergy") -> float | None:
-    """None for one that is held or flown by hand: it does not land as it flies now."""
+    """Return what is left after landing as it flies now; None if it holds or is flown manually."""
     needs = {ModeKind.RETURN: ways.home_percent, ModeKind.LAND: ways.down_percent}
     need = rest_percent if inputs.flies_mission or inputs.mode is None else needs.get(inputs.mode)
     return None if need is None or not math.isfinite(need) else left_percent - need
@@ -109,7 +109,7 @@ def _lands_at_end(inputs: DetectorInput) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _ReturnEnergy:
-    """As BatteryForecast has them; moving_per_s: drain on the way home [% a second]."""
+    """Values as in BatteryForecast; moving_per_s: drain on the flight home [% per second]."""
 
     home_percent: float | None = None
     home_s: float | None = None
@@ -122,7 +122,7 @@ class _ReturnEnergy:
 def _ways(
     inputs: DetectorInput, model: FlightModel, reported: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
 ) -> _ReturnEnergy:
-    """Straight from where it is; none without a position."""
+    """Return the energy of straight returns from its position; all None without a position."""
     if position is None:
         return _ReturnEnergy()
     height_m, drain, home = reported.altitude_relative_m or 0.0, inputs.detector_state.drain, model.line.vertices[0]
@@ -145,7 +145,7 @@ def _ways(
 def _way_to(
     consumption: Consumption, drain: DrainState, way: tuple[float, float], height_m: float, wind_mps: Wind, *, climb_m: float = 0.0
 ) -> tuple[float, float, float]:
-    """Seconds, percent, and percent a second while it moves. climb_m: that it climbs before, and sinks more at the end."""
+    """Return seconds, percent, and percent per second while moving. climb_m: climbed first, and descended in addition at the end."""
     flies_s, sinks_s, air_mps = consumption.way(*way, height_m + climb_m, wind_mps)
     climbs_s = climb_m / consumption.climb_mps
     climbing = consumption.percent_per_s(math.hypot(*wind_mps), consumption.climb_mps) * drain.ratio(FlightKind.CLIMBING)
@@ -162,7 +162,7 @@ def _rest_percent(inputs: DetectorInput, model: FlightModel, reported: Measureme
     climbed = 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
     rest = model.energy.rest_at(place, model.energy.used_at(place, climbed))
     if drain.kind is FlightKind.STILL and math.isfinite(holds_s := line.planned_hold_s(place.along_m)):
-        rest -= min(max(drain.still_lost, 0.0), holds_s * consumption.percent_per_s(0.0))  # of a stay that is planned here
+        rest -= min(max(drain.still_lost, 0.0), holds_s * consumption.percent_per_s(0.0))  # of a planned stay here
     return max(rest, 0.0) * max(drain.ratio(FlightKind.MOVING), 1.0)
 
 

@@ -1,4 +1,4 @@
-"""Which UAVs in the air come near each other within the next seconds."""
+"""Finds UAVs in the air that come near each other within the next seconds."""
 
 import math
 from collections import Counter, defaultdict
@@ -22,13 +22,13 @@ HIGHER_M = 2.0
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 STEP_S = 2.0
-MAX_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
+MAX_BOUND_M = 10.0  # of each UAV; a wider bound would conflict with every UAV
 DEGREE_M = 111_195.0
-MAX_MET = 8  # others that each is told of: in a crowd more would say nothing new
-SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
-FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # by which metres across the ground and in height are weighed against each other
-MIN_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
-NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
+MAX_MET = 8  # conflicts reported per UAV: in a crowd, more would not help
+SAME_RATE = 0.1  # relative difference up to which two estimated clock rates count as equal
+FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # scales that weigh horizontal against vertical distance
+MIN_CLIMB_MPS = 1.0  # from the ground; a faster climb is extrapolated
+NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # greater distances are not reported: no limit reaches that far
 
 
 class Why(StrEnum):
@@ -41,7 +41,7 @@ class Why(StrEnum):
 
 
 class Flying(NamedTuple):
-    """Place (east, north) [m], height [m], NaN: not known, and velocity [m/s]."""
+    """Position (east, north) [m], height [m], NaN if unknown, and velocity [m/s]."""
 
     east_m: float
     north_m: float
@@ -56,7 +56,7 @@ class Flying(NamedTuple):
 
 
 def yielding(first: Flying, second: Flying) -> tuple[bool, Why]:
-    """Return whether it is the first one that gives way, and why."""
+    """Return whether the first UAV gives way, and why."""
     first_stands, second_stands = first.speed_mps < STANDS_BELOW_MPS, second.speed_mps < STANDS_BELOW_MPS
     for is_first, one, stands in ((True, first, first_stands), (False, second, second_stands)):
         if stands and one.climb_mps > CLIMBS_ABOVE_MPS:
@@ -82,20 +82,20 @@ def _higher(first: Flying, second: Flying) -> tuple[bool, Why]:
 
 
 def _angle_deg(one: tuple[float, float], other: tuple[float, float]) -> float:
-    """From one direction to another, clockwise, -180 to 180."""
+    """Return the clockwise angle from one direction to another, -180 to 180."""
     turned = math.degrees(math.atan2(*other) - math.atan2(*one))
     return (turned + 180.0) % 360.0 - 180.0
 
 
 @dataclass(frozen=True, slots=True)
 class Moving:
-    """A UAV in the air on one of the ways that it may take. `ahead` is where it will be each STEP_S, now first, in lon/lat.
+    """A UAV in the air on one of its possible paths.
 
-    `height_m` counts from sea level, None: not known; `heights_m` has it for each step, where it is not just `climb_mps` from now on.
+    `ahead` is its position at each STEP_S, in lon/lat, beginning now. `height_m` is AMSL, None: unknown. `heights_m` gives it for each step
+    where a constant `climb_mps` does not apply. Bounds hold with 95 %.
 
-    Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing; nor are simulated twins and others, nor
-    those whose clocks run at
-    different rates, which are not in the air at the same time: seconds are the UAVs' own.
+    UAVs of different `organisation`s are not compared. Neither are simulated twins with other UAVs, nor UAVs whose clocks run at different
+    rates, which do not fly at the same time: seconds are the UAVs' own.
     """
 
     uav_id: int
@@ -109,11 +109,11 @@ class Moving:
     clock_rate: float = 1.0
     heights_m: tuple[float, ...] | None = None
     velocity_mps: tuple[float, float] = (0.0, 0.0)  # to east and north
-    here: tuple[float, float] | None = None  # lon/lat of now, where `ahead` begins elsewhere
+    here: tuple[float, float] | None = None  # lon/lat now, if `ahead` begins elsewhere
     is_twin: bool = False
 
     def heights_at(self, steps: int) -> FloatArray:
-        """At each of so many steps (steps,); NaN: not known."""
+        """Return the height at each of so many steps (steps,); NaN: unknown."""
         if self.height_m is None:
             return np.full(steps, math.nan)
         if self.heights_m is not None:
@@ -122,7 +122,7 @@ class Moving:
 
 
 def ways_of(inputs: DetectorInput, within_s: float) -> list[Moving]:
-    """The ways that a UAV in flight may take: as it moves now, and as its approved route has it, its climb from the ground included."""
+    """Return the possible paths of a UAV in flight: by its velocity, and along its approved route with the climb from the ground."""
     moving = moving_of(inputs, within_s)
     if moving is None:
         return []
@@ -154,7 +154,7 @@ def _as_planned(inputs: DetectorInput, moving: Moving) -> Moving | None:
 
 
 def moving_of(inputs: DetectorInput, within_s: float) -> Moving | None:
-    """None where it is not in flight, or where nobody knows where it is."""
+    """Return the path by its velocity; None if it is not in flight or its position is unknown."""
     uav, place, model = inputs.uav, inputs.place, inputs.model
     estimate, newest = uav.estimate, uav.newest
     position = estimate.position if estimate is not None else None if newest is None else position_of(newest)
@@ -188,9 +188,9 @@ def moving_of(inputs: DetectorInput, within_s: float) -> Moving | None:
 
 
 def conflicts(moving: Sequence[Moving], within_s: float) -> dict[int, list[Conflict]]:
-    """By the UAV with the smaller key of each pair: how near they come within so many seconds; of a crowd those that come nearest.
+    """Return the conflicts within so many seconds, by the UAV with the smaller key of each pair. In a crowd only the nearest are kept.
 
-    Of a pair there is a meeting for each two of their ways that come near, the nearest first.
+    A pair has one conflict for each two of their paths that come near, the nearest first.
     """
     found: dict[int, list[Conflict]] = defaultdict(list)
     if len(moving) < 2:
@@ -226,7 +226,7 @@ def conflicts(moving: Sequence[Moving], within_s: float) -> dict[int, list[Confl
 
 
 def _pairs(way: FloatArray) -> tuple[IntArray, IntArray]:
-    """Places of those whose boxes, about all that they fly over, are not farther apart than NEAR_M; way (n, steps, 2) [m]."""
+    """Return index pairs whose paths' bounding boxes are within NEAR_M; way (n, steps, 2) [m]."""
     low, high = way.min(axis=1) - NEAR_M / 2.0, way.max(axis=1) + NEAR_M / 2.0
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     ones, others = shapely.STRtree(boxes).query(boxes)
@@ -235,17 +235,17 @@ def _pairs(way: FloatArray) -> tuple[IntArray, IntArray]:
 
 
 def _least_apart_m(heights: FloatArray, ones: IntArray, others: IntArray) -> FloatArray:
-    """In height, of each pair (p,), at any time; heights (n, steps)."""
+    """Return the smallest vertical distance of each pair (p,) at any time; heights (n, steps)."""
     low, high = heights.min(axis=1), heights.max(axis=1)
     apart_m: FloatArray = np.maximum(low[ones] - high[others], low[others] - high[ones])
     return apart_m
 
 
 def _closest(between: FloatArray, above: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """How near across the ground and in height (p,) [m], and in how many seconds, at the step at which both are least.
+    """Return horizontal and vertical distance (p,) [m] at the closest approach, and the seconds until then.
 
-    between (p, steps, 2) and above (p, steps) [m] lead from the one to the other at each step. Heights that are not known count as the
-    same; who climbs or sinks past the other within a step is at its height.
+    between (p, steps, 2) and above (p, steps) [m] lead from one UAV to the other at each step. Unknown heights count as equal. A UAV that
+    climbs or descends past the other within a step counts as at its height.
     """
     here, on = between[:, :-1], np.diff(between, axis=1)
     square = (on * on).sum(axis=2)
@@ -288,7 +288,7 @@ def _conflict(first: Moving, second: Moving, lateral_m: float, height_m: float, 
 
 
 def _flying(uav: Moving, origin: tuple[float, float]) -> Flying:
-    """In metres from an origin (lon, lat)."""
+    """Return position and velocity in metres from an origin (lon, lat)."""
     lon, lat = uav.here or uav.ahead[0]
     east_m = (lon - origin[0]) * DEGREE_M * math.cos(math.radians(origin[1]))
     height_m = math.nan if uav.height_m is None else uav.height_m
@@ -298,7 +298,7 @@ def _flying(uav: Moving, origin: tuple[float, float]) -> Flying:
 def elsewhere(
     uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0, *, is_twin: bool = False
 ) -> Moving:
-    """One that another watch estimates, as services/watches.py writes it: straight on."""
+    """Return a UAV that another estimator process estimates, in the form of services/watches.py, extrapolated straight on."""
     lon, lat = estimated["position"]
     heading_rad, speed_mps = math.radians(estimated["heading_deg"] or 0.0), estimated["speed_mps"]
     degree_east_m = DEGREE_M * math.cos(math.radians(lat))

@@ -1,4 +1,4 @@
-"""What a detector is: a rule, and how patient it is."""
+"""The type of a detector: a rule with its delays."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -18,11 +18,10 @@ def _none(_limits: AlertLimits, _interval_s: float) -> float:
 class Detector:
     """Finds the causes of one code.
 
-    `detect` returns what is there now; None: that cannot be told now, and what was open stays open. A cause must last for `raise_after_s`
-    before there is an alert, and be gone for `clear_after_s` before it is over. `reports` is how many reports it takes to see it at most.
-    Of a UAV that is not `in_flight` nothing is found where it `needs_flight`. `suppressed_by` names what this would be a consequence of: as
-    long as an alert of one of these codes is open, nothing is said of this. `own_delay_s` is what it takes by its limits, at an interval
-    of reports [s].
+    `detect` returns the present findings; None if it cannot decide, which leaves open alerts unchanged. A cause must last `raise_after_s`
+    to open an alert and be gone for `clear_after_s` to close it. `reports` is the maximum number of reports needed to detect it. With
+    `needs_flight`, nothing is found for a UAV that is not in flight. While an alert with a code in `suppressed_by` is open, this detector
+    is skipped, as its finding would be a consequence. `own_delay_s` is the delay that its limits add, at an interval of reports [s].
     """
 
     code: str
@@ -35,6 +34,6 @@ class Detector:
     own_delay_s: Callable[[AlertLimits, float], float] = _none
 
     def delay_s(self, limits: AlertLimits, report_interval_s: float = 1.0) -> float:
-        """From a fault until its alert is open, at most, where reports come so often."""
+        """Return the maximum time from a fault to its open alert, at this interval of reports."""
         waits_s = self.own_delay_s(limits, report_interval_s) + self.raise_after_s
         return self.reports * report_interval_s + waits_s + POLL_INTERVAL_S

@@ -1,4 +1,4 @@
-"""All that detectors may look at, of one UAV at one moment."""
+"""The input of detectors: all data of one UAV at one moment."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -15,18 +15,18 @@ from telemetry.estimation.report import Report
 
 Key = tuple[str, str]  # code and subject
 FRESH_S, FRESH_INTERVALS = 5.0, 2.5
-AFTER_JUMP_S = 10.0  # for so long a position that has jumped says nothing of the route
+AFTER_JUMP_S = 10.0  # after a position jump the position is not compared with the route for so long
 AT_END_M = 40.0
-AIRBORNE_M = 5.0  # above take-off, where nothing says whether it flies
+AIRBORNE_M = 5.0  # above take-off: counts as in the air if nothing else is reported
 
 
 @dataclass(frozen=True, slots=True)
 class WatchedUav:
-    """A UAV of a mission that was sent to it or flies, or that is still in the air after its mission ended.
+    """A UAV whose mission was sent to it or is being flown, or that is still in the air after its mission ended.
 
-    `approval_id` is of the approval in force, `flight` the one of its route that it flies or will fly next, from 1 on; one past the last
-    after all were flown. `newest` is its newest report that is not from the future, None before the first. All else (its link, what it
-    holds, commands, zones) is looked up by telemetry/services/alerts/alerting.py.
+    `approval_id` is the approval in force. `flight` is the flight of its route that it flies now or next, from 1 on; one past the last
+    after all were flown. `newest` is its newest report that is not from the future; None before the first.
+    telemetry/services/alerts/alerting.py reads the rest: its link, onboard list, commands and zones.
     """
 
     uav_id: int
@@ -37,12 +37,12 @@ class WatchedUav:
     flight: int = 1
     newest: Report | None = None
     estimate: Estimate | None = None
-    is_twin: bool = False  # simulated, beside the UAV that it is the twin of
+    is_twin: bool = False  # simulated, and the twin of a real UAV
 
 
 @dataclass(frozen=True, slots=True)
 class DetectorInput:
-    """`open_levels` are those of the alerts that are open, by code and subject: a cause that is known already clears later than it rose."""
+    """`open_levels` are the levels of open alerts by code and subject: an open alert has a stricter threshold to clear."""
 
     now_s: float
     uav: WatchedUav
@@ -56,7 +56,7 @@ class DetectorInput:
     zones: tuple[NearZone, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
     status_texts: tuple[AutopilotText, ...] = ()
-    is_accounted_for: bool = False  # it is down away from its plan, and a person has closed that alert
+    is_accounted_for: bool = False  # it is down off plan, and a user has closed that alert
 
     def is_open(self, code: str, subject: str = "") -> bool:
         return (code, subject) in self.open_levels
@@ -69,7 +69,7 @@ class DetectorInput:
 
     @property
     def report_interval_s(self) -> float:
-        """Between its reports, as the last few came."""
+        """Return the interval of its last few reports."""
         estimate = self.uav.estimate
         return (
             self.detector_state.usual_interval_s if estimate is None or estimate.report_interval_s is None else estimate.report_interval_s
@@ -77,7 +77,7 @@ class DetectorInput:
 
     @property
     def fresh(self) -> Report | None:
-        """The newest report, unless others should have come since."""
+        """Return the newest report, unless further reports are overdue."""
         newest = self.uav.newest
         if newest is None or self.now_s - newest.received_s > max(FRESH_S, FRESH_INTERVALS * self.report_interval_s):
             return None
@@ -85,7 +85,7 @@ class DetectorInput:
 
     @property
     def place(self) -> RoutePlace | None:
-        """On its line, by the newest report; None without a position, or when that is old."""
+        """Return its place on the route by the newest report; None without a position or with an old one."""
         return None if self.fresh is None else self.detector_state.place
 
     @property
@@ -99,19 +99,19 @@ class DetectorInput:
 
     @property
     def flies_mission(self) -> bool:
-        """As far as is known: a mode that nobody tells or knows is taken for it."""
+        """Return whether it flies its mission, as far as is known. An unreported or unknown mode counts as mission mode."""
         return self.mode in (ModeKind.MISSION, None)
 
     @property
     def ends_as_planned(self) -> bool:
-        """Whether it is at the end of its line, in a mode that its list leads to there."""
+        """Return whether it is at the end of its route, in a mode that its mission leads to there."""
         place, model = self.detector_state.place, self.model
         is_at_end = place is not None and model is not None and model.line.length_m - place.along_m <= AT_END_M
         return is_at_end and self.mode in AT_THE_END and (self.order is None or self.order.kind in FLY_LIST)
 
     @property
     def is_in_flight(self) -> bool:
-        """As far as is known. A flight that was told to be over is, though no report has said so."""
+        """Return whether it is in flight, as far as is known. A flight reported over on the link is over, even without a report."""
         if self.link.is_in_air is False:
             return False
         reported = None if self.uav.newest is None else self.uav.newest.measurement
@@ -125,19 +125,19 @@ class DetectorInput:
 
     @property
     def is_known_down(self) -> bool:
-        """On the ground by its own word, not by silence."""
+        """Return whether it has reported that it is on the ground; silence does not count."""
         reported = None if self.uav.newest is None else self.uav.newest.measurement.is_in_air
         return not self.is_in_flight and (self.link.is_in_air is False or reported is False)
 
     @property
     def is_disarmed(self) -> bool:
-        """By its own word, not by silence."""
+        """Return whether it has reported that it is disarmed; silence does not count."""
         reported = None if self.uav.newest is None else self.uav.newest.measurement.is_armed
         return (self.link.is_armed if reported is None else reported) is False
 
     @property
     def agl_m(self) -> float | None:
-        """As told; else above the ground as the plan has it there."""
+        """Return its height above ground as reported, else computed from the plan's ground height."""
         reported = None if self.uav.newest is None else self.uav.newest.measurement
         if reported is None or reported.altitude_agl_m is not None:
             return None if reported is None else reported.altitude_agl_m

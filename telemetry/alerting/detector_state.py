@@ -1,4 +1,4 @@
-"""What is remembered of a UAV from one look to the next. It may be lost: then alerts come a little later."""
+"""Detector state of a UAV, kept between polls. If it is lost, alerts come slightly later."""
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -12,14 +12,14 @@ from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.estimation.report import Report
 
 INTERVALS_KEPT = 5
-UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
+UNKNOWN_INTERVAL_S = 10.0  # the interval of slow links
 FALL_MPS = 8.0  # multicopters are set to descend by 1 to 5 m/s
-MIN_FALL_S = 0.2  # between two reports, for their heights to tell a speed
+MIN_FALL_S = 0.2  # between two reports, to compute a speed from heights
 
 
 @dataclass
 class AlertCause:
-    """Since when something is found at a level or above, and since when it is found no more."""
+    """Since when a cause is found at each level or above, and since when it is gone."""
 
     since_s: dict[str, float] = field(default_factory=dict)
     gone_s: float | None = None
@@ -27,7 +27,7 @@ class AlertCause:
 
 @dataclass(frozen=True, slots=True)
 class RouteProgress:
-    """How far it had come at a time."""
+    """Progress along the route at a time."""
 
     at_s: float
     along_m: float
@@ -36,7 +36,7 @@ class RouteProgress:
 
 @dataclass
 class DetectorState:
-    """Of one UAV. `before` is the report before the newest one; `place` is where the newest one puts it on its line."""
+    """State of one UAV. `before` is the report before the newest one; `place` is the newest position on its route."""
 
     newest: Report | None = None
     before: Report | None = None
@@ -46,20 +46,20 @@ class DetectorState:
     jumped_s: float | None = None
     jump_m: float = 0.0
     was_in_flight: bool = False  # on this line
-    fell_s: float | None = None  # when it was last measured to come down faster than a UAV that is flown
-    down_s: float | None = None  # since when it is on the ground after it was in flight on this line; measured, too
-    down_at: LonLat | None = None  # where it came down then
-    has_ended: bool = False  # that flight, and its mission knows
-    mode: ModeKind | None = None  # the last that was known
-    mode_since_s: float | None = None  # when it was first reported, measured; None: it was in it before it was watched
-    mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
+    fell_s: float | None = None  # last measured time at which it descended faster than in powered flight
+    down_s: float | None = None  # measured time since when it is on the ground after a flight on this line
+    down_at: LonLat | None = None  # where it came down
+    has_ended: bool = False  # that flight is recorded as ended in its mission
+    mode: ModeKind | None = None  # last known
+    mode_since_s: float | None = None  # measured time of its first report in this mode; None: it was in it from the first report on
+    mode_words: tuple[str, str] = ("", "")  # a mode, and the vehicle's status texts around the change to it
     drain: DrainState = field(default_factory=DrainState)
-    battery: dict[str, Any] | None = None  # as live pages show it
+    battery: dict[str, Any] | None = None  # as shown on live pages
     causes: dict[tuple[str, str], AlertCause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
 
     def take(self, report: Report | None, line: RouteLine | None = None) -> bool:
-        """Whether it is a new one."""
+        """Store a report; return whether it is a new one."""
         if line is not self.line:
             self.line, self.place = line, None
             self.was_in_flight = False
@@ -78,7 +78,7 @@ class DetectorState:
         return True
 
     def note_flight(self, *, is_in_flight: bool) -> None:
-        """Of a UAV with an approved flight, by the newest report."""
+        """Update take-off and landing of a UAV with an approved flight, by the newest report."""
         if is_in_flight:
             self.was_in_flight, self.down_s, self.down_at, self.has_ended = True, None, None, False
         elif self.was_in_flight and self.newest is not None:
@@ -86,14 +86,14 @@ class DetectorState:
             self.down_at = position_of(self.newest) if self.down_at is None else self.down_at
 
     def note_mode(self, mode: ModeKind | None, measured_s: float) -> None:
-        """One that is not told changes nothing."""
+        """Store the mode; an unreported one changes nothing."""
         if mode is not None and mode is not self.mode:
             self.mode_since_s = None if self.mode is None else measured_s
             self.mode = mode
 
     @property
     def usual_interval_s(self) -> float:
-        """Between reports, as the last few came."""
+        """Return the median interval of the last few reports."""
         return median(self._intervals_s) if self._intervals_s else UNKNOWN_INTERVAL_S
 
 
@@ -105,7 +105,7 @@ def position_of(report: Report) -> LonLat | None:
 
 
 def _is_falling(report: Report, before: Report | None) -> bool:
-    """By the speed that it reports, else by its heights and its own clock."""
+    """Return whether it falls, by its reported speed, else by its heights and its own clock."""
     reported = report.measurement
     if reported.velocity_down_mps is not None:
         return reported.velocity_down_mps > FALL_MPS

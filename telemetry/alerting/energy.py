@@ -1,4 +1,4 @@
-"""What an approved flight takes of its battery, by how far it has come."""
+"""Energy that an approved flight uses, by progress along it."""
 
 from dataclasses import dataclass
 
@@ -16,15 +16,18 @@ from telemetry.alerting.route_line import NEAR_VERTEX_M, RoutePlace
 
 @dataclass(frozen=True, slots=True)
 class EnergyPlan:
-    """Of one flight. `used_percent` of the full battery by each waypoint; `until_percent`: for each waypoint what will have
-    been used at the end of the flight, or where it charges next."""
+    """Energy of one flight.
+
+    `used_percent` of the full battery at each waypoint. `until_percent`: for each waypoint, what will have been used at the end of the
+    flight or at the next charging stop.
+    """
 
     used_percent: tuple[float, ...]
     until_percent: tuple[float, ...]
     reserve_percent: float
 
     def used_at(self, place: RoutePlace, climbed_share: float = 1.0) -> float:
-        """climbed_share: of the way from the ground up to the first waypoint."""
+        """Return the percentage used at a place. climbed_share: share of the climb from the ground to the first waypoint."""
         if place.along_m <= NEAR_VERTEX_M and climbed_share < 1.0:
             return self.used_percent[0] * climbed_share
         end = min(place.leg + 1, len(self.used_percent) - 1)
@@ -32,7 +35,7 @@ class EnergyPlan:
         return start_percent + place.share * (self.used_percent[end] - start_percent)
 
     def rest_at(self, place: RoutePlace, used_percent: float) -> float:
-        """Still to be used, to the end of the flight or to where it charges next."""
+        """Return the percentage still to be used, to the end of the flight or the next charging stop."""
         end = min(place.leg + 1, len(self.used_percent) - 1)
         return max(0.0, self.until_percent[end] - used_percent)
 
@@ -41,7 +44,7 @@ def energy_plan(
     flight: Flight, *, cruise_speed_mps: float, performance: Performance, conditions: Conditions, rules: FlightRules,
     charging: tuple[int, ...] = (),
 ) -> EnergyPlan | None:  # fmt: skip
-    """None where the battery's energy is not known, or the wind was planned too strong."""
+    """Return the plan; None if the battery's energy is unknown or the planned wind leaves no headway."""
     points = RoutePoints.of(
         [
             RoutePoint(waypoint.position, waypoint.kind, waypoint.altitude_agl_m, None, waypoint.target, waypoint.task, waypoint.speed_mps)

@@ -1,4 +1,4 @@
-"""What a detector finds, and the acts by which an operator would answer it."""
+"""A detector's finding, and the acts that an operator can answer it with."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -6,7 +6,7 @@ from typing import Any
 
 ACTS = "acts"  # in the details of an alert whose acts depend on more than its code
 HOLD, RETURN, LAND = "hold", "return", "land"  # commands
-TAKE_OVER = "take-over"  # no command: a pilot on site flies it
+TAKE_OVER = "take-over"  # not a command: a pilot on site takes over
 KINDS = (HOLD, RETURN, LAND, TAKE_OVER)
 _OF_CODE = {"no-progress": HOLD, "off-route": HOLD, "zone": HOLD, "weather": RETURN, "height-off": HOLD}
 CRITICAL, WARNING, ADVISORY = "critical", "warning", "advisory"
@@ -14,23 +14,23 @@ RANK = {ADVISORY: 1, WARNING: 2, CRITICAL: 3}
 
 
 def acts(*kinds: str, uav_id: int) -> list[dict[str, Any]]:
-    """Return acts as alerts have them in their details."""
+    """Return acts in the form of an alert's details."""
     return [{"kind": kind, "uav": uav_id} for kind in kinds]
 
 
 def acts_of(code: str, uav_id: int | None, details: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the acts of an alert, the best first; empty for one that is answered by no command."""
+    """Return the acts of an alert, the best first; empty if no command answers it."""
     if ACTS in details:
-        return [act | {"kind": HOLD} if act["kind"] == "pause" else act for act in details[ACTS]]  # of before there was one Hold
+        return [act | {"kind": HOLD} if act["kind"] == "pause" else act for act in details[ACTS]]  # from before Pause became Hold
     return acts(_OF_CODE[code], uav_id=uav_id) if uav_id is not None and code in _OF_CODE else []
 
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A cause that is there now. `code` and `subject` name it: while it lasts there is one alert of it.
+    """A present cause. `code` and `subject` identify it: it has one alert while it lasts.
 
-    `message` is an English template; `values` are put into it when it is shown, in the reader's language. `details` are figures for
-    programs. `severity` compares figures of one cause at one level: more is worse.
+    `message` is an English template; `values` are inserted when shown, in the reader's language. `details` are values for programs.
+    `severity` compares findings of one cause and level: more is worse.
     """
 
     code: str

@@ -1,4 +1,4 @@
-"""Where alerts begin: usual limits, and those of a UAV type or a mission that differ."""
+"""Thresholds of alerts: defaults, and the values of a UAV type or a mission."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
@@ -6,7 +6,7 @@ from typing import Any
 
 
 class InvalidLimits(ValueError):
-    """Limits that make no sense; `place` names the entry as the JSON does."""
+    """The limits are invalid; `place` names the entry as in the JSON."""
 
     def __init__(self, place: str, message: str) -> None:
         super().__init__(f"{place}: {message}")
@@ -20,22 +20,22 @@ def _limit(usual: float, low: float, high: float) -> Any:
 
 @dataclass(frozen=True, slots=True)
 class AlertLimits:
-    """A name ends with its unit. What clears an alert lies below what raises it by a share that the detectors state.
+    """Thresholds; names end with their unit. Alerts clear at a share of the threshold that each detector defines.
 
-    link_late_s        nothing heard for so long: a warning; with reports that come more rarely, two and a half of their intervals
+    link_late_s        without a message: warning; with rare reports, two and a half of their intervals
     link_lost_s        likewise: critical; five intervals
-    off_route_m        beside the approved route: a warning; off_route_critical_m: critical
-    height_off_m       above or below the heights of the leg: a warning; height_off_critical_m: critical
-    zone_ahead_s       how far ahead zones are looked for
-    battery_margin_percent    of the full battery: how far below the reserve the flight may be expected to end before a warning
-    battery_critical_percent  expected at home, and at the end of the route: below it is critical, as is the reserve
-    no_progress_s      without coming on, beside the times that are planned for tasks
-    separation_m, separation_height_m  between two UAVs; nearer in both is too near
-    converging_s       how far ahead meetings are looked for
+    off_route_m        distance from the approved route: warning; off_route_critical_m: critical
+    height_off_m       above or below the heights of the leg: warning; height_off_critical_m: critical
+    zone_ahead_s       horizon of the zone prediction
+    battery_margin_percent    of the full battery: a warning if the flight is expected to end this far below the reserve
+    battery_critical_percent  expected at home and at the end of the route: critical below it, as below the reserve
+    no_progress_s      without progress, beside the times planned for tasks
+    separation_m, separation_height_m  minimum distances between two UAVs; a conflict falls below both
+    converging_s       horizon of the conflict prediction
     least_satellites, most_hdop  of a good fix
-    jump_mps           faster than that no UAV flies: its position has jumped
-    wind_share_percent of its highest airspeed that the wind may have
-    wind_mps           the wind may have; 0: only the share counts
+    jump_mps           a faster movement of the position is a jump
+    wind_share_percent maximum wind, as a share of its highest airspeed
+    wind_mps           maximum wind; 0: only the share counts
     """
 
     link_late_s: float = _limit(5.0, 2.0, 600.0)
@@ -68,7 +68,7 @@ BOUNDS = {entry.name: (entry.metadata["from"], entry.metadata["to"]) for entry i
 
 
 def checked_limits(value: Any) -> dict[str, float]:
-    """The limits that a type or a mission states. Raises InvalidLimits; whether they fit together `limits_of` tells."""
+    """Return the limits of a type or a mission. Raises InvalidLimits; `limits_of` checks whether they are consistent."""
     if not isinstance(value, Mapping):
         raise InvalidLimits("alert_limits", "must be an object")
     read: dict[str, float] = {}
@@ -87,7 +87,7 @@ def checked_limits(value: Any) -> dict[str, float]:
 
 
 def limits_of(*stated: Any) -> AlertLimits:
-    """The usual limits with those stated, the later ones before the earlier. Raises InvalidLimits."""
+    """Return the defaults overridden by the stated limits, later ones first. Raises InvalidLimits."""
     read: dict[str, float] = {}
     for value in stated:
         read |= checked_limits(value or {})
@@ -95,7 +95,7 @@ def limits_of(*stated: Any) -> AlertLimits:
 
 
 def sound_limits(stated: Sequence[Mapping[str, float]]) -> AlertLimits:
-    """Of a UAV's type and of its mission, in this order. A mission's that do not fit the type's are passed over."""
+    """Return the limits of a UAV's type and mission, in this order. Mission limits that contradict the type's are ignored."""
     for believed in (stated, stated[:1]):
         try:
             return limits_of(*believed)

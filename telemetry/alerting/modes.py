@@ -1,4 +1,4 @@
-"""What an autopilot's modes mean, by the names that reports have for them."""
+"""Meaning of an autopilot's modes, by their names in reports."""
 
 from enum import StrEnum
 
@@ -29,14 +29,14 @@ _KINDS = {name: kind for kind, names in _NAMES.items() for name in names}
 
 
 def mode_kind(mode: str) -> ModeKind | None:
-    """None for a mode that is not told, or not known: a companion computer may have words of its own. MAVROS says AUTO.MISSION."""
+    """Return the kind of a mode; None if unreported or unknown, as a companion may use its own names. MAVROS uses AUTO.MISSION."""
     name = mode.strip().upper().removeprefix("AUTO.")
     return ModeKind.BY_HAND if name.startswith("MODE ") else _KINDS.get(name)
 
 
-RETURN_ALONG = "return along the route"  # by the rest of the list on board
+RETURN_ALONG = "return along the route"  # by the rest of the onboard list
 
-# Modes that a command of ours leads to.
+# Modes that one of our commands leads to.
 LEADS_TO: dict[str, frozenset[ModeKind]] = {
     "arm": frozenset(ModeKind),
     "take-off": frozenset({ModeKind.TAKE_OFF, ModeKind.HOLD, ModeKind.GUIDED, ModeKind.MISSION}),
@@ -50,5 +50,5 @@ LEADS_TO: dict[str, frozenset[ModeKind]] = {
     "abort": frozenset({ModeKind.RETURN, ModeKind.LAND}),
 }
 WITHOUT_ORDER = frozenset({ModeKind.MISSION, ModeKind.TAKE_OFF})
-FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})  # commands after which it flies its list
+FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})  # commands after which it flies its mission
 AT_THE_END = frozenset({ModeKind.MISSION, ModeKind.HOLD, ModeKind.LAND, ModeKind.RETURN})

@@ -1,4 +1,4 @@
-"""All detectors, in the order in which they look: what hides others comes before them."""
+"""All detectors in the order of evaluation: those that suppress others come first."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detectors import (

@@ -1,6 +1,6 @@
-"""The path home by the rest of an approved flight: straight to one of its waypoints ahead, and on as approved to where it lands.
+"""RTL path along the rest of an approved flight: straight to a waypoint ahead, then on as approved to its landing place.
 
-Nothing but the leg from where the UAV is to that waypoint is new: it is looked at as the autopilot flies it, straight in place and height.
+Only the leg to that waypoint is new. It is checked as the autopilot flies it, straight in position and height.
 """
 
 import math
@@ -19,12 +19,12 @@ from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import FloatArray, RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 SAMPLED_EVERY_M = 10.0
-ROUNDING_M = 0.5  # heights are stored in tenths
+ROUNDING_M = 0.5  # heights are stored to 0.1 m
 
 
 @dataclass(frozen=True)
 class Here:
-    """Where a UAV is, above its take-off, and the index of the waypoint in its flight to which it is on its way."""
+    """Position and height above take-off of a UAV, and the index of the waypoint that it flies to."""
 
     position: LonLat
     height_m: float
@@ -33,9 +33,10 @@ class Here:
 
 @dataclass(frozen=True)
 class ReturnPath:
-    """`first`: index of the waypoint to which it flies straight; `sequence` that in the stored route. `speed_mps` is flown from there on.
+    """`first` is the index of the waypoint that it flies to directly, `sequence` that in the stored route. `speed_mps` applies from there
+    on.
 
-    `targets` are the places of the mission's targets that are still visited on it.
+    `targets` are the sequences of the mission's targets that it still visits.
     """
 
     first: int
@@ -50,9 +51,9 @@ def return_path(
     flight: Flight, here: Here, *, cruise_mps: float, base_m: float | None, ground_heights_m: GroundHeights | None, spans: Spans,
     zones: ZoneFacts, margins: Margins, rules: FlightRules,
 ) -> ReturnPath | None:  # fmt: skip
-    """The quickest of the paths that meet no zone and keep clear of the ground and of obstacles; None where there is none.
+    """Return the quickest path that meets no zone and stays clear of terrain and obstacles; None if there is none.
 
-    base_m: the take-off above the sea; None, or None for ground_heights_m: flat ground is assumed. zones: those that apply meanwhile.
+    base_m: take-off altitude AMSL. Without it or without ground_heights_m, flat ground is assumed. zones: those in force meanwhile.
     """
     points = flight.waypoints
     if flight.end_action == HOVER or not 0 <= here.ahead < len(points):
@@ -68,7 +69,7 @@ def return_path(
 
 
 def return_path_points(flight: Flight, path: ReturnPath, here: Here) -> list[tuple[LonLat, float, float]]:
-    """Position, height above the take-off, and seconds of staying, from where it is to where it comes down."""
+    """Return position, height above take-off and hold seconds of each point, from its position to its landing."""
     ahead = [(point.position, point.altitude_relative_m, _hold_s(point)) for point in flight.waypoints[path.first :]]
     return [(here.position, here.height_m, 0.0), *ahead]
 
@@ -80,7 +81,7 @@ def _quickest_first(flight: Flight, here: Here, cruise_mps: float, rules: Flight
 
 
 def _length_and_time(points: Sequence[FrozenWaypoint], here: Here, cruise_mps: float, rules: FlightRules) -> tuple[float, float]:
-    """Metres and seconds over ground, with holds and the descent at the end."""
+    """Return metres over ground and seconds, with holds and the descent at the end."""
     places = np.array([here.position, *(point.position for point in points)], dtype=np.float64)
     legs_m = distance_m(places[:-1], places[1:])
     speeds = np.array([point.speed_mps or cruise_mps for point in points])
@@ -124,7 +125,7 @@ def _as_passed(point: FrozenWaypoint) -> RoutePoint:
 
 
 def _under_m(position: FloatArray, base_m: float | None, ground: GroundHeights | None) -> FloatArray:
-    """The ground above the take-off; NaN where it is not known."""
+    """Return the ground height above the take-off; NaN if unknown."""
     if base_m is None or ground is None:
         return np.zeros(len(position))
     under_m: FloatArray = ground(position) - base_m
@@ -134,10 +135,10 @@ def _under_m(position: FloatArray, base_m: float | None, ground: GroundHeights |
 def _keeps_above_ground(
     position: FloatArray, relative_m: FloatArray, agl_m: FloatArray, base_m: float | None, ground: GroundHeights | None, rules: FlightRules
 ) -> bool:
-    """By the clearance, or as much as the lower of both ends has."""
+    """Return whether the leg keeps the clearance, or the height above ground of its lower end if that is less."""
     length_m = float(distance_m(position[:1], position[1:])[0])
     share = np.linspace(0.0, 1.0, max(1, math.ceil(length_m / SAMPLED_EVERY_M)) + 1)
     under_m = _under_m(position[0] + share[:, None] * (position[1] - position[0]), base_m, ground)
     kept_m = min(rules.clearance_m, float(agl_m.min())) - ROUNDING_M
     above_m = relative_m[0] + share * (relative_m[1] - relative_m[0]) - under_m
-    return bool((above_m >= kept_m).all())  # NaN: not known
+    return bool((above_m >= kept_m).all())  # NaN: unknown

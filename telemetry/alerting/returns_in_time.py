@@ -1,6 +1,6 @@
-"""Returns of UAVs, straight or along their routes: where they come near each other, and heights and waits by which none does.
+"""Returns of several UAVs, straight or along their routes: conflicts between them, and heights and delays that avoid these.
 
-Heights are above the sea; NaN where that is not known: what cannot be compared counts as the same height.
+Heights are AMSL; NaN if unknown. Heights that cannot be compared count as equal.
 """
 
 import math
@@ -14,12 +14,12 @@ from planning.rules import SeparationRules
 from planning.separation.separation import TimedRoute, conflicts
 
 CLIMB_MPS, DESCENT_MPS = 2.5, 1.0  # ArduCopter's WPNAV_SPEED_UP; between WPNAV_SPEED_DN and the slow end of a landing
-WAITS_S = (*(10.0 * step for step in range(12)), *(120.0 + 30.0 * step for step in range(27)))  # that are tried, to 15 minutes
+WAITS_S = (*(10.0 * step for step in range(12)), *(120.0 + 30.0 * step for step in range(27)))  # delays tried, up to 15 minutes
 
 
 @dataclass(frozen=True)
 class StraightReturn:
-    """A UAV at `position` that climbs where it is to `level_m`, flies straight to `goal` and comes down there to `ground_m`."""
+    """A UAV at `position` that climbs vertically to `level_m`, flies straight to `goal` and lands there at `ground_m`."""
 
     uav: str
     position: LonLat
@@ -30,7 +30,7 @@ class StraightReturn:
     speed_mps: float
 
     def duration_s(self) -> float:
-        """Seconds to the landing. Without heights those of the flight over ground."""
+        """Return the seconds to the landing. Without heights, only those of the horizontal flight."""
         length_m = float(distance_m(np.array([self.position]), np.array([self.goal]))[0])
         return self.climb_s + length_m / self.speed_mps + self.descent_s
 
@@ -43,7 +43,7 @@ class StraightReturn:
         return _seconds(self.level_m - self.ground_m, DESCENT_MPS)
 
     def after(self, wait_s: float) -> TimedRoute:
-        """The return as a timed route, in seconds from now: it stays where it is for `wait_s` before."""
+        """Return the timed route in seconds from now, beginning with a hold of `wait_s`."""
         climbed_s = wait_s + self.climb_s
         lands_s = wait_s + self.duration_s()
         return TimedRoute(
@@ -59,14 +59,14 @@ class StraightReturn:
 
 
 def staying(uav: str, position: LonLat, height_m: float) -> TimedRoute:
-    """A UAV that hovers where it is, in seconds from now."""
+    """Return the timed route of a UAV that hovers at its position, in seconds from now."""
     return TimedRoute(
         uav, np.array([position], dtype=np.float64), np.array([height_m]), np.zeros(1), np.zeros(1), take_off_m=height_m, lands_s=None
     )
 
 
 def flying_on(uav: str, points: Sequence[tuple[LonLat, float, float]], speed_mps: float, *, lands: bool) -> TimedRoute:
-    """A UAV that flies through points from now on, each with a height and the seconds that it stays there."""
+    """Return the timed route of a UAV through points, each with a height and hold seconds, beginning now."""
     position = np.array([place for place, _height_m, _hold_s in points], dtype=np.float64)
     hold_s = np.array([stay_s for _place, _height_m, stay_s in points])
     legs_s = np.concatenate([[0.0], distance_m(position[:-1], position[1:]) / speed_mps])
@@ -82,10 +82,10 @@ def flying_on(uav: str, points: Sequence[tuple[LonLat, float, float]], speed_mps
 def chosen_apart(
     choices: Sequence[Sequence[TimedRoute]], fixed: Sequence[TimedRoute], rules: SeparationRules, first: Sequence[TimedRoute]
 ) -> list[int | None]:
-    """For each UAV the first of its choices that comes near no other UAV; None where none does not, which then flies as `first` has it.
+    """Return for each UAV its first choice without a conflict; None if there is none, in which case it flies as in `first`.
 
-    UAVs choose one after another, in their order; where that leaves one without a choice, those with the shortest first way are tried
-    first, or those with the longest. fixed: what all others in the air do.
+    UAVs choose one after another, in their order. If one has no choice left, the order is tried by ascending and descending duration of the
+    first choice. fixed: routes of all other UAVs in the air.
     """
     in_order = list(range(len(choices)))
     by_duration = sorted(in_order, key=lambda number: (first[number].end_s, number))

@@ -1,4 +1,4 @@
-"""An approved flight as a line: how far along it and beside it a UAV is, and how high it ought to be there."""
+"""An approved flight as a line: a UAV's progress along it, its offset, and the planned height there."""
 
 import math
 from bisect import bisect_right
@@ -13,19 +13,19 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import HOVER, Flight
 
-NEAR_VERTEX_M = 15.0  # an autopilot takes a waypoint for reached before it is there, and climbs or sinks beside it
-LEGS_BACK, LEGS_ON = 2, 1  # of the leg to the waypoint that is told, which may be some seconds old
-LEG_OFF_M = 15.0  # for each leg that it would be from the one that is expected
-NEAR_HEIGHT_M = 2.0  # below its first waypoint it is still climbing to it
-SINK_MPS = 1.0  # of a landing
-BACK_M, ON_M = 60.0, 600.0  # of where it was before, where no waypoint is told
+NEAR_VERTEX_M = 15.0  # an autopilot accepts a waypoint before it is reached, and climbs or descends near it
+LEGS_BACK, LEGS_ON = 2, 1  # search range around the leg to the reported waypoint, which may be some seconds old
+LEG_OFF_M = 15.0  # penalty for each leg of difference from the expected leg
+NEAR_HEIGHT_M = 2.0  # further below the first waypoint it is still climbing to it
+SINK_MPS = 1.0  # when landing
+BACK_M, ON_M = 60.0, 600.0  # search range around the previous place if no waypoint is reported
 
 Point = tuple[float, float, float]  # east, north, height above take-off [m]
 
 
 @dataclass(frozen=True, slots=True)
 class RoutePlace:
-    """Beside which point of the line a UAV is. `leg` leads from vertex `leg` to the next one; `share` of it lies behind."""
+    """The nearest point of the line. `leg` leads from vertex `leg` to the next; `share` of it lies behind."""
 
     along_m: float
     across_m: float
@@ -34,13 +34,13 @@ class RoutePlace:
 
 
 class RouteLine:
-    """A flight from its first waypoint to its last. Frames are flat: lengths are within 1 % over some 20 km.
+    """A flight from its first waypoint to its last, in a flat frame: lengths are within 1 % over some 20 km.
 
-    vertices (east, north) [m], along_m, heights_m above this flight's take-off, hold_s, and sequences have an entry for each waypoint.
+    vertices (east, north) [m], along_m, heights_m above this flight's take-off, hold_s and sequences have one entry for each waypoint.
     """
 
     def __init__(self, flight: Flight, charging: tuple[int, ...] = ()) -> None:
-        """charging: places of waypoints in the route at which it was planned to charge."""
+        """charging: sequences of the route's waypoints with a planned charging stop."""
         waypoints = flight.waypoints
         middle = waypoints[len(waypoints) // 2].position
         self.frame = LocalFrame.around(middle.lon, middle.lat)
@@ -67,15 +67,15 @@ class RouteLine:
         )
 
     def vertex_of(self, sequence: int | None) -> int | None:
-        """The vertex of a waypoint of the route; None where it is of another flight, or not known."""
+        """Return the vertex of a waypoint of the route; None if it belongs to another flight or is unknown."""
         if sequence is None or not self.sequences[0] <= sequence <= self.sequences[-1]:
             return None
         return bisect_right(self.sequences, sequence) - 1
 
     def place(self, position: LonLat, sequence: int | None = None, before: RoutePlace | None = None) -> RoutePlace:
-        """The nearest point of the legs that it may be on: about the waypoint that it flies to, or else about where it was before.
+        """Return the nearest point of the likely legs: those near the waypoint that it flies to, else near its previous place.
 
-        A way out and back lies twice over the same ground: the leg that is expected is taken unless another is clearly nearer.
+        A path out and back covers the same ground twice: the expected leg is used unless another is clearly nearer.
         """
         east, north = self.east_north(position)
         vertex = self.vertex_of(sequence)
@@ -91,13 +91,13 @@ class RouteLine:
         return replace(nearest, across_m=min(place.across_m for place in found))
 
     def place_from(self, position: LonLat, before: RoutePlace) -> RoutePlace:
-        """The nearest point of all legs from where it was before; of equals the first."""
+        """Return the nearest point of all legs from its previous place on; the first of equals."""
         east, north = self.east_north(position)
         last = max(len(self.vertices) - 2, 0)
         return min((self._beside(leg, east, north) for leg in range(min(before.leg, last), last + 1)), key=lambda place: place.across_m)
 
     def beside(self, leg: int, position: LonLat) -> RoutePlace:
-        """The nearest point of one leg."""
+        """Return the nearest point of one leg."""
         return self._beside(leg, *self.east_north(position))
 
     def _beside(self, leg: int, east: float, north: float) -> RoutePlace:
@@ -109,10 +109,10 @@ class RouteLine:
         return RoutePlace(self.along_m[leg] + share * math.sqrt(square), across_m, leg, share)
 
     def heights_at(self, place: RoutePlace) -> tuple[float, float]:
-        """The lowest and the highest that the plan has the UAV there [m above take-off].
+        """Return the lowest and highest planned height at a place [m above take-off].
 
-        An autopilot climbs evenly along a leg, the plan's times have it level first: whatever lies between is right. About a waypoint so
-        are the heights of both legs, and under the first and the last all down to the ground.
+        An autopilot climbs evenly along a leg, while the plan's times assume the climb first; every height in between is accepted. Near a
+        waypoint the heights of both legs are accepted, and below the first and last waypoint all down to the ground.
         """
         last = len(self.vertices) - 1
         end = min(place.leg + 1, last)
@@ -130,12 +130,12 @@ class RouteLine:
         return min(heights_m), max(heights_m)
 
     def ground_m(self, place: RoutePlace) -> float:
-        """Of the ground below, above this flight's take-off, as planned."""
+        """Return the planned ground height at a place, above this flight's take-off."""
         end = min(place.leg + 1, len(self.vertices) - 1)
         return self.grounds_m[place.leg] + place.share * (self.grounds_m[end] - self.grounds_m[place.leg])
 
     def at(self, along_m: float) -> tuple[float, float]:
-        """East and north [m] so far along the line; at its ends beyond them."""
+        """Return east and north [m] at a length along the line, clamped to its ends."""
         leg = min(max(bisect_right(self.along_m, along_m) - 1, 0), max(len(self.vertices) - 2, 0))
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
         length_m = self.along_m[min(leg + 1, len(self.vertices) - 1)] - self.along_m[leg]
@@ -143,10 +143,10 @@ class RouteLine:
         return east_1 + share * (east_2 - east_1), north_1 + share * (north_2 - north_1)
 
     def planned_ahead(self, place: RoutePlace, height_m: float, climb_mps: float, seconds: Sequence[float]) -> list[Point] | None:
-        """Where the plan has it after so many seconds from a place and a height [m above take-off]; None where its times are not known.
+        """Return the planned positions after so many seconds from a place and a height [m above take-off]; None without planned times.
 
-        From the ground it first climbs straight up to its first waypoint. At a waypoint it goes on at once, and at the end it sinks. None
-        also of one that is at the end, or where it charges: how long it is there is not planned.
+        From the ground it first climbs vertically to its first waypoint. At a waypoint it continues at once; at the end it descends. Also
+        None at the end of the line or at a charging stop, where the duration of the stay is not planned.
         """
         moments, points = self._timetable
         if not moments or self.length_m - place.along_m <= NEAR_VERTEX_M < self.length_m or self._charges_near(place):
@@ -167,7 +167,7 @@ class RouteLine:
 
     @cached_property
     def _timetable(self) -> tuple[list[float], tuple[list[float], list[float], list[float]]]:
-        """When it comes to and leaves each waypoint, and where it is then (east, north, height); empty where that is not known."""
+        """Return the times of arrival and departure at each waypoint, and its position (east, north, height); empty if unknown."""
         arrival_s = [moment for moment in self.arrival_s if moment is not None]
         if len(arrival_s) < len(self.vertices):
             return [], ([], [], [])
@@ -193,12 +193,12 @@ class RouteLine:
         return leaves_s + place.share * max(arrives_s - leaves_s, 0.0)
 
     def agl_between(self, from_m: float, to_m: float) -> list[float]:
-        """Heights above ground of the waypoints from one length along it to another."""
+        """Return the heights above ground of the waypoints between two lengths along the line."""
         first, last = bisect_right(self.along_m, from_m), bisect_right(self.along_m, to_m)
         return [self.heights_m[vertex] - self.grounds_m[vertex] for vertex in range(first, last)]
 
     def planned_hold_s(self, along_m: float) -> float:
-        """How long it stays at waypoints near here; without end at one where it charges."""
+        """Return the planned hold at waypoints near a length along the line; infinite at a charging stop."""
         holds_s = 0.0
         for vertex, at_m in enumerate(self.along_m):
             if abs(at_m - along_m) <= 2.0 * NEAR_VERTEX_M:

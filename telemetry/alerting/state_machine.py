@@ -1,4 +1,4 @@
-"""From what is found now to what changes: patience before an alert opens and before it closes, and one alert for one cause."""
+"""Alert state machine: converts findings to changes of alerts, with delays to open and close and one alert per cause."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -9,12 +9,12 @@ from telemetry.alerting.detector_state import AlertCause
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
 
-CLEARED, LANDED = "cleared", "landed"  # why an alert is over
+CLEARED, LANDED = "cleared", "landed"  # reasons why an alert is closed
 
 
 @dataclass(frozen=True, slots=True)
 class Opened:
-    """Also of one that is open: then with a higher level, or newer figures. `is_held`: it was worse, and has kept that level."""
+    """An alert to open, or an open one with a higher level or newer values. `is_held`: it keeps a level from when its cause was worse."""
 
     finding: Finding
     is_held: bool = False
@@ -31,10 +31,10 @@ Change = Opened | Closed
 
 
 def changes(inputs: DetectorInput, detectors: Sequence[Detector]) -> list[Change]:
-    """What of the open alerts changes by this look. An open alert that goes on with the same level is Opened again with its newest words.
+    """Return the changes of alerts at this poll. An open alert that continues at the same level is Opened again with its newest values.
 
-    The level of an alert rises and does not fall: what was critical has to be seen to be over. No alert of a UAV that is down away from
-    its plan closes. The situation's memory is written to.
+    The level of an alert only rises, so that an operator sees what was critical. No alert of a UAV that is down off plan closes. Updates
+    the detector state.
     """
     found: list[Change] = []
     open_codes = {code for code, _ in inputs.open_levels}
@@ -55,7 +55,7 @@ def changes(inputs: DetectorInput, detectors: Sequence[Detector]) -> list[Change
 
 
 def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Finding], over: str) -> list[Change]:
-    """over: why those that are found no more are over."""
+    """over: the reason to close alerts whose cause is gone."""
     causes, now_s = inputs.detector_state.causes, inputs.now_s
     by_key: dict[Key, Finding] = {(finding.code, finding.subject): finding for finding in findings}
     found: list[Change] = []
@@ -81,7 +81,7 @@ def _changes_of(detector: Detector, inputs: DetectorInput, findings: Iterable[Fi
 
 
 def _lasting_level(cause: AlertCause, level: str, now_s: float, raise_after_s: float) -> str | None:
-    """The highest level at or above which it has been found for long enough."""
+    """Return the highest level found continuously for long enough; None if there is none."""
     cause.gone_s = None
     for name, rank in RANK.items():
         if rank <= RANK[level]:

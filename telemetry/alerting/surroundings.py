@@ -1,4 +1,4 @@
-"""What is around a UAV: its link, what it holds and was told, zones, and other UAVs. Times are Unix seconds."""
+"""Data around a UAV: its link, onboard list, orders, zones and conflicts. Times are Unix seconds."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,10 +14,10 @@ from telemetry.alerting.route_line import RouteLine
 
 @dataclass(frozen=True, slots=True)
 class LinkFacts:
-    """What is known of the UAV's link. `last_message_s` is when anything was last received, by the server's clock.
+    """State of the UAV's link. `last_message_s` is the receipt of the last message, by the server's clock.
 
-    `clock_rate`: the vehicle's seconds a second of the server's; not 1 where it is flown faster than real time.
-    `battery_state`: as the vehicle itself has it, a name of mavlink/vehicle_state.py; empty: it does not tell.
+    `clock_rate`: the vehicle's seconds per server second; not 1 if it is simulated faster than real time. `battery_state`: as the vehicle
+    reports it, a name of mavlink/vehicle_state.py; empty: not reported.
     """
 
     last_message_s: float | None = None
@@ -27,12 +27,12 @@ class LinkFacts:
     clock_rate: float = 1.0
     battery_state: str = ""
     autopilot: str = ""  # a name of mavlink/autopilot_type.py
-    rtl_behaviour: RtlBehaviour | None = None  # how high it flies home by itself; None: not known
+    rtl_behaviour: RtlBehaviour | None = None  # None: unknown
 
 
 @dataclass(frozen=True, slots=True)
 class IssuedOrder:
-    """The latest command of ours about its flight that did not fail. `done_s` is None as long as it is on its way."""
+    """The latest flight command from here that did not fail. `done_s` is None while it is under way."""
 
     kind: str
     done_s: float | None
@@ -41,9 +41,9 @@ class IssuedOrder:
 
 @dataclass(frozen=True, slots=True)
 class OnboardState:
-    """What the UAV holds, as far as it was read back. `is_approved`: exactly a flight of the approval in force.
+    """The UAV's onboard list as read back. `is_approved`: it equals a flight of the approval in force.
 
-    `is_changing`: a mission is being brought to it or taken off it; `items` of the list, without home, None where it has none.
+    `is_changing`: a mission is being uploaded or cleared. `items` is the length of the list without home; None if unknown.
     """
 
     approval_id: UUID | None = None
@@ -56,10 +56,10 @@ class OnboardState:
 
 @dataclass(frozen=True, slots=True)
 class FlightModel:
-    """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air.
+    """The approved flight with precomputed data. `max_airspeed_mps` is the UAV's highest airspeed.
 
-    rally_points: where it may land by itself beside its home. consumption: what the way home takes; None: an endurance is assumed.
-    lost_link: what was planned for a lost link; None: not known.
+    rally_points: where it may land by itself beside its home. consumption: to compute the flight home; None: an endurance is assumed.
+    lost_link: the planned lost-link action; None: unknown.
     """
 
     line: RouteLine
@@ -73,9 +73,9 @@ class FlightModel:
 
 @dataclass(frozen=True, slots=True)
 class NearZone:
-    """A zone whose box a UAV may touch soon. `polygon` is a prepared shapely geometry in lon/lat; heights are above ground.
+    """A zone whose bounding box a UAV may reach soon. `polygon` is a prepared shapely geometry in lon/lat; heights are above ground.
 
-    `spans` are the times at which it applies, about now; None: always.
+    `spans` are the times at which it applies, around now; None: always.
     """
 
     zone_id: int
@@ -92,7 +92,7 @@ class NearZone:
         return self.spans is None or any(start <= to_s and from_s <= end for start, end in self.spans)
 
     def reaches(self, low_agl_m: float | None, high_agl_m: float | None) -> bool:
-        """Between two heights; one that is not known counts as reached."""
+        """Return whether the zone overlaps a range of heights; an unknown height counts as inside."""
         return low_agl_m is None or high_agl_m is None or (self.floor_agl_m <= high_agl_m and low_agl_m <= self.ceiling_agl_m)
 
 
@@ -100,9 +100,9 @@ class NearZone:
 class Conflict:
     """Two UAVs that come near each other.
 
-    Distances `lateral_m` and `height_m` are at the closest, with the places as estimated; `least_` at the worst of their bounds, by which
-    an alert is raised; `now_` of this moment, as measured or estimated, within `bound_m` across the ground (95 of 100 times). closing_mps
-    is above 0 while they come nearer. `yields_id` is the UAV that is best held, `why` a reason of telemetry/alerting/conflicts.py.
+    `lateral_m` and `height_m` are the estimated distances at the closest point of approach. The `least_` values subtract the bounds and
+    decide on the alert. The `now_` values are of this moment, within `bound_m` horizontally (95 %). closing_mps is positive while they
+    converge. `yields_id` is the UAV to hold, `why` a reason of telemetry/alerting/conflicts.py.
     """
 
     other_id: int

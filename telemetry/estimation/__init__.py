@@ -1,1 +1,1 @@
-"""Where a UAV is between two reports, and how sure we are."""
+"""Estimates of a UAV's position between two reports, with their bounds."""

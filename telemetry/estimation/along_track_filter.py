@@ -1,8 +1,9 @@
-"""How far along its profile a UAV is: a distribution over the profile's clock, moved by time and narrowed by reports.
+"""Along-track filter: the position of a UAV along its profile as a distribution over the profile's clock, predicted by time and updated by
+reports.
 
-The clock of a flight is its profile's, with the time in motion divided by the UAV's speed factor (flown over planned speed). It shows
-real seconds: a UAV that flies its profile at this factor is one second further on it each second. What it is off by grows with the
-time in motion (speed factor, gusts) and with each turn, stop and climb. It never goes back.
+The clock of a flight is its profile's, with the time in motion divided by the UAV's speed factor (flown over planned speed). It counts real
+seconds: a UAV that flies its profile at this factor advances one second per second. The uncertainty grows with the time in motion (speed
+factor, gusts) and with each turn, stop and climb. The UAV never moves back.
 """
 
 import math
@@ -20,28 +21,28 @@ SPREAD = np.linspace(-2.8, 2.8, 15)
 SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
 # Calibrated on the truth generator, on seeds that no test uses; see benchmarks/telemetry/estimator.py.
-SPEED_FACTOR_SD = 0.06  # of a UAV that has not flown yet
-SPEED_FACTOR_DRIFT = 0.008  # in a second
-SUREST_SD = 0.02  # of a speed factor, however long it was observed
+SPEED_FACTOR_SD = 0.06  # before its flight
+SPEED_FACTOR_DRIFT = 0.008  # per second
+SUREST_SD = 0.02  # lower bound for the speed factor, after any observation
 MIN_SPEED_FACTOR, MAX_SPEED_FACTOR = 0.4, 1.8
-GUST_SD, GUST_S = 0.025, 25.0  # of speed, and for how long one lasts
+GUST_SD, GUST_S = 0.025, 25.0  # of speed, and its correlation time
 MIN_S = 0.04
-NOW_S = 25.0  # for how long the speed of this moment tells of what comes
+NOW_S = 25.0  # how long the current speed predicts the next
 NOW_SHARE = 0.8
-EVEN_S = (-4.0, -2.0, 2.0)  # from now: where it must fly as it does now
+EVEN_S = (-4.0, -2.0, 2.0)  # seconds from now at which the planned velocity must equal the present one
 MIN_EVEN_MPS = 1.0
-ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, along it and across; corners are cut
-NOT_EVEN = 0.03  # how often it is off along it as well
+ALONG_M, OFF_M = 1.5, 6.0  # standard deviations of a report from the profile, along and across; autopilots cut corners
+NOT_EVEN = 0.03  # how often a report is off along the profile as well
 FAR_M = 40.0
 OFF_MPS = 2.0
-NOT_STATED = 0.02  # likelihood where the vehicle says that it flies to another waypoint
+NOT_STATED = 0.02  # likelihood if the vehicle reports another waypoint
 
 
 @dataclass(frozen=True, eq=False)
 class AlongTrack:
-    """Equally likely places on the profile, in its own seconds, shape (PLACES,), and the speed factor with its variance.
+    """Equally likely places on the profile, in its seconds, shape (PLACES,), and the speed factor with its variance.
 
-    `now` is the share by which the speed of the moment differs from the speed factor.
+    `now` is the relative difference of the current speed from the speed factor.
     """
 
     nominal_s: FloatArray
@@ -52,7 +53,7 @@ class AlongTrack:
 
 @dataclass(frozen=True, eq=False)
 class Ahead:
-    """Where it may be after some time: (n,) readings of the clock, with weights that sum to 1."""
+    """Predicted places: (n,) clock readings with weights that sum to 1."""
 
     clock: FloatArray
     reading_s: FloatArray
@@ -61,7 +62,7 @@ class Ahead:
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """What a report shows of it; in the profile's frame. None is not told."""
+    """Data of a report in the profile's frame. None: not reported."""
 
     east_m: float | None
     north_m: float | None
@@ -76,18 +77,21 @@ def at_start() -> AlongTrack:
 
 
 def anywhere(profile: FlightProfile, observation: Observation) -> AlongTrack | None:
-    """Of a flight of which nothing was heard before."""
+    """Return the places for the first report of a flight; None if it is far from the profile."""
     start = at_start()
     return _found_anew(profile, start, clock_of(profile, start), 0.0, observation, within_s=math.inf)
 
 
 def clock_of(profile: FlightProfile, along_track: AlongTrack) -> FloatArray:
-    """Of each knot."""
+    """Return the clock reading of each knot."""
     return profile.moving_s / along_track.speed_factor + profile.standing_s
 
 
 def ahead(profile: FlightProfile, along_track: AlongTrack, after_s: float, *, is_surely_under_way: bool = True) -> Ahead:
-    """after_s: since the places were right, at least 0. Without is_surely_under_way it may have stood still for any part of it."""
+    """Return the places after a time.
+
+    after_s: since the last update, at least 0. Without is_surely_under_way it may have stood still for any part of it.
+    """
     clock = clock_of(profile, along_track)
     from_s = np.interp(along_track.nominal_s, profile.nominal_s, clock)
     middle_s, uncertainty_s = _moved(profile, along_track, clock, from_s, after_s)
@@ -100,7 +104,7 @@ def ahead(profile: FlightProfile, along_track: AlongTrack, after_s: float, *, is
 def updated(
     profile: FlightProfile, along_track: AlongTrack, after_s: float, observation: Observation, *, is_surely_under_way: bool = True
 ) -> AlongTrack | None:
-    """The places that are left after a report, and a better pace. None where it is nowhere near the profile.
+    """Return the places after a report and an improved speed factor; None if the report is far from the profile.
 
     Without is_surely_under_way it may have stood still for any part of the time.
     """
@@ -130,7 +134,7 @@ def updated(
 def _moved(
     profile: FlightProfile, along_track: AlongTrack, clock: FloatArray, from_s: FloatArray, after_s: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Mean and standard deviation of the clock after some time, for each place."""
+    """Return mean and standard deviation of the clock after a time, for each place."""
     plain_s = from_s + after_s
     moving_s = (_at(plain_s, clock, profile.moving_s) - _at(from_s, clock, profile.moving_s)) / along_track.speed_factor
     slack_s2 = _at(plain_s, clock, profile.variance_s2) - _at(from_s, clock, profile.variance_s2)
@@ -140,7 +144,7 @@ def _moved(
 
 
 def _at_any_time(from_s: FloatArray, uncertainty_s: FloatArray, after_s: float) -> tuple[FloatArray, FloatArray]:
-    """Mean and standard deviation of the clock of one that sets out at some moment of the time, or not yet."""
+    """Return mean and standard deviation of the clock for a UAV that starts at any moment of the time, or later."""
     return from_s + 0.5 * after_s, np.hypot(uncertainty_s, 0.4 * after_s)
 
 
@@ -149,7 +153,7 @@ def _at(reading_s: FloatArray, clock: FloatArray, column: FloatArray) -> FloatAr
 
 
 def velocity(profile: FlightProfile, clock: FloatArray, reading_s: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """East, north and up [m/s] by the profile, over a second around each reading; over the half of it that there is at the beginning."""
+    """Return east, north and up [m/s] by the profile, over a second around each reading; over half a second at the beginning."""
     before, after = np.maximum(reading_s - 0.5, clock[0]), reading_s + 0.5
     columns = (profile.east_m, profile.north_m, profile.height_m)
     east, north, up = ((_at(after, clock, column) - _at(before, clock, column)) / (after - before) for column in columns)
@@ -187,7 +191,7 @@ def _found_anew(
     *,
     within_s: float = 120.0,
 ) -> AlongTrack | None:
-    """It is not where it was expected: looked for along the whole profile."""
+    """Search the whole profile for a UAV that is not at its predicted place; None if it is far from all of it."""
     grid_s = np.unique(np.concatenate([clock, np.linspace(clock[0], clock[-1], max(GRID, int(clock[-1] - clock[0])))]))
     weight = (
         _likelihood(profile, clock, grid_s, observation) * (1e-3 + np.exp(-np.abs(grid_s - expected_s) / within_s)) * np.gradient(grid_s)
@@ -222,7 +226,7 @@ def _learnt(
     after_s: float,
     observation: Observation,
 ) -> AlongTrack:
-    """Only from time in motion, and where it was seen."""
+    """Update the speed factor, only from time in motion and from reports with a position."""
     nominal_s = np.interp(places_s, clock, profile.nominal_s)
     variance = along_track.variance + SPEED_FACTOR_DRIFT**2 * after_s
     if observation.east_m is None:
@@ -240,7 +244,7 @@ def _learnt(
 
 
 def _now(profile: FlightProfile, clock: FloatArray, places_s: FloatArray, observation: Observation) -> float:
-    """By the speed that was told, where it flies evenly: 0 near corners and stops."""
+    """Return the relative difference of the reported speed from the profile's; 0 near corners and stops."""
     if observation.east_mps is None or observation.north_mps is None:
         return 0.0
     here_s = float(places_s.mean())

@@ -1,4 +1,4 @@
-"""What the estimator says of one UAV at one moment. Times are Unix seconds, bounds hold 95 of 100 times."""
+"""The estimate of one UAV at one moment. Times are Unix seconds; bounds hold with 95 %."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ from inspection.geodesy import LonLat
 
 @dataclass(frozen=True, slots=True)
 class Ellipse:
-    """Around the position: semi-axes along a bearing [degrees from true north, clockwise] and across it [m]."""
+    """Ellipse around the position: semi-axes along a bearing [degrees clockwise from true north] and across it [m]."""
 
     along_m: float
     across_m: float
@@ -16,7 +16,7 @@ class Ellipse:
 
 @dataclass(frozen=True, slots=True)
 class Arrival:
-    """When a waypoint of the approved route will be reached, at the earliest and at the latest."""
+    """Expected arrival at a waypoint of the approved route, with the earliest and latest time."""
 
     waypoint_sequence: int
     target: int | None
@@ -27,11 +27,11 @@ class Arrival:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A UAV at `at_s`. `is_measured`: a report speaks of this moment; `is_lost`: past what the estimator vouches for.
+    """The estimate at `at_s`. `is_measured`: from a report of this moment; `is_lost`: beyond the confidence horizon.
 
-    `report_s` is when the last report was measured, None before the first. Heights are None where their reference is not known.
-    `along_route_m` and `to_go_m` are lengths of the approved route flown and still to fly; None off a route. `report_interval_s` is how far
-    apart its reports come, as the last few did; None before there were two.
+    `report_s` is when the last report was measured; None before the first. Heights are None if their reference is unknown. `along_route_m`
+    and `to_go_m` are lengths of the approved route flown and still to fly; None off a route. `report_interval_s` is the interval of the
+    last few reports; None before the second.
     """
 
     at_s: float

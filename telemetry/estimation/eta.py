@@ -1,4 +1,4 @@
-"""When a UAV will be where its route leads."""
+"""ETA of a UAV at the waypoints of its route."""
 
 import math
 
@@ -10,11 +10,11 @@ from telemetry.estimation.motion import State, Track
 from telemetry.estimation.state_estimate import NORMAL_95
 
 SURE_S = 2.0
-LASTS_SHARE = 0.1  # by which a whole flight's pace may differ from what was seen of it: winds that come up
+LASTS_SHARE = 0.1  # relative uncertainty of the speed of a whole flight that observation does not reduce, such as rising wind
 
 
 def arrivals_of(state: State, track: Track) -> tuple[Arrival, ...]:
-    """At the first waypoint of each target that is still to come, as foreseen right after the report."""
+    """Return the arrival at the first waypoint of each remaining target, as predicted right after the report."""
     profile = track.profile
     first = [
         number for number, target in enumerate(profile.target) if target >= 0 and (number == 0 or profile.target[number - 1] != target)
@@ -23,13 +23,13 @@ def arrivals_of(state: State, track: Track) -> tuple[Arrival, ...]:
 
 
 def end_of(state: State, track: Track) -> Arrival | None:
-    """Of the flight: down, or at the last waypoint where it hovers."""
+    """Return the end of the flight: the landing, or the last waypoint if it hovers there."""
     found = _arrivals(state, track, [len(track.profile.sequence) - 1])
     return found[0] if found else None
 
 
 def at_reading(state: State, track: Track, knot: int) -> float:
-    """When it is at a knot of the profile, as foreseen; in the past for one that lies behind it."""
+    """Return the predicted time at a knot of the profile; in the past for a knot behind the UAV."""
     clock = clock_of(track.profile, track.along_track)
     return state.report_s + float(clock[knot]) - float(np.interp(track.along_track.nominal_s, track.profile.nominal_s, clock).mean())
 

@@ -1,4 +1,4 @@
-"""How far a report was from what had been estimated for its moment: the estimator's figure of merit while it runs."""
+"""Innovation: the distance of a report from the estimate for its moment, a measure of the estimator's quality in operation."""
 
 import math
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from telemetry.estimation.estimate import Estimate
 
 @dataclass(frozen=True, slots=True)
 class Innovation:
-    """`is_within`: inside the bound that is to hold 95 of 100 times."""
+    """`is_within`: inside the 95 % bound."""
 
     error_m: float
     is_within: bool
 
 
 def innovation(estimate: Estimate, reported: LonLat) -> Innovation:
-    """Between the estimate and the place that was reported for the same moment."""
+    """Return the innovation between the estimate and the reported position of the same moment."""
     frame = LocalFrame.around(estimate.position.lon, estimate.position.lat)
     east_m, north_m = (float(value) for value in frame.to_metres(np.array([[reported.lon, reported.lat]]))[0])
     bearing_rad = math.radians(estimate.bound.bearing_deg)

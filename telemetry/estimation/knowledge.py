@@ -1,4 +1,4 @@
-"""What is known of a UAV's flight before it says anything."""
+"""What is known of a UAV's flight before its first report."""
 
 from dataclasses import dataclass, field
 
@@ -10,10 +10,10 @@ from planning.rules import FlightRules
 
 @dataclass(frozen=True)
 class Knowledge:
-    """`flight` is the approved one that it is on; None: it flies none, or nobody knows which.
+    """`flight` is the approved one that it flies; None: none, or unknown.
 
-    `max_airspeed_mps` is the most that it flies through the air, None where not stated. `home` is where it returns to, None: the take-off.
-    `is_to_go_on` tells whether it flies its route to the end without a link; else it may be anywhere on its way home by then.
+    `max_airspeed_mps` is its highest airspeed, None if not stated. `home` is where it returns to, None: the take-off. `is_to_go_on`:
+    without a link it flies its route to the end; otherwise it may be anywhere on its RTL path by then.
     """
 
     flight: Flight | None = None

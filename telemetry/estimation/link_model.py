@@ -1,9 +1,8 @@
-"""Where along its route a UAV can be expected to be heard again.
+"""Link model: where along its route a UAV is expected to be received again.
 
-The route is divided into cells. A cell is heard if a report was received there promptly, within NEAR_M of it: one of this flight, also on
-another pass of the same place, or one of an earlier flight. While a UAV is silent, contact is expected when it reaches the next heard cell
-that lies ahead of where it is estimated to be now; so a stretch through which it was not heard, though others were, is given up as it is
-passed. Where no cell ahead was ever heard, at the route's end.
+The route is divided into cells. A cell has reception if a report was received promptly within NEAR_M of it, in this flight, also on another
+pass, or in an earlier one. While a UAV is silent, contact is expected when it reaches the next such cell ahead of its estimated position. A
+cell passed in silence is thus skipped. If no cell ahead has reception, contact is expected at the route's end.
 """
 
 from dataclasses import dataclass, field
@@ -20,15 +19,15 @@ FloatArray = NDArray[np.float64]
 
 CELL_M = 50.0
 NEAR_M = 75.0
-PROMPT_S = 10.0  # after it was measured: what comes later was kept on board
-SILENT_S = 10.0  # and at least so many usual intervals:
+PROMPT_S = 10.0  # after the measurement; later reports were stored on board
+SILENT_S = 10.0  # and at least this many usual intervals:
 SILENT_INTERVALS = 3.0
-AT_ONCE = 500  # places
+AT_ONCE = 500  # places per batch
 
 
 @dataclass(eq=False)
 class LinkModel:
-    """What is known of a profile's cells; `received` (cells,) grows."""
+    """Reception of a profile's cells; `received` (cells,) grows."""
 
     profile: FlightProfile
     received: NDArray[np.bool_] = field(init=False)
@@ -44,14 +43,14 @@ class LinkModel:
         self.received = np.zeros(count, dtype=np.bool_)
 
     def learn(self, places_m: FloatArray) -> None:
-        """Something was heard promptly from these places, (n, 2), east and north in the profile's frame."""
+        """Mark cells near places (n, 2) of prompt reception, given as east and north in the profile's frame."""
         for begin in range(0, len(places_m), AT_ONCE):
             part = places_m[begin : begin + AT_ONCE]
             far_m = np.hypot(self._east_m[:, None] - part[:, 0], self._north_m[:, None] - part[:, 1])
             self.received |= (far_m < NEAR_M).any(axis=1)
 
     def expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
-        """When it is heard again, by what is believed at `at_s`; None where its route is over by then."""
+        """Return the expected time of the next contact, as estimated at `at_s`; None if the route is over by then."""
         track = state.route
         if track is None:
             return None

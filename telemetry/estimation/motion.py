@@ -1,4 +1,4 @@
-"""How a UAV goes on from what was last known of it, by what it is doing."""
+"""Motion models: predict a UAV from its last known state, by its phase of flight."""
 
 import math
 from dataclasses import dataclass
@@ -14,24 +14,24 @@ from telemetry.estimation.state_estimate import CHI2_95, StateEstimate, gate2_of
 FloatArray = NDArray[np.float64]
 
 # Calibrated on the truth generator, on seeds that no test uses; see benchmarks/telemetry/estimator.py.
-ASIDE_S = 8.0  # how long it stays beside its route
-TURNS_S = 1.6  # how long it keeps a velocity that is not its route's
+ASIDE_S = 8.0  # decay time of an offset from its route
+TURNS_S = 1.6  # decay time of a velocity other than its route's
 OFF_ROUTE_M = 0.7  # standard deviation across the route, each way
-OFF_ROUTE_S = 4.0  # until it is as far as that
+OFF_ROUTE_S = 4.0  # time until that offset is reached
 OFF_HEIGHT_M = 0.5
-BESIDE_SHARE = 0.3  # of what a velocity beside the route's makes, that may be otherwise
+BESIDE_SHARE = 0.3  # uncertain share of the offset caused by a velocity other than the route's
 SPEED_SD_MPS, SPEED_SHARE, SPEED_S = 0.38, 0.06, 4.0
 BRAKES_S = 1.3
-DRIFT_MPS = 0.06  # of one that holds
-STEERED_S = 6.0  # how long a velocity tells of one that a person steers
+DRIFT_MPS = 0.06  # of a UAV that holds
+STEERED_S = 6.0  # how long a velocity predicts the flight of a UAV flown manually
 STEERED_MPS2 = 0.9
-UNFORESEEN_HZ, MAX_UNFORESEEN = 1.0 / 2_000.0, 0.03  # how often somebody stops or calls back one that flies its route
-SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors that reports share: of GPS, and of the barometer
+UNFORESEEN_HZ, MAX_UNFORESEEN = 1.0 / 2_000.0, 0.03  # rate of unexpected stops or returns of a UAV on its route
+SHARED_M, SHARED_HEIGHT_M = 1.07, 0.95  # errors common to consecutive reports: of GPS and barometer
 
 
 @dataclass(frozen=True, eq=False)
 class Track:
-    """A profile and the place on it."""
+    """A profile and the position along it."""
 
     profile: FlightProfile
     along_track: AlongTrack
@@ -39,11 +39,11 @@ class Track:
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """What is known right after a report, or of one that told no position. Metres in the frame, variances of what no two reports share.
+    """State after a report; positions are in metres in the frame. Variances exclude the error common to consecutive reports.
 
-    `route` is the approved flight with the place on it, also while it does something else; `home` the way back while it returns.
-    `placed_s` is when a position was last measured, `report_s` when anything was. One that `is_about_to_start` stands where the route
-    begins, armed and in its mission's mode: it may set out at any moment.
+    `route` is the approved flight with the position along it, also during another activity; `home` is the RTL path during a return.
+    `placed_s` is when a position was last measured, `report_s` when anything was. With `is_about_to_start` it stands at the start of the
+    route, armed and in mission mode, and may start at any moment.
     """
 
     report_s: float
@@ -59,7 +59,7 @@ class State:
     variance_m2: float
     height_variance_m2: float
     heading_deg: float | None
-    amsl_above_m: float | None  # sea level below the take-off
+    amsl_above_m: float | None  # altitude AMSL of the take-off
     route: Track | None
     home: Track | None = None
     sequence: int | None = None
@@ -73,7 +73,10 @@ class State:
 
 
 def after(state: State, after_s: float, *, with_gate: bool = True) -> StateEstimate:
-    """after_s: since the report, at least 0. Without its reach, which takes long, a belief's is that of a normal distribution."""
+    """Return the estimate after a time.
+
+    after_s: since the report, at least 0. Without with_gate the gate, which is slow to compute, is that of a normal distribution.
+    """
     followed = state.followed
     if followed is not None:
         return _along(state, followed, after_s, with_gate=with_gate)
@@ -87,7 +90,7 @@ def after(state: State, after_s: float, *, with_gate: bool = True) -> StateEstim
 
 
 def _held(after_s: float) -> float:
-    """What an ellipse holds of those that still fly on, to hold 95 of 100 of all: the others may be anywhere behind."""
+    """Return the share that the ellipse must hold of UAVs that still fly on, to hold 95 % of all: the others may be anywhere behind."""
     return 0.95 / (1.0 - min(UNFORESEEN_HZ * after_s, MAX_UNFORESEEN))
 
 
@@ -96,7 +99,7 @@ def state_speed(state: State) -> float:
 
 
 def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking_m: float, up_sd_mps: float) -> StateEstimate:
-    """A velocity that dies away, and a doubt that is alike all around."""
+    """Predict with a decaying velocity and an isotropic uncertainty."""
     gone = -math.expm1(-after_s / keeps_s) if keeps_s else 0.0
     left = 1.0 - gone if keeps_s else 0.0
     variance_m2 = SHARED_M**2 + state.variance_m2 + drift_m**2 + (braking_m * gone) ** 2
@@ -123,7 +126,7 @@ def _plain(state: State, after_s: float, keeps_s: float, drift_m: float, braking
 
 
 def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, float]:
-    """Height and speed upwards of one that lands: at its speed, slowly near the ground, and not below it."""
+    """Return height and upward speed of a landing UAV: at its speed, slower near the ground, never below it."""
     fast_mps = max(sinks_mps, LANDING_MPS)
     fast_s = min(max(height_m - SLOW_BELOW_M, 0.0) / fast_mps, after_s)
     below_m = height_m - fast_mps * fast_s - LANDING_MPS * (after_s - fast_s)
@@ -133,7 +136,7 @@ def _sunk(height_m: float, sinks_mps: float, after_s: float) -> tuple[float, flo
 
 
 def _along(state: State, track: Track, after_s: float, *, with_gate: bool, is_surely_under_way: bool = True) -> StateEstimate:
-    """On its profile, with what it was beside it dying away: from each place on it, it is at the place where it was seen."""
+    """Predict along the profile, with a decaying offset from it, for each possible place on it."""
     profile = track.profile
     later = ahead(profile, track.along_track, after_s, is_surely_under_way=is_surely_under_way)
     weight, clock = later.weight, later.clock

@@ -1,4 +1,4 @@
-"""What a UAV is doing, from the names that autopilots give their modes."""
+"""Phases of flight, by autopilots' names of their modes."""
 
 from enum import StrEnum
 
@@ -9,11 +9,11 @@ class Phase(StrEnum):
     HOLD = "hold"
     RETURN = "return"
     LAND = "land"
-    FREE = "free"  # as a person steers it
+    FREE = "free"  # flown manually
     GROUND = "ground"
 
 
-# As mavlink/autopilot_type.py names them: PX4's, then ArduCopter's, then what companions say.
+# Names of mavlink/autopilot_type.py: PX4's, then ArduCopter's, then those of companions.
 _PHASES = {
     "MISSION": Phase.MISSION, "TAKEOFF": Phase.TAKE_OFF, "LOITER": Phase.HOLD, "RTL": Phase.RETURN, "LAND": Phase.LAND,
     "PRECLAND": Phase.LAND,
@@ -23,7 +23,7 @@ _PHASES = {
 
 
 def phase_of(mode: str, *, is_armed: bool | None, is_in_air: bool | None) -> Phase | None:
-    """None where nothing is said of it. A mode that is not known is flown by somebody: nothing can be foreseen of it."""
+    """Return the phase; None if nothing is reported. An unknown mode counts as flown manually, so nothing is predicted."""
     if is_in_air is False or (is_armed is False and is_in_air is None):
         return Phase.GROUND
     name = mode.strip().upper()

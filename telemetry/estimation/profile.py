@@ -1,6 +1,6 @@
-"""A flight as it would go by the book: where the UAV is at each second of its clock.
+"""Profile of a planned flight: the UAV's position at each second of the profile's clock.
 
-The clock knows accelerations, turns, climbs, wind and tasks; what really happens differs from it, which `along_track_filter.py` follows.
+The clock includes accelerations, turns, climbs, wind and tasks. `along_track_filter.py` tracks how the real flight deviates.
 """
 
 import math
@@ -19,30 +19,31 @@ from telemetry.estimation.knowledge import Knowledge
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-ACCELERATION_MPS2, BRAKING_MPS2 = 2.0, 1.5  # PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5; neither is held from the first metre on
-DESCENT_SHARE = 0.75  # of the speed of climbing: PX4 1.5 of 3 m/s, ArduCopter 1.5 of 2.5
+ACCELERATION_MPS2, BRAKING_MPS2 = 2.0, 1.5  # PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5; both are reached gradually
+DESCENT_SHARE = 0.75  # of the climb speed: PX4 1.5 of 3 m/s, ArduCopter 1.5 of 2.5
 LANDING_MPS = 0.7  # PX4's MPC_LAND_SPEED; ArduCopter's LAND_SPEED is 0.5
-SLOW_BELOW_M = 8.0  # where both land slowly
-SETTLE_S = 1.5  # until it stands at a task, and until it leaves
+SLOW_BELOW_M = 8.0  # both land slowly below it
+SETTLE_S = 1.5  # until it hovers at a task, and until it leaves
 MIN_SPEED_MPS = 0.5
-SLOWS_SHARE, MIN_CORNER_SHARE = 0.5, 0.1  # of its speed in a corner, for each radian; never below
+SLOWS_SHARE, MIN_CORNER_SHARE = 0.5, 0.1  # reduction of speed in a corner per radian, and its minimum
 STEPS = 12  # of a leg
-# Standard deviations of how long something takes, beside the speed.
-STRAIGHT_S, TURN_S = 0.15, 1.6  # at a waypoint that is passed, and by the sine of half the bend more
+# Standard deviations of durations, beside the speed.
+STRAIGHT_S, TURN_S = 0.15, 1.6  # at a passed waypoint; added in proportion to the sine of half the bend
 STOP_S = 1.6
-CLIMB_SHARE = 0.26  # of the time that a leg takes because of its height
+CLIMB_SHARE = 0.26  # of the time that a leg takes for its change of height
 
 
 @dataclass(frozen=True, eq=False)
 class FlightProfile:
-    """Columns by knot, each with k entries; between two knots everything is linear.
+    """Columns by knot, each with k entries; linear between two knots.
 
-    moving_s      time in motion so far, and
-    standing_s    time at tasks: what the clock shows is both together
-    variance_s2      variance of the clock so far, of turns, stops and climbs
-    east_m, north_m, height_m (above take-off), along_m (of the route, horizontally)
-    leg           node that is flown to, or stood at: 0 is the first waypoint
-    Of the nodes: sequence (-1 for the landing), target (-1 for none), knot at which each is reached.
+        moving_s      time in motion so far
+        standing_s    time at tasks so far: the clock shows the sum of both
+        variance_s2   variance of the clock so far, from turns, stops and climbs
+        east_m, north_m, height_m (above take-off), along_m (of the route, horizontal)
+        leg           node that it flies to or stands at: 0 is the first waypoint
+
+    By node: sequence (-1 for the landing), target (-1 for none), and reached, the knot of its arrival.
     """
 
     frame: LocalFrame
@@ -73,15 +74,15 @@ class _Node:
     east_m: float
     north_m: float
     height_m: float
-    speed_mps: float  # over ground, on the way here
-    hold_s: float | None  # None: not stopped at
+    speed_mps: float  # over ground, on the leg that ends here
+    hold_s: float | None  # None: it does not stop here
     sequence: int = -1
     target: int = -1
     lands: bool = False
 
 
 def profile_of(knowledge: Knowledge) -> FlightProfile | None:
-    """From standing at the take-off to the end of the flight. None without a flight."""
+    """Return the profile from the take-off to the end of the flight; None without a flight."""
     flight = knowledge.flight
     if flight is None or not flight.waypoints:
         return None
@@ -90,7 +91,7 @@ def profile_of(knowledge: Knowledge) -> FlightProfile | None:
 
 
 def way_home(frame: LocalFrame, start_m: tuple[float, float, float], start_mps: float, home: LonLat, knowledge: Knowledge) -> FlightProfile:
-    """From a place (east, north, height) in a frame, at a speed towards `home`, straight there at that height, and down."""
+    """Return the profile from a place (east, north, height) in a frame, at a speed towards `home`, straight at that height, then down."""
     east_m, north_m = frame.to_metres(np.array([home]))[0]
     height_m = max(start_m[2], SLOW_BELOW_M)
     nodes = [
@@ -199,7 +200,7 @@ def _profile(nodes: list[_Node], frame: LocalFrame, knowledge: Knowledge, *, end
 
 
 def _bends(step: FloatArray, length_m: FloatArray) -> FloatArray:
-    """By how much the way bends at each node [rad], 0 at both ends and where a leg has no length."""
+    """Return the change of direction at each node [rad], 0 at both ends and at legs without length."""
     bend = np.zeros(len(step) + 1)
     for number in range(1, len(step)):
         lengths_m2 = float(length_m[number - 1] * length_m[number])
@@ -209,7 +210,7 @@ def _bends(step: FloatArray, length_m: FloatArray) -> FloatArray:
 
 
 def _corner_speeds(nodes: list[_Node], bend: FloatArray, length_m: FloatArray, wanted_mps: FloatArray, start_mps: float) -> FloatArray:
-    """At each node: 0 where it stops, less than both legs' the sharper the turn; no more than can be reached and left."""
+    """Return the speed at each node: 0 at stops, lower the sharper the turn, and within what both legs' accelerations allow."""
     speed = np.zeros(len(nodes))
     speed[0] = start_mps
     for number in range(1, len(nodes) - 1):

@@ -1,16 +1,16 @@
-"""One report of a UAV, as the estimator takes it."""
+"""One report of a UAV, the input of the estimator."""
 
 import math
 from dataclasses import dataclass, replace
 
 from mavlink.decoding.measurement import Measurement, believable
 
-FUTURE_S = 2.0  # a time measured later than it was received by more than clocks differ is no time
+FUTURE_S = 2.0  # a measurement later than its receipt by more than clock errors is invalid
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleBoot:
-    """What the vehicle's own clock showed since it booted; the stream names the boot."""
+    """Reading of the vehicle's own clock since boot; the stream identifies the boot."""
 
     stream: int
     clock_s: float
@@ -18,9 +18,9 @@ class VehicleBoot:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What was measured at a time, by the server's clock as far as it is known. Seconds since the epoch.
+    """Values measured at a time by the server's clock, as far as known [Unix seconds].
 
-    `boot` tells the same by the vehicle's own clock, where it has told that.
+    `boot` is the same time by the vehicle's own clock, if reported.
     """
 
     measured_s: float
@@ -34,7 +34,7 @@ class Report:
 
 
 def sound(report: Report) -> Report | None:
-    """The report without what cannot be; None where its time cannot be, as when it was measured after it was received."""
+    """Return the report without impossible values; None if its time is impossible, such as later than its receipt."""
     if not (math.isfinite(report.measured_s) and math.isfinite(report.received_s)):
         return None
     if report.measured_s > report.received_s + FUTURE_S:

@@ -1,4 +1,4 @@
-"""What is believed of a UAV at one moment, in a flat frame around its take-off."""
+"""State estimate of a UAV at one moment, in a flat frame around its take-off."""
 
 from dataclasses import dataclass
 
@@ -7,16 +7,19 @@ from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 
-CHI2_95 = 5.991  # of two dimensions: a normal distribution's ellipse of 95 %
+CHI2_95 = 5.991  # 95 % ellipse of a two-dimensional normal distribution
 NORMAL_95 = 1.960
-# Directions and lengths (in standard deviations) with which what has no direction is spread around each place: five rings of equal weight.
+# Radii in standard deviations of five equally weighted rings that spread the isotropic uncertainty around each place.
 _RINGS = np.sqrt(-2.0 * np.log(1.0 - np.array([0.1, 0.3, 0.5, 0.7, 0.92])))
 
 
 @dataclass(frozen=True, eq=False)
 class StateEstimate:
-    """Means, and how sure they are. `covariance` (2, 2) of east and north [m2]; `gate2` the squared Mahalanobis distance that 95 % keep
-    within; the others are standard deviations. `reading_s` is where it is on its profile's clock, None off a route."""
+    """Means with their uncertainty.
+
+    `covariance` (2, 2) is of east and north [m2]; `gate2` is the squared Mahalanobis distance that contains 95 %. The others are standard
+    deviations. `nominal_s` is the reading of its profile's clock, None off a route.
+    """
 
     east_m: float
     north_m: float
@@ -42,9 +45,9 @@ def isotropic_covariance(variance_m2: float) -> FloatArray:
 def gate2_of(
     east_m: FloatArray, north_m: FloatArray, weight: FloatArray, isotropic_variance_m2: float, covariance: FloatArray, held: float = 0.95
 ) -> float:
-    """How far, as a squared Mahalanobis distance, a share `held` lies: of places around the mean, each with a round doubt of its own."""
+    """Return the squared Mahalanobis distance that contains a share `held` of places around the mean, each with isotropic variance."""
     inverse = np.linalg.inv(covariance)
-    angle = np.arange(len(east_m)) * 2.399_963  # the golden angle, so that neighbours lie differently
+    angle = np.arange(len(east_m)) * 2.399_963  # the golden angle, so that neighbours get different directions
     found, parts = [], []
     for number, ring in enumerate(_RINGS):
         lie = angle + number * 1.256_637

@@ -1,4 +1,4 @@
-"""From what was known to what is known after one more report."""
+"""Updates a UAV's state with one report."""
 
 import math
 from dataclasses import dataclass, replace
@@ -16,18 +16,18 @@ from telemetry.estimation.profile import FlightProfile, way_home
 from telemetry.estimation.report import Report
 from telemetry.estimation.state_estimate import StateEstimate
 
-GPS_VARIANCE_M2 = 0.45**2  # each way, of what no two reports share
+GPS_VARIANCE_M2 = 0.45**2  # per axis, without the error common to consecutive reports
 BARO_VARIANCE_M2 = 0.25**2
-MAX_DIFFERENCE_S = 15.0  # between two positions, for a velocity
+MAX_DIFFERENCE_S = 15.0  # between two positions, to derive a velocity
 STANDS_BELOW_MPS = 0.7
 CLIMBS_ABOVE_MPS = 0.5
-AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it comes down there
+AT_HOME_M, CREEPS_MPS = 8.0, 1.5  # it descends there
 RETURN_SPEED_FACTOR_SD = 0.15
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """What does not change in a flight: `profile` None without a route. Everything is told in `frame`."""
+    """Constants of a flight: `profile` is None without a route. All positions are in `frame`."""
 
     knowledge: Knowledge
     frame: LocalFrame
@@ -35,7 +35,7 @@ class Course:
 
 
 def first_state(course: Course, report: Report) -> State | None:
-    """None without a position."""
+    """Return the state after the first report; None without a position."""
     reported, place = report.measurement, _place(course, report.measurement)
     if place is None:
         return None
@@ -58,7 +58,7 @@ def first_state(course: Course, report: Report) -> State | None:
 
 
 def next_state(course: Course, state: State, report: Report) -> State:
-    """report: measured no earlier than the state's."""
+    """Return the state after a report measured no earlier than the state's."""
     reported, after_s = report.measurement, max(report.measured_s - state.report_s, 0.0)
     state_estimate = after(state, after_s, with_gate=False)
     stated = phase_of(reported.mode, is_armed=reported.is_armed, is_in_air=reported.is_in_air)
@@ -97,7 +97,7 @@ def _velocity(reported: Measurement) -> tuple[float, float, float] | None:
 
 
 def _observation(phase: Phase, reported: Measurement, place: tuple[float, float] | None) -> Observation:
-    """The velocity only where it tells of the place on the route."""
+    """Return the observation, with velocity only in phases that follow the route."""
     velocity = _velocity(reported) if phase in {Phase.MISSION, Phase.TAKE_OFF} else None
     east_m, north_m = place or (None, None)
     east_mps, north_mps, up_mps = velocity or (None, None, None)
@@ -107,7 +107,7 @@ def _observation(phase: Phase, reported: Measurement, place: tuple[float, float]
 def _velocity_from(
     state: State, state_estimate: StateEstimate, place: tuple[float, float] | None, at_s: float
 ) -> tuple[float, float, float]:
-    """Where none was told: from two positions, or as believed."""
+    """Return the velocity if none is reported: from two positions, else as estimated."""
     past_s = at_s - state.placed_s
     if place is None or not 0.5 <= past_s <= MAX_DIFFERENCE_S:
         return state_estimate.east_mps, state_estimate.north_mps, state_estimate.up_mps
@@ -115,7 +115,7 @@ def _velocity_from(
 
 
 def _fused(state_estimate: StateEstimate, place: tuple[float, float] | None) -> tuple[float, float, float]:
-    """A measured position and the believed one, each by its variance."""
+    """Return the mean of measured and estimated position, weighted by variance."""
     predicted_m2 = max(0.5 * float(np.trace(state_estimate.covariance)) - SHARED_M**2, 0.01)
     if place is None:
         return state_estimate.east_m, state_estimate.north_m, predicted_m2
@@ -138,7 +138,7 @@ def _fused_height(state_estimate: StateEstimate, reported_m: float | None) -> tu
 
 
 def _route(course: Course, state: State, phase: Phase, after_s: float, observation: Observation) -> Track | None:
-    """The place on the approved route, followed also where it is left for a while."""
+    """Return the position along the approved route, kept while the UAV leaves it for a time."""
     if course.profile is None:
         return None
     if phase is Phase.GROUND and state.route is None:
@@ -152,7 +152,7 @@ def _route(course: Course, state: State, phase: Phase, after_s: float, observati
         is_under_way = state.phase in {Phase.MISSION, Phase.TAKE_OFF} and phase in {Phase.MISSION, Phase.TAKE_OFF}
         along_track = updated(course.profile, before.along_track, after_s, observation, is_surely_under_way=is_under_way)
     else:
-        along_track = before.along_track  # it stands where it left the route
+        along_track = before.along_track  # it keeps the place where it left the route
     return None if along_track is None else Track(course.profile, along_track)
 
 
@@ -163,12 +163,12 @@ def _is_about_to_start(reported: Measurement, phase: Phase, route: Track | None)
 
 
 def _on_route(phase: Phase, route: Track | None) -> Phase:
-    """Who flies a list, but not along the approved route, flies where nobody knows."""
+    """Return the phase; mission mode away from the approved route counts as flown manually."""
     return Phase.FREE if phase is Phase.MISSION and route is None else phase
 
 
 def _with_way(course: Course, state: State) -> State:
-    """Of one that returns: the way home from where it is."""
+    """Add the RTL path from the present position to a returning UAV."""
     home = course.knowledge.home
     if state.phase is not Phase.RETURN or home is None or state.height_m is None:
         return state if state.phase is not Phase.RETURN else _changed(state, Phase.FREE, None)

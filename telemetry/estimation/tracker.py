@@ -1,4 +1,4 @@
-"""One UAV: reports in, an estimate for any moment out."""
+"""Tracker of one UAV: takes reports, and returns an estimate for any moment."""
 
 import math
 from bisect import bisect_right
@@ -24,24 +24,24 @@ from telemetry.estimation.state_estimate import StateEstimate
 from telemetry.estimation.step import Course, first_state, next_state
 from telemetry.estimation.uav_clock import UavClock
 
-KEPT_S = 300.0  # of reports: one that comes later than that changes nothing
+KEPT_S = 300.0  # of reports: later ones are ignored
 KEPT = 400
-MAX_CONFIDENT_BOUND_M = 400.0  # a bound that is wider says nothing any more
+MAX_CONFIDENT_BOUND_M = 400.0  # a wider bound counts as lost
 CONFIDENCE_HORIZON_S = 900.0
-CONFIDENCE_HORIZON_AWAY_S = 30.0  # of one that would leave its route without a link
+CONFIDENCE_HORIZON_AWAY_S = 30.0  # of a UAV that leaves its route without a link
 MEASURED_WITHIN_S = 1.0
 ARRIVALS_KEPT = 6
-TOGETHER_S = 0.2  # what comes within so long comes in one parcel
+TOGETHER_S = 0.2  # reports within this time arrive as one batch
 
 
 @dataclass
 class Tracker:
-    """`take` reports in any order, as often as they come; `estimate` asks for a moment.
+    """`take` accepts reports in any order, also repeatedly; `estimate` returns the estimate for a moment.
 
-    A report that was measured before others that are known corrects the past: all after it are gone through again. So what is known does
-    not depend on the order in which reports come, and can be had again from the newest of them.
+    A report measured before known ones corrects the past: all later reports are processed again. The state thus does not depend on the
+    order of arrival, and can be rebuilt from the newest reports.
 
-    Times that go in and come out are the server's; in between, states are by the UAV's own `time`.
+    Times in arguments and results are the server's; states use the UAV's own `time`.
     """
 
     knowledge: Knowledge
@@ -51,27 +51,27 @@ class Tracker:
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
     _etas: tuple[tuple[float, float], tuple[Arrival, ...], Arrival | None] | None = None
     _link_model: LinkModel | None = None
-    _contact: tuple[float, float | None] | None = None  # report that a silence began with, and when it is expected to end
+    _contact: tuple[float, float | None] | None = None  # report at which a silence began, and its expected end
     _arrivals_s: deque[float] = field(default_factory=lambda: deque(maxlen=ARRIVALS_KEPT))
 
     @property
     def newest(self) -> Report | None:
-        """By the time of measurement."""
+        """Return the report measured last."""
         return self._reports[-1] if self._reports else None
 
     def is_silent(self, at_s: float) -> bool:
-        """Nothing has come for longer than usual, though something had."""
+        """Return whether reports have stopped for longer than usual."""
         quiet_s = at_s - self._arrivals_s[-1] if self._arrivals_s else 0.0
         return bool(self._reports) and quiet_s > SILENT_S and quiet_s > SILENT_INTERVALS * (self.report_interval_s or 1.0)
 
     @property
     def report_interval_s(self) -> float | None:
-        """Between arrivals, as the last few came: how often it is heard, whatever it stores up. None before there were two."""
+        """Return the interval of the last few arrivals, whatever is stored on board; None before the second."""
         gaps_s = [later - earlier for earlier, later in pairwise(self._arrivals_s)]
         return median(gaps_s) if gaps_s else None
 
     def learn(self, places: Sequence[LonLat]) -> None:
-        """Where on earlier flights something was heard promptly."""
+        """Add places where reports of earlier flights were received promptly."""
         if self._link_model is not None and places:
             self._link_model.learn(self._frame.to_metres(np.array(places)))
             self._contact = None
@@ -97,7 +97,7 @@ class Tracker:
         self._forget()
 
     def estimate(self, at_s: float) -> Estimate | None:
-        """Of a moment no earlier than some report; None before the first position."""
+        """Return the estimate for a moment not before the first report; None before the first position."""
         place = bisect_right(self._reports, at_s, key=lambda known: known.measured_s) - 1
         state = self._states[place] if place >= 0 else None
         if state is None or self._course is None:
@@ -136,7 +136,7 @@ class Tracker:
     def _forget(self) -> None:
         oldest_s = self._reports[-1].measured_s - KEPT_S
         gone = max(bisect_right(self._reports, oldest_s, key=lambda known: known.measured_s), len(self._reports) - KEPT)
-        gone = min(gone, len(self._reports) - 1)  # the newest stays however long ago it was
+        gone = min(gone, len(self._reports) - 1)  # the newest report is kept regardless of its age
         if gone > 0:
             del self._reports[:gone], self._states[:gone]
 
@@ -194,7 +194,7 @@ class Tracker:
         )
 
     def _contact_expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
-        """Worked out once a silence: a time that passes is overdue, and is not moved on."""
+        """Return the expected contact, computed once per silence: once past it counts as overdue and is not postponed."""
         if self._link_model is None or not self.is_silent(at_s):
             return None
         if self._contact is None or self._contact[0] != state.report_s:
@@ -203,7 +203,7 @@ class Tracker:
         return self._contact[1]
 
     def _foreseen(self, state: State) -> tuple[tuple[Arrival, ...], Arrival | None]:
-        """By the server's clock; worked out once a report."""
+        """Return the arrivals and the end by the server's clock, computed once per report."""
         if self._etas is None or self._etas[0] != (state.report_s, self.time.rate):
             followed = state.followed
             arrivals = () if state.route is None or followed is not state.route else arrivals_of(state, state.route)
@@ -222,7 +222,7 @@ def _not_past(arrival: Arrival, at_s: float) -> Arrival:
 
 
 def _heading_deg(state: State, state_estimate: StateEstimate) -> float | None:
-    """The course while it moves, as the nose goes along with it; else as last told."""
+    """Return the course while it moves, as the nose follows it; else the last reported heading."""
     if state_estimate.speed_mps < 1.0 or state.phase in {Phase.GROUND, Phase.FREE}:
         return state.heading_deg
     return math.degrees(math.atan2(state_estimate.east_mps, state_estimate.north_mps)) % 360.0

@@ -1,15 +1,15 @@
-"""The time that a UAV flies by, beside the server's.
+"""A UAV's clock relative to the server's.
 
-A UAV that is not there may fly faster than real time. Its speeds, the times that were planned for it and how long its battery lasts are all
-by its own clock, whose rate against the server's the gateway learns from what it hears; it is 1 of every other UAV.
+A simulated UAV may fly faster than real time. Its speeds, planned times and battery life follow its own clock. The gateway estimates that
+clock's rate from received messages; it is 1 for all other UAVs.
 """
 
 import math
 from bisect import bisect_right
 from dataclasses import dataclass, field
 
-SLOWEST, FASTEST = 0.05, 100.0  # what is learnt beyond is no clock's rate
-SAME_RATE = 0.02  # by which what is learnt of one rate may differ from time to time
+SLOWEST, FASTEST = 0.05, 100.0  # estimates beyond these are no clock's rate
+SAME_RATE = 0.02  # relative difference up to which two estimates count as the same rate
 RATES_KEPT = 32
 
 
@@ -24,13 +24,13 @@ class _Stretch:
 
 @dataclass
 class UavClock:
-    """Both clocks show the same until the rate is another one, and go on from there; what was before stays as it was."""
+    """Converts between both clocks. They agree until the rate changes and continue from there; earlier times stay unchanged."""
 
     _stretches: list[_Stretch] = field(default_factory=lambda: [_Stretch(0.0, 0.0, 1.0)])
 
     @property
     def rate(self) -> float:
-        """Its seconds a second of the server's."""
+        """Return its seconds per server second."""
         return self._stretches[-1].rate
 
     def run_at(self, rate: float | None, from_s: float) -> None:

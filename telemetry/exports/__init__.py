@@ -1,1 +1,1 @@
-"""Flown tracks as files: records in, pieces of text out, so that a file of any length takes no memory. Pure."""
+"""Exports of flown tracks. They are generators of text, so that a file of any length needs no memory. Pure."""

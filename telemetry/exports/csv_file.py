@@ -1,4 +1,4 @@
-"""Records as comma-separated values (RFC 4180), one line each, units in the names of the columns."""
+"""Records as comma-separated values (RFC 4180), one line each, with units in the column names."""
 
 import csv
 import re
@@ -12,7 +12,7 @@ COLUMNS = (
     *REPORTED, *FLAGS,
 )  # fmt: skip
 LINES_A_PIECE = 500
-# Spreadsheets read a cell as a formula that begins so, behind blanks and full-width as well; a semicolon begins one where it separates.
+# Spreadsheets read a cell as a formula if it begins so, also after blanks and in full width. A semicolon as separator begins a cell.
 _FORMULA = re.compile(r"^(?=[\t\r])|(?:^|(?<=[;\t\r\n]))(?=[\s\u200b\ufeff]*[=+\-@\uff1d\uff0b\uff0d\uff20])")
 
 
@@ -39,5 +39,5 @@ def _cell(value: Value) -> Value:
 
 
 def without_formula(value: str) -> str:
-    """Return a text that no spreadsheet takes for a formula."""
+    """Return the text in a form that no spreadsheet reads as a formula."""
     return _FORMULA.sub("'", value)

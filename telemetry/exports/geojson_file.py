@@ -1,4 +1,4 @@
-"""Records as GeoJSON (RFC 7946): one Feature each."""
+"""Records as GeoJSON (RFC 7946), one Feature each."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -10,7 +10,10 @@ FEATURES_A_PIECE = 200
 
 
 def record_feature(record: LoggedRecord) -> dict[str, Any]:
-    """Geometry is null where the UAV did not know its place. A height is a property, since GeoJSON's third number has another reference."""
+    """Return the Feature of a record. Geometry is null without a position.
+
+    A height is a property, because GeoJSON's third coordinate has another reference.
+    """
     geometry = {"type": "Point", "coordinates": list(record.position)} if record.position else None
     properties = {
         "uav": record.uav,

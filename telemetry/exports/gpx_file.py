@@ -1,7 +1,7 @@
-"""Tracks as GPX 1.1: one track a UAV, a segment a stream, measured times, heights above mean sea level.
+"""Tracks as GPX 1.1: one track per UAV, one segment per stream, with measured times and heights AMSL.
 
-Elements stand in the order of the schema (topografix.com/GPX/1/1/gpx.xsd). What GPX has no element for is in `extensions`, with the log's
-own names. Records without a place and records from the future are no part of a track.
+Elements are in the order of the schema (topografix.com/GPX/1/1/gpx.xsd). Values without a GPX element are in `extensions`, under their
+names in the log. Records without a position and records from the future are omitted.
 """
 
 from collections.abc import Iterable, Iterator
@@ -12,13 +12,13 @@ from telemetry.exports.xml_text import xml_text
 NAMESPACE = "http://www.topografix.com/GPX/1/1"
 OWN_NAMESPACE = "urn:spanwise:telemetry:1"
 POINTS_A_PIECE = 200
-MAX_HDOP = 99.0  # what receivers say who do not know
-FIXES = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps"}  # GPS_FIX_TYPE; better ones have no word in GPX
+MAX_HDOP = 99.0  # sent by receivers without a value
+FIXES = {0: "none", 1: "none", 2: "2d", 3: "3d", 4: "dgps"}  # GPS_FIX_TYPE; GPX has no name for better ones
 OUTSIDE_EXTENSIONS = {"altitude_amsl_m", "satellites", "hdop"}
 
 
 def gpx_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
-    """`records` come UAV by UAV, stream by stream, in the order of measurement."""
+    """Yield the file. `records` are sorted by UAV, stream and time of measurement."""
     yield (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         f'<gpx xmlns="{NAMESPACE}" xmlns:spanwise="{OWN_NAMESPACE}" version="1.1" creator="Spanwise">\n'

@@ -1,8 +1,8 @@
-"""Tracks as KML 2.2 with timed tracks (gx:Track), one Placemark a UAV.
+"""Tracks as KML 2.2 with timed tracks (gx:Track), one Placemark per UAV.
 
-Elements stand in the order of the schemas (opengis.net/kml/2.2, google.com/kml/ext/2.2). A track is cut into parts of some hundred points,
-because all times of a part stand before all its places: a part is all that is held in memory. Records without a place and records from
-the future are no part of a track.
+Elements are in the order of the schemas (opengis.net/kml/2.2, google.com/kml/ext/2.2). A track is split into parts of some hundred points,
+because all times of a part precede all its positions; only one part is in memory. Records without a position and records from the future
+are omitted.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -25,7 +25,7 @@ TEXTS = {"received_at", "stored_at"}
 
 
 def kml_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
-    """`records` come UAV by UAV, stream by stream, in the order of measurement."""
+    """Yield the file. `records` are sorted by UAV, stream and time of measurement."""
     fields = "".join(
         f'<gx:SimpleArrayField name="{field}" type="{"string" if field in TEXTS else "float"}"><displayName>{field}</displayName>'
         "</gx:SimpleArrayField>"
@@ -47,7 +47,7 @@ def kml_pieces(records: Iterable[LoggedRecord], *, name: str) -> Iterator[str]:
 
 
 def _parts(records: Iterable[LoggedRecord]) -> Iterator[list[LoggedRecord]]:
-    """Runs of one UAV's stream whose heights have one reference; none is empty."""
+    """Yield runs of one UAV's stream with one height reference; none is empty."""
     part: list[LoggedRecord] = []
     for record in records:
         if not record.is_on_track:
@@ -65,7 +65,7 @@ def _kind(record: LoggedRecord) -> tuple[int, str, str]:
 
 
 def _height(record: LoggedRecord) -> tuple[str, Value]:
-    """KML's word for the reference, and the height."""
+    """Return KML's name of the reference, and the height."""
     if (amsl_m := record.value("altitude_amsl_m")) is not None:
         return "absolute", amsl_m
     if (agl_m := record.value("altitude_agl_m")) is not None:

@@ -1,4 +1,4 @@
-"""A record of the log as files have it."""
+"""A record of the log, as exported."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -16,7 +16,7 @@ Value = float | int | bool | str | None
 
 @dataclass(frozen=True, slots=True)
 class LoggedRecord:
-    """What a UAV reported, with the three times of it. `position` is longitude, latitude [deg]; `values` follow REPORTED, then FLAGS."""
+    """A UAV's report with its three times. `position` is longitude, latitude [deg]; `values` are those of REPORTED, then FLAGS."""
 
     id: int
     uav: int
@@ -35,7 +35,7 @@ class LoggedRecord:
 
     @property
     def is_on_track(self) -> bool:
-        """Whether it says where the UAV was at a time that can have been."""
+        """Return whether it has a position and a possible time."""
         return self.position is not None and not self.value("is_from_future")
 
 
@@ -43,5 +43,5 @@ PLACES = {name: place for place, name in enumerate((*REPORTED, *FLAGS))}
 
 
 def time_text(instant: datetime) -> str:
-    """RFC 3339 in UTC to the millisecond."""
+    """Return the time as RFC 3339 in UTC, to the millisecond."""
     return instant.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%S.") + f"{instant.microsecond // 1000:03d}Z"

@@ -1,4 +1,4 @@
-"""What came of the targets of a mission, as rows that the files of results are made of."""
+"""Results of a mission's targets as rows, the input of all result files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,9 +9,9 @@ from inspection.geodesy import LonLat
 
 @dataclass(frozen=True, slots=True)
 class ResultRow:
-    """One target. `result` is a code, `result_words` and `reason` are in the reader's language; None is not known, "" nothing.
+    """One target. `result` is a code; `result_words` and `reason` are in the reader's language. None is unknown, "" is none.
 
-    Times are datetimes in UTC; distance_m is the nearest that its UAV came, altitude_relative_m its height then above take-off.
+    Times are UTC datetimes. distance_m is the UAV's closest distance, altitude_relative_m its height above take-off at that moment.
     """
 
     number: int  # in flown order, from 1
@@ -34,7 +34,7 @@ class ResultRow:
 
 @dataclass(frozen=True, slots=True)
 class TrackPoint:
-    """Where a UAV was: its height above take-off, and above mean sea level, as far as they are known."""
+    """A position of a UAV with its heights above take-off and AMSL, as far as known."""
 
     at: datetime
     position: LonLat
@@ -51,7 +51,7 @@ class PlannedPoint:
 
 @dataclass(frozen=True, slots=True)
 class RouteLines:
-    """A UAV's route as it was approved, and its track, cut where nothing was heard."""
+    """A UAV's approved route and its track, split where nothing was received."""
 
     uav: str
     planned: tuple[PlannedPoint, ...]

@@ -1,4 +1,4 @@
-"""Results of a mission as GeoJSON (RFC 7946): targets, what happened, planned and flown lines."""
+"""Results of a mission as GeoJSON (RFC 7946): targets, incidents, planned and flown lines."""
 
 import json
 from collections.abc import Iterator
@@ -13,10 +13,10 @@ _PLACES = {"longitude_deg", "latitude_deg"}
 
 
 def results_geojson(results: MissionResults) -> bytes:
-    """`kind` of a feature is target, incident, planned or flown.
+    """Return the file. `kind` of a feature is target, incident, planned or flown.
 
-    A height is a property, since GeoJSON's third number has another reference. A line has `times` and `altitudes_relative_m` with an entry
-    for each of its points.
+    A height is a property, because GeoJSON's third coordinate has another reference. A line has `times` and `altitudes_relative_m` with an
+    entry for each of its points.
     """
     features = [*_targets(results), *_incidents(results), *(feature for route in results.routes for feature in _lines(route))]
     return json.dumps({"type": "FeatureCollection", "name": results.name, "features": features}, ensure_ascii=False, default=str).encode()

@@ -1,4 +1,4 @@
-"""Results of a mission as KML 2.2: folders of targets, of what happened, and of planned and flown lines (gx:Track)."""
+"""Results of a mission as KML 2.2: folders of targets, incidents, planned and flown lines (gx:Track)."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,7 +12,7 @@ STYLES = {"inspected": "ff665d0b", "not-confirmed": "ff0077c7", "not-inspected":
 
 
 def results_kml(results: MissionResults, folders: Sequence[str]) -> bytes:
-    """folders: names of those of targets, incidents, planned and flown lines, in the reader's language."""
+    """Return the file. folders: names for targets, incidents, planned and flown lines, in the reader's language."""
     targets, incidents, planned, flown = folders
     styles = [f'<Style id="{name}"><IconStyle><color>{colour}</color></IconStyle></Style>\n' for name, colour in STYLES.items()]
     parts = [

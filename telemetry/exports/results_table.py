@@ -35,7 +35,7 @@ MIN_WIDTH, MAX_WIDTH = 9, 60  # of a column, in characters
 
 
 def results_csv(results: MissionResults) -> bytes:
-    """Comma-separated (RFC 4180), units in the names of the columns, times in UTC."""
+    """Return comma-separated values (RFC 4180), with units in the column names and times in UTC."""
     written = StringIO()
     writer = csv.writer(written)
     writer.writerow(COLUMNS)
@@ -45,7 +45,7 @@ def results_csv(results: MissionResults) -> bytes:
 
 
 def results_xlsx(results: MissionResults, headings: Mapping[str, str], sheet: str) -> bytes:
-    """One sheet with a filter. headings: of each column, in the reader's language."""
+    """Return a workbook with one filtered sheet. headings: by column, in the reader's language."""
     file = BytesIO()
     book = xlsxwriter.Workbook(file, {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False})
     page = book.add_worksheet(sheet)

@@ -7,5 +7,5 @@ FORBIDDEN = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 
 
 def xml_text(text: str) -> str:
-    """As the text of an element; what XML cannot hold at all is left out."""
+    """Return the text escaped for an element, without characters that XML cannot contain."""
     return escape(FORBIDDEN.sub("", text))

@@ -1,1 +1,1 @@
-"""The MAVLink gateway: a process that vehicles talk to. Any of several serves any UAV; what must last is in PostgreSQL."""
+"""The MAVLink gateway, the process that vehicles connect to. Any gateway serves any UAV; lasting state is in PostgreSQL."""

@@ -1,6 +1,6 @@
-"""Which addresses a UAV is answered at: the one it is believed to have, and others that bring the same signed frames or later ones.
+"""Addresses of a UAV: its main address, and others that deliver the same signed frames or later ones.
 
-A signature tells who made a frame, not who brought it: whoever listens on the UAV's network can send a copy that arrives first.
+A signature authenticates the author of a frame, not its sender: any host on the UAV's network can send a copy that arrives first.
 """
 
 from collections import Counter, deque
@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 
 from telemetry.gateway.peers import Peer
 
-MOVE_AFTER_S = 5.0  # for which another address alone must have brought frames to become the UAV's
-SAME_WITHIN_S = 2.0  # a copy that comes later is a replay
+MOVE_AFTER_S = 5.0  # after another address alone has delivered frames for so long, it becomes the main one
+SAME_WITHIN_S = 2.0  # a later copy counts as a replay
 MAX_ADDRESSES = 8
-MAX_RECENT = 512  # frames that are remembered, to know their copies
+MAX_RECENT = 512  # frames remembered to detect copies
 
 
 @dataclass
@@ -22,16 +22,16 @@ class ReceivedFrom:
 
 @dataclass
 class Addresses:
-    """Of one UAV. Times are seconds since 1970. `copied`: which other address brought frames of the UAV as well, and when last."""
+    """Addresses of one UAV. Times are Unix seconds. `copied`: another address that also delivered frames of the UAV, and when last."""
 
     main: Peer | None = None
     copied: tuple[str, float] | None = None
     _received: dict[Peer, ReceivedFrom] = field(default_factory=dict)
-    _first: dict[tuple[str, int], tuple[Peer, float]] = field(default_factory=dict)  # who brought a frame first, and when
+    _first: dict[tuple[str, int], tuple[Peer, float]] = field(default_factory=dict)  # first sender of each frame, and when
     _order: deque[tuple[str, int]] = field(default_factory=deque)
 
     def take(self, stream: str, timestamp: int, peer: Peer, now_s: float) -> None:
-        """A frame that is believed, and came for the first time."""
+        """Record an accepted frame that arrived for the first time."""
         self._first[stream, timestamp] = (peer, now_s)
         self._order.append((stream, timestamp))
         if len(self._order) > MAX_RECENT:
@@ -40,7 +40,7 @@ class Addresses:
         self._move(now_s)
 
     def copy(self, stream: str, timestamp: int, peer: Peer, now_s: float) -> bool:
-        """Whether a frame with a right signature, which was taken before, comes by a second address now."""
+        """Return whether a correctly signed frame that was accepted before now arrives from a second address."""
         first = self._first.get((stream, timestamp))
         if first is None or first[0] == peer or not 0 <= now_s - first[1] <= SAME_WITHIN_S:
             return False
@@ -49,13 +49,13 @@ class Addresses:
         return True
 
     def answered(self, now_s: float) -> list[Peer]:
-        """The main one first."""
+        """Return the addresses to send to, the main one first."""
         if self.main is None:
             return []
         return [self.main, *(peer for peer, received in self._received.items() if peer != self.main and not _is_silent(received, now_s))]
 
     def believe(self, peer: Peer) -> None:
-        """Where nothing is signed there is one address alone."""
+        """Set the only address; used for unsigned links."""
         self.forget()
         self.main = peer
 
@@ -73,7 +73,11 @@ class Addresses:
             self._received[peer] = ReceivedFrom(now_s, now_s)
 
     def _has_room(self, newcomer: Peer, now_s: float) -> bool:
-        """Make some where a host has several addresses more than the newcomer's: many ports of one must not keep out another."""
+        """Return whether a new address fits.
+
+        If full, drop an address of the host with the most, if it has at least two more than the newcomer's: many ports of one host must not
+        exclude another host.
+        """
         self._received = {
             peer: received for peer, received in self._received.items() if peer == self.main or not _is_silent(received, now_s)
         }
@@ -87,7 +91,7 @@ class Addresses:
         return True
 
     def _move(self, now_s: float) -> None:
-        """To the address that was heard for longest, once nothing came from the main one for a while."""
+        """Change the main address to the one received from for longest, once the present one is silent."""
         main = None if self.main is None else self._received.get(self.main)
         if main is not None and not _is_silent(main, now_s):
             return
@@ -102,7 +106,7 @@ class Addresses:
 
 
 def _is_silent(received: ReceivedFrom, now_s: float) -> bool:
-    """Also where our clock of the day was set back since."""
+    """Return whether the address is silent; also true after the server's clock was set back."""
     return abs(now_s - received.last_s) >= MOVE_AFTER_S
 
 

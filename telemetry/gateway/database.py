@@ -1,6 +1,6 @@
-"""The database from inside the loop: threads with a connection each, and errors told apart that another try may mend.
+"""Database access from the event loop: threads with a connection each, and an error for failures that a retry may fix.
 
-A row that somebody else holds is not waited for long: what stands behind would wait, too, be it an abort.
+Waits for row locks are short, because later commands, even an abort, would wait behind them.
 """
 
 import asyncio
@@ -22,18 +22,18 @@ Result = TypeVar("Result")
 
 
 class DatabaseUnavailable(Exception):
-    """Worth another try."""
+    """The database is unavailable; retry."""
 
 
 class DatabaseThread:
-    """What is given to one thread is done in its order; of several threads each does what comes next."""
+    """Runs database calls: one thread in order, several threads whenever one is free."""
 
     def __init__(self, name: str, threads: int = 1) -> None:
         self._executor = ThreadPoolExecutor(threads, thread_name_prefix=name)
         self._connections: list[Any] = []
 
     async def run(self, do: Callable[P, Result], /, *args: P.args, **kwargs: P.kwargs) -> Result:
-        """Raises DatabaseUnavailable, or what `do` raises."""
+        """Return the result of `do`. Raises DatabaseUnavailable, or what `do` raises."""
 
         def inside() -> Result:
             close_old_connections()
@@ -49,13 +49,13 @@ class DatabaseThread:
 
     def close(self) -> None:
         self._executor.shutdown(wait=True)
-        with ThreadPoolExecutor(1) as closing:  # Django wants no connection to be touched in the loop
+        with ThreadPoolExecutor(1) as closing:  # Django allows no access to a connection in the loop
             list(closing.map(lambda one: one.close(), self._connections))
 
     def _connect(self) -> None:
         own = connections["default"]
         if own not in self._connections:
-            own.inc_thread_sharing()  # closed by whoever ends the threads
+            own.inc_thread_sharing()  # closed by the thread that ends the others
             self._connections.append(own)
         with own.cursor() as cursor:
             cursor.execute("SELECT set_config('lock_timeout', %s, false)", [f"{MAX_LOCK_WAIT_S:g}s"])

@@ -1,7 +1,7 @@
-"""One command on its way to one vehicle, from its row and back to it.
+"""Delivery of one command to one vehicle, and the updates of its row.
 
-What the row says is written as it happens. Once another gateway carries the command, or a later command has taken its place, nothing is
-written any more: an upload that had begun is undone, and what it left is told all the same.
+Updates are written as they happen. They stop once another gateway delivers the command or a later command replaces it. An upload in
+progress is then undone, and the vehicle's lists are still reported.
 """
 
 import asyncio
@@ -54,7 +54,7 @@ from telemetry.gateway.session import RECEIVED_WITHIN_S, Session
 from telemetry.services.alerts.mission_alerts import raise_mission_mismatch, raise_other_list
 from telemetry.services.links.onboard_lists import Carried, LoadedLists, begin_loading, confirm_loaded, end_loading, fail_loading
 
-RETRIES = 2  # a parameter that a vehicle does not have draws no answer
+RETRIES = 2  # a vehicle may not answer for a parameter that it does not have
 ADVICE = {
     "far-first-waypoint": Reason("bring_to_start", {"parameter": FIRST_LEG}),
     "long-leg": Reason("approve_with_more_points"),
@@ -64,16 +64,19 @@ POLL_INTERVAL_S = 0.25
 logger = logging.getLogger(__name__)
 PROGRESS_INTERVAL_S = 0.5
 TRY_AGAIN_IN_S = 2.0
-UNACKNOWLEDGED = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
-NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
+UNACKNOWLEDGED = frozenset({"silent", "too-slow", "not-heard"})  # link failures: retried while the command is wanted
+NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # the mission is cleared as soon as possible
 CLEAR_AGAIN_IN_S = 15.0
 MAX_ATTEMPTS = 100
-UNSETTLED_S = 2.0  # for which what was sent before may still arrive
+UNSETTLED_S = 2.0  # an earlier message may arrive this late
 DATABASE_RETRY_S = 0.5
 
 
 async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: Callable[[], bool]) -> CannotCarry | None:
-    """Legs that the vehicle would refuse. It is asked if it has not told, and again before it is refused: it may have been set anew."""
+    """Return a refusal for legs that exceed the vehicle's limits, else None.
+
+    The limits are requested if unknown, and again before a refusal, as they may have changed.
+    """
     if session.autopilot_type is AutopilotType.ARDUPILOT and load.fence and FENCE_PARAMETERS[0] not in session.state.parameters:
         await _read(FENCE_PARAMETERS, session, is_wanted)  # for warnings_of
     if session.autopilot_type is not AutopilotType.PX4:
@@ -95,7 +98,7 @@ async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], 
 
 
 def warnings_of(load: FlightLoad, session: Session) -> tuple[Reason, ...]:
-    """What may go wrong although it is sent; empty where nothing is known."""
+    """Return warnings for a load that is sent nevertheless; empty if nothing is known."""
     if session.autopilot_type is None:
         return ()
     warnings = [warning.reason for warning in count_warnings(load, session.autopilot_type)]
@@ -117,7 +120,7 @@ def _refusal(refused: tuple[LimitWarning, ...]) -> CannotCarry:
 async def send_unacknowledged(
     order: Order, session: Session, may_send: Callable[[], bool], is_wanted: Callable[[], Awaitable[bool]]
 ) -> None:
-    """`may_send` is asked before each message, `is_wanted` after it."""
+    """Send a command repeatedly without an acknowledgement. `may_send` is checked before each message, `is_wanted` after it."""
     sent, next_s = 0, time.monotonic()
     while may_send() and session.state.autopilot_type is not None:
         if (now_s := time.monotonic()) >= next_s:
@@ -132,12 +135,16 @@ async def send_unacknowledged(
 
 @dataclass
 class Delivery:
-    """`is_dropped`: the row is no longer ours, or is to be released; `is_closing`: the latter. `is_unacknowledged`: nothing is received."""
+    """The delivery of one command.
+
+    `is_dropped`: the row belongs to another gateway, or is to be released. `is_closing`: it is released because the process stops.
+    `is_unacknowledged`: nothing is received from the vehicle.
+    """
 
     command: UavCommand
     session: Session
     database: DatabaseThread
-    held_until_s: float = 0.0  # monotonic: past it another gateway may carry the command
+    held_until_s: float = 0.0  # monotonic; after it another gateway may deliver the command
     is_unacknowledged: bool = False
     is_dropped: bool = False
     is_closing: bool = False
@@ -151,7 +158,7 @@ class Delivery:
 
     @property
     def is_ours(self) -> bool:
-        """Surely, also when the database was not heard of for a while."""
+        """Return whether this gateway surely holds the command, also during a database outage."""
         return not self.is_dropped and self.session.is_held and time.monotonic() < self.held_until_s
 
     async def run(self) -> None:
@@ -183,7 +190,7 @@ class Delivery:
             await asyncio.gather(*self._notes, return_exceptions=True)
 
     async def _send_unacknowledged(self) -> None:
-        """Given back once it is heard: what it does then is seen, and told, as of any command."""
+        """Send until the vehicle is received again, then release the command: its effect is then confirmed as for any command."""
         if await self._surely(note_sent_unacknowledged, self.command.pk, **self._fence):
             await send_unacknowledged(
                 Order(self.command.kind),
@@ -215,7 +222,7 @@ class Delivery:
         if task.onboard is not None and not await self._is_onboard(task.onboard, task.before):
             return
         too_near = await self._surely(reason_not_to_start, self.command) if self.command.kind == CommandKind.START else None
-        if too_near is not None:  # while the list was read, somebody else has taken off
+        if too_near is not None:  # another UAV has taken off during the readback
             await self._refuse(too_near)
             return
         if task.along is not None:
@@ -248,7 +255,7 @@ class Delivery:
             await self._end(note_released)
 
     async def _set_return_height(self, height_m: float) -> None:
-        """By the parameter that the vehicle has for it, read back afterwards."""
+        """Set the vehicle's parameter for the return height, and read it back."""
         wanted = return_height_parameter(self.session.autopilot_type, self.session.state.parameters, height_m)
         if wanted is None:
             await self._refuse(CannotCarry("not-read", (Reason("return_height_unknown"),), is_for_good=False))
@@ -264,9 +271,9 @@ class Delivery:
             await self._end(note_released)
 
     async def _is_onboard(self, load: FlightLoad, before: LoadedLists | None) -> bool:
-        """Whether the vehicle holds the list that it is about to fly, by reading it now. What is not so ends the command.
+        """Read back the mission to be flown; return whether the vehicle holds it. Otherwise end the command.
 
-        Its time runs from the end of the reading; as long as that goes on, it is not over.
+        The command's time-out runs from the end of the readback and does not expire during it.
         """
         total, read, noted_s = sum(len(load.of(kind)) for kind in MissionType), 0, time.monotonic()
 
@@ -333,7 +340,7 @@ class Delivery:
             await self._report_load(task, outcome)
 
     async def _report_load(self, task: DeliveryTask, outcome: SyncOutcome) -> None:
-        """What the vehicle holds now is told first: a mix is critical whoever carries the command by now."""
+        """Report the vehicle's lists first, as a mix is critical regardless of who holds the command; then end the command."""
         still_mixed = outcome.state is SyncState.MIXED or (outcome.state is SyncState.UNREAD and outcome.is_critical)
         await self._surely(raise_mission_mismatch, self.command, is_mixed=still_mixed, why=outcome.why)
         before = task.before if outcome.state is SyncState.INTACT else None
@@ -343,7 +350,7 @@ class Delivery:
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}
             wanted = None if task.wanted is None else replace(task.wanted, beside=beside)
             self.session.forget_flown()
-            self.session.message_requests.rtl_reading.ask_anew(time.monotonic())  # also of the rally points that it holds now
+            self.session.message_requests.rtl_reading.ask_anew(time.monotonic())  # also how many rally points it holds now
             await self._end_with(end_loading, wanted, note=outcome.why, warnings=(*outcome.left_alone, *warnings))
         elif self.command.kind == CommandKind.CLEAR_MISSION and outcome.code in NOT_YET:
             await self._end(note_released, retry_in_s=CLEAR_AGAIN_IN_S, note=outcome.why)
@@ -365,7 +372,7 @@ class Delivery:
         await self._surely(note, self.carried, *values, **named)
 
     async def _surely(self, do: Callable[..., Any], /, *values: Any, **named: Any) -> Any:
-        """Waits for a database that is away."""
+        """Return the result of a database call, retrying while the database is unavailable."""
         while True:
             try:
                 return await self.database.run(do, *values, **named)
@@ -373,7 +380,7 @@ class Delivery:
                 await asyncio.sleep(DATABASE_RETRY_S)
 
     def _note(self, do: Callable[..., Any], /, *values: Any, **named: Any) -> None:
-        """Meanwhile; without it nothing is lost."""
+        """Write an optional update in the background."""
 
         async def inside() -> None:
             try:

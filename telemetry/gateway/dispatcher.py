@@ -1,7 +1,7 @@
-"""Commands of the outbox, carried to the vehicles that this gateway serves.
+"""Dispatcher: delivers commands of the outbox to the vehicles that this gateway serves.
 
-Of one vehicle at most one command about the same thing is carried at a time. Uploads are long, so only so many go on at once, the most
-urgent first; what stops a UAV or brings it back waits for nothing, not even for a word of the UAV.
+Each vehicle has at most one command in delivery per axis. Uploads take long, so their number is limited, the most urgent first. Commands
+that stop or return a UAV wait for nothing, not even for an acknowledgement.
 """
 
 import asyncio
@@ -29,7 +29,7 @@ POLL_INTERVAL_S = 1.0
 MAX_UPLOADS = 8
 RETRY_S = 0.5
 END_WITHIN_S = 4.0
-NOTES_AT_ONCE = 4  # the end of a command may have to wait for its mission; the beginning of another must not
+NOTES_AT_ONCE = 4  # the end of a command may wait for its mission; the start of another must not wait for it
 
 
 @dataclass
@@ -38,7 +38,7 @@ class Dispatcher:
     lease_s: float
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-commands"))
-    notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # of what is carried
+    notes: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-notes", NOTES_AT_ONCE))  # for updates of deliveries
     _deliveries: dict[UUID, Delivery] = field(default_factory=dict)
     _tasks: dict[UUID, asyncio.Task[None]] = field(default_factory=dict)
     _woken: asyncio.Event = field(default_factory=asyncio.Event)
@@ -56,7 +56,7 @@ class Dispatcher:
                 self._woken.clear()
 
     async def poll(self) -> None:
-        """Drops what is not ours any more, takes what waits, begins what can begin."""
+        """Drop commands that this gateway lost, claim waiting ones, and start those that can start."""
         self._forget_ended()
         if self._deliveries:
             asked_s = time.monotonic()
@@ -88,7 +88,7 @@ class Dispatcher:
         *,
         is_unacknowledged: bool = False,
     ) -> None:
-        """Uploads no more than may begin; what stops a UAV never waits for room."""
+        """Claim at most `room` commands of an axis."""
         if room <= 0:
             return
         asked_s = time.monotonic()
@@ -101,7 +101,7 @@ class Dispatcher:
             self._deliveries[command.pk] = Delivery(command, session, self.notes, until_s, is_unacknowledged=is_unacknowledged)
 
     async def close(self) -> None:
-        """Ends what goes on, and gives back what has not ended by then."""
+        """End the deliveries, and release those that have not ended in time."""
         for delivery in self._deliveries.values():
             delivery.is_dropped = delivery.is_closing = True
         if self._tasks:
@@ -145,7 +145,7 @@ class Dispatcher:
     def _forget_ended(self) -> None:
         for command_id in [key for key, task in self._tasks.items() if task.done()]:
             del self._tasks[command_id]
-            if command_id in self._deliveries and self._deliveries[command_id].has_begun:  # else it was given back, and taken anew
+            if command_id in self._deliveries and self._deliveries[command_id].has_begun:  # else it was released and claimed again
                 del self._deliveries[command_id]
         for command_id in [key for key, delivery in self._deliveries.items() if delivery.has_ended and key not in self._tasks]:
             del self._deliveries[command_id]

@@ -1,4 +1,4 @@
-"""How a gateway does, as it is told outside: read off its own state when somebody asks."""
+"""Metrics of a gateway, read from its state on each scrape."""
 
 import time
 from collections import Counter
@@ -21,7 +21,7 @@ DESCRIBED = (
 
 
 class ReportedValue(Protocol):
-    """A gateway, as far as this module knows it."""
+    """The part of a gateway that this module uses."""
 
     store: Store
     lost_here: Counter[str]
@@ -29,11 +29,11 @@ class ReportedValue(Protocol):
     sessions: dict[int, Session]
 
     def dropped(self) -> Mapping[str, int]:
-        """What was no frame of a UAV, by cause."""
+        """Return the counts of received data that was not a UAV's frame, by cause."""
 
 
 def figures_of(gateway: ReportedValue) -> SnapshotCollector:
-    """To be told for as long as it is entered."""
+    """Return the collector, which is registered while its context is entered."""
     return SnapshotCollector(DESCRIBED, lambda: _read(gateway))
 
 

@@ -1,4 +1,4 @@
-"""The UAVs as a gateway needs them: by MAVLink system id, each with its key."""
+"""The UAVs of a gateway by MAVLink system id, with their keys."""
 
 from dataclasses import dataclass, field
 
@@ -8,7 +8,7 @@ from missions.services.fleet.credentials import mavlink_signing_key
 
 @dataclass(frozen=True)
 class KnownUav:
-    """Another value means that something about it was changed. Earlier keys count until the newest one was used."""
+    """A UAV's row; values differ if any field was changed. Earlier keys are valid until the newest one was used."""
 
     uav_id: int
     organisation_id: int
@@ -21,13 +21,13 @@ class KnownUav:
 
     @property
     def keys(self) -> tuple[tuple[int, bytes], ...]:
-        """In force, by credential, the newest first."""
+        """Return the valid keys by credential, the newest first."""
         newest = () if self.credential_id is None or self.key is None else ((self.credential_id, self.key),)
         return newest + self.earlier_keys
 
 
 def known_uavs() -> dict[int, KnownUav]:
-    """By system id. A UAV whose link is not MAVLink is not a gateway's."""
+    """Return the UAVs with a MAVLink link, by system id."""
     keys: dict[int, list[tuple[int, bytes]]] = {}
     for credential in UavCredential.objects.filter(kind=CredentialKind.MAVLINK_KEY, revoked_at=None).order_by("-pk"):
         keys.setdefault(credential.uav_id, []).append((credential.pk, mavlink_signing_key(credential=credential)))

@@ -1,6 +1,6 @@
-"""A log for each flight: begun when a vehicle arms, ended some seconds after it disarms.
+"""Flight logs: a log begins when a vehicle arms and ends some seconds after it disarms.
 
-One that arms and disarms all the time keeps to one file, and no disk is waited for in the loop.
+A vehicle that arms and disarms in quick succession keeps one file. The event loop never waits for the disk.
 """
 
 import asyncio
@@ -30,13 +30,13 @@ BUFFER = 64 * 1024
 logger = logging.getLogger(__name__)
 SYNC_INTERVAL_S = 2.0
 DISARMED_FOR_S = 2.0
-FORGOTTEN_AFTER_S = 1_800.0  # a flight that ended unheard
+FORGOTTEN_AFTER_S = 1_800.0  # a flight whose end was not received
 ROWS_WAITING = 1_000
 
 
 @transaction.atomic
 def begin_flight_log(*, uav_id: int, path: str, started_at: datetime) -> None:
-    """path: under the folder of logs. Safe to call again; nothing happens for a UAV that is gone."""
+    """Store the start of a log. Idempotent; does nothing for a deleted UAV. path: relative to the log folder."""
     uav = Uav.objects.select_for_update(of=("self",), no_key=True).filter(pk=uav_id).first()
     if uav is None or FlightLog.objects.filter(path=path).exists():
         return
@@ -63,7 +63,7 @@ def _last_written(path: str) -> datetime | None:
 
 @dataclass
 class FlightRecorder:
-    """One open file. A disk that is full, or a log that is too long, ends the writing, nothing else."""
+    """One open log file. A full disk or the size limit ends the recording only."""
 
     path: Path
     most_bytes: int
@@ -92,13 +92,13 @@ class FlightRecorder:
         self.size_bytes += 8 + len(raw)
 
     def sync(self) -> None:
-        """What was written is on the disk afterwards. May take its time: not for the loop."""
+        """Write the data to the disk. May block: not for the event loop."""
         if self._file is None:
             return
         try:
             self._file.flush()
             os.fsync(self._file.fileno())
-        except (OSError, ValueError):  # closed meanwhile
+        except (OSError, ValueError):  # closed in the meantime
             self._stop()
 
     def close(self) -> None:
@@ -124,7 +124,7 @@ class Flights:
     _rows: list[Callable[[], None]] = field(default_factory=list)
 
     def watch(self, session: Session, now_s: float) -> None:
-        """After each frame of a session."""
+        """Update the logs after each frame of a session."""
         is_open = session.log is not None
         if session.state.is_armed and not is_open:
             self._begin(session, now_s)
@@ -149,7 +149,7 @@ class Flights:
         self._later(close)
 
     def end_all(self, now_s: float) -> None:
-        """Nothing else is to be done any more: the files are closed at once."""
+        """Close all files at once, at the end of the process."""
         for session, recorder, _ in list(self._open.values()):
             self.end(session, now_s)
             recorder.close()
@@ -164,7 +164,7 @@ class Flights:
                 self.end(session, session.last_message_s)
 
     async def write_rows(self, database: DatabaseThread) -> None:
-        """In order; what cannot be written now is written later."""
+        """Write the rows in order; keep the rest for later if the database is unavailable."""
         while self._rows:
             try:
                 await database.run(self._rows[0])

@@ -1,4 +1,4 @@
-"""What a gateway says to a vehicle by itself: that it is there, and which messages it wants."""
+"""Messages that a gateway sends to a vehicle by itself: heartbeats, and requests for messages."""
 
 from collections.abc import Mapping
 
@@ -24,9 +24,9 @@ INTERVALS_S = {
 WIND = {AutopilotType.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, AutopilotType.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
 WIND_INTERVAL_S = 2.0
 ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
-STREAM_HZ = 4  # of all data streams, for autopilots that know no intervals
+STREAM_HZ = 4  # of all data streams, for autopilots without message intervals
 FRAME_BYTES = 25  # of a signed frame of MAVLink 2 beside its payload
-MAX_STRETCH_FACTOR = 5.0  # by which a position comes once a second
+MAX_STRETCH_FACTOR = 5.0  # brings the position down to 1 Hz
 
 
 def heartbeat() -> Message:
@@ -34,7 +34,7 @@ def heartbeat() -> Message:
 
 
 def intervals_s(autopilot_type: AutopilotType, budget_bytes_s: float) -> dict[int, float]:
-    """For the messages of telemetry, by their ids; stretched alike, by MAX_STRETCH_FACTOR at most, to fit a budget (0: none)."""
+    """Return the intervals of telemetry messages by id, stretched equally, at most by MAX_STRETCH_FACTOR, to fit a budget (0: none)."""
     wanted = INTERVALS_S | ({WIND[autopilot_type]: WIND_INTERVAL_S} if autopilot_type in WIND else {})
     load_bytes_s = sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
     stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), MAX_STRETCH_FACTOR)
@@ -46,23 +46,23 @@ def interval_requests(system: int, wanted_s: Mapping[int, float]) -> list[Messag
 
 
 def streams(system: int, *, is_on: bool) -> Message:
-    """All data streams: on for an autopilot that knows no intervals, else off, as what they bring is asked for by intervals."""
+    """Return the request that turns all data streams on or off; on is for autopilots without message intervals."""
     hz = STREAM_HZ if is_on else 0
     return mavlink.MAVLink_request_data_stream_message(system, AUTOPILOT, mavlink.MAV_DATA_STREAM_ALL, hz, int(is_on))
 
 
 def onboard_info_requests(system: int) -> list[Message]:
-    """For what is told once."""
+    """Return requests for messages that are needed once."""
     return [_command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, number) for number in ONCE]
 
 
 def position_request(system: int) -> Message:
-    """Of a vehicle that tells where it is only to whoever asks."""
+    """Return a request for the position, which some vehicles only send on request."""
     return _command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
 
 
 def limit_requests(system: int) -> list[Message]:
-    """For the parameters that say what it would not fly."""
+    """Return requests for the parameters that limit legs."""
     return [mavlink.MAVLink_param_request_read_message(system, AUTOPILOT, name.encode(), BY_NAME) for name in PARAMETERS]
 
 

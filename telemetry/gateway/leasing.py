@@ -1,4 +1,4 @@
-"""Which vehicles this gateway serves: leases taken, held on to, and lost to another gateway."""
+"""Leases of vehicles: taken, renewed, and lost to another gateway."""
 
 import asyncio
 import logging
@@ -18,18 +18,18 @@ from workspace.live.timed_waits import wait_for_event
 logger = logging.getLogger(__name__)
 LEASES_INTERVAL_S = 1.0
 RETRY_S = 0.5
-GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
+GATHERED_S = 0.05  # vehicles first received within this time are leased together
 WAITED_TOO_LONG_S = 15.0
 
 
 def served_until_s(asked_s: float, lease_s: float) -> float:
-    """The same for a vehicle, which another gateway may also take once nobody has stored for a while that it was heard."""
+    """Return the end of a vehicle's lease: another gateway may also take it once its last stored message is old."""
     return held_until_s(asked_s, min(lease_s, UNREACHABLE_S))
 
 
 @dataclass
 class Leasing:
-    """`receive` is given what a vehicle said while it was not served yet; `end_flight` the sessions that are lost, and when."""
+    """Takes and renews leases. `receive` gets the frames that waited for a lease; `end_flight` the lost sessions, with the time."""
 
     options: GatewayOptions
     database: DatabaseThread
@@ -37,7 +37,7 @@ class Leasing:
     receive: Callable[[Session, Frame, Peer, float], None]
     end_flight: Callable[[Session, float], None]
     wanted: asyncio.Event = field(default_factory=asyncio.Event)
-    answered_s: float = field(default_factory=time.monotonic)  # when the database was known to be there, monotonic
+    answered_s: float = field(default_factory=time.monotonic)  # monotonic time of the last database answer
 
     async def run(self) -> None:
         while True:

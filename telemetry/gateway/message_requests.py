@@ -1,4 +1,4 @@
-"""What one vehicle is asked for by itself: its messages where they do not come, and what is told once where it was not told."""
+"""Requests to one vehicle for messages that it does not send, and for data that is needed once."""
 
 import math
 from dataclasses import dataclass, field
@@ -16,20 +16,20 @@ from mavlink.rtl import PARAMETERS as RTL_PARAMETERS
 from mavlink.vehicle_state import VehicleState
 from telemetry.gateway import heartbeat
 
-ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
-MISSING_INTERVALS = 3.0  # of a message, after which it does not come
-UNANSWERED_ROUNDS = 2  # of asking for intervals without a position, before streams are asked for
+ASK_AGAIN_S = 5.0  # for missing positions; doubled each time for other messages and for data needed once
+MISSING_INTERVALS = 3.0  # without a message after which it counts as missing
+UNANSWERED_ROUNDS = 2  # of interval requests without a position, before streams are requested
 ASK_SELDOM_S = 60.0
-LISTENS_S = 10.0  # for another ground station, before streams are stopped, which it may live by
+LISTENS_S = 10.0  # for another ground station, before streams that it may need are stopped
 STATION_GONE_S = 60.0  # after its last heartbeat
-LIMIT_REQUESTS = 3  # a vehicle that has no such parameters says nothing
+LIMIT_REQUESTS = 3  # a vehicle without these parameters does not answer
 RTL_REQUEST_INTERVAL_S = 2.0
 MAX_RTL_REQUESTS = 5
 
 
 @dataclass(frozen=True)
 class ReportedRtl:
-    """`at_s` is when the last of them was heard, monotonic."""
+    """RTL parameters as reported. `at_s` is the receipt of the latest, monotonic."""
 
     autopilot: str
     parameters: dict[str, float]
@@ -38,7 +38,7 @@ class ReportedRtl:
 
 @dataclass
 class RtlReading:
-    """The parameters by which a vehicle flies home by itself. Times are monotonic seconds."""
+    """Reads the RTL parameters of a vehicle. Times are monotonic seconds."""
 
     _wanted_since_s: float = 0.0
     _asked_s: float = -RTL_REQUEST_INTERVAL_S
@@ -46,11 +46,11 @@ class RtlReading:
     _reported_s: float = 0.0
 
     def ask_anew(self, now_s: float) -> None:
-        """Somebody may have set them since."""
+        """Request the parameters again, as they may have changed."""
         self._wanted_since_s, self._requests_left = now_s, MAX_RTL_REQUESTS
 
     def requests(self, state: VehicleState, now_s: float) -> list[Message]:
-        """What is to be sent now: for what was not reported since it was wanted."""
+        """Return the requests due now, for parameters not reported since they were wanted."""
         groups = RTL_PARAMETERS.get(state.autopilot_type or "", ())
         if not groups or not self._requests_left or now_s - self._asked_s < RTL_REQUEST_INTERVAL_S:
             return []
@@ -63,7 +63,7 @@ class RtlReading:
         return [mavlink.MAVLink_param_request_read_message(state.system, AUTOPILOT, name.encode(), BY_NAME) for name in names]
 
     def news(self, state: VehicleState) -> ReportedRtl | None:
-        """What was reported since `note` was called last, also without having been asked: all that is known."""
+        """Return all known RTL parameters if any was reported since the last `note`, else None."""
         autopilot_type = state.autopilot_type or ""
         last_message_s = {
             name: state.parameters_at_s[name] for name in RTL_PARAMETER_NAMES.get(autopilot_type, ()) if name in state.parameters_at_s
@@ -78,33 +78,33 @@ class RtlReading:
 
 @dataclass
 class MessageRequests:
-    """Times are monotonic seconds."""
+    """Requests of one vehicle. Times are monotonic seconds."""
 
     limits_left: int = LIMIT_REQUESTS
     rtl_reading: RtlReading = field(default_factory=RtlReading)
     _asked_s: float = -math.inf
     _ask_again_s: float = ASK_AGAIN_S
-    _rounds: int = 0  # of asking for intervals since positions came last
+    _rounds: int = 0  # of interval requests since the last position
     _are_intervals_refused: bool = False
-    _first_s: float | None = None  # when it was asked first
-    _station_s: float = -math.inf  # when another ground station was heard last
-    _are_streams_settled: bool = False  # stopped, or started as there is nothing else
-    _received_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
+    _first_s: float | None = None  # of the first request
+    _station_s: float = -math.inf  # last message of another ground station
+    _are_streams_settled: bool = False  # stopped, or started for lack of intervals
+    _received_s: dict[int, float] = field(default_factory=dict)  # by message id
     _once_requested_s: float = -math.inf
     _request_once_again_s: float = ASK_AGAIN_S
 
     def receive(self, message: Message, now_s: float) -> None:
-        """Every message of the autopilot."""
+        """Record a message of the autopilot."""
         self._received_s[message.get_msgId()] = now_s
         if message.get_type() == "COMMAND_ACK" and message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._are_intervals_refused |= message.result == mavlink.MAV_RESULT_UNSUPPORTED
 
     def note_station(self, now_s: float) -> None:
-        """Another ground station speaks on the channel by which the vehicle is heard."""
+        """Record a message of another ground station on the vehicle's channel."""
         self._station_s = now_s
 
     def due(self, state: VehicleState, now_s: float, *, has_position: bool) -> list[Message]:
-        """Of a vehicle that is heard; `has_position`: it has told where it is a moment ago."""
+        """Return the requests due now, for a vehicle that is received. `has_position`: its position is current."""
         if state.autopilot_type is None:
             return []
         wanted = self._telemetry(state.system, state.autopilot_type, now_s, has_position=has_position)
@@ -118,14 +118,14 @@ class MessageRequests:
         return wanted
 
     def _telemetry(self, system: int, autopilot_type: AutopilotType, now_s: float, *, has_position: bool) -> list[Message]:
-        """Messages that do not come, by intervals. Streams bring many that nobody reads: only where intervals bring no position."""
+        """Return interval requests for missing messages. Streams, which include many unused messages, are a fallback for the position only."""
         if has_position:
             self._rounds = 0
         self._first_s = now_s if self._first_s is None else self._first_s
         if autopilot_type is AutopilotType.ARDUPILOT and has_position and self._may_stop_streams(now_s):
             self._are_streams_settled, self._asked_s = True, now_s
             asked = heartbeat.interval_requests(system, heartbeat.intervals_s(autopilot_type, settings.LINK_BUDGET_BYTES_S))
-            return [heartbeat.streams(system, is_on=False), *asked]  # stopping ends intervals, too
+            return [heartbeat.streams(system, is_on=False), *asked]  # stopping streams ends intervals as well
         if now_s - self._asked_s < (self._ask_again_s if has_position else ASK_AGAIN_S):
             return []
         is_first = self._asked_s == -math.inf
@@ -146,7 +146,7 @@ class MessageRequests:
         return asked
 
     def _may_stop_streams(self, now_s: float) -> bool:
-        """Nobody else on the channel is known to need them: they are the channel's, not ours."""
+        """Return whether no other ground station uses the channel's streams, as far as is known."""
         if self._are_streams_settled or self._are_intervals_refused or self._first_s is None:
             return False
         return now_s - self._first_s >= LISTENS_S and now_s - self._station_s >= STATION_GONE_S

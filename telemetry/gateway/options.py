@@ -1,4 +1,4 @@
-"""What a gateway is started with."""
+"""Options of a gateway."""
 
 import re
 import socket
@@ -9,11 +9,11 @@ from django.conf import settings
 
 from workspace.leases import HolderOptions, holder_name
 
-OWN_SYSTEM, OWN_COMPONENT = 255, 190  # those of ground stations; MAV_COMP_ID_MISSIONPLANNER
+OWN_SYSTEM, OWN_COMPONENT = 255, 190  # usual ids of a ground station; MAV_COMP_ID_MISSIONPLANNER
 
 
 class InvalidUdpAddress(ValueError):
-    """Not HOST:PORT."""
+    """The address is not of the form HOST:PORT."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class UdpAddress:
 
 
 def addresses(text: str) -> list[UdpAddress]:
-    """Of "HOST:PORT, …"; an IPv6 host stands in brackets. Raises WrongAddress."""
+    """Parse "HOST:PORT, …", with IPv6 hosts in brackets. Raises InvalidUdpAddress."""
     return [_address(entry.strip()) for entry in text.split(",") if entry.strip()]
 
 
@@ -39,7 +39,7 @@ def _address(entry: str) -> UdpAddress:
 
 @dataclass(frozen=True, kw_only=True)
 class GatewayOptions(HolderOptions):
-    """What a gateway listens on, and how much of what it hears it keeps until it is stored."""
+    """Listening addresses of a gateway, and limits of its buffers."""
 
     udp: list[UdpAddress]
     tcp: list[UdpAddress]

@@ -1,4 +1,4 @@
-"""Sockets that vehicles talk to: what comes in goes to one function, and each sender can be answered."""
+"""Sockets that vehicles connect to: all frames go to one function, and each sender can be answered."""
 
 import asyncio
 import contextlib
@@ -16,16 +16,16 @@ from telemetry.gateway.options import UdpAddress
 logger = logging.getLogger(__name__)
 
 MAX_DATAGRAM_BYTES = 65_535
-DRAINED_FOR_S = 0.02  # before other work has its turn
-PIECE = 16_384  # bytes of a connection that are looked at together
-RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system grants them
-MAX_CONNECTIONS = 256  # beyond them the one goes that has brought no frame for longest
-MAX_UNSENT = 256 * 1024  # bytes of a connection that takes nothing
+DRAINED_FOR_S = 0.02  # before other tasks run
+PIECE = 16_384  # bytes of a connection parsed at once
+RECEIVE_BUFFER = 8 * 1024 * 1024  # bytes, as far as the system permits
+MAX_CONNECTIONS = 256  # beyond it, the connection longest without a frame is closed
+MAX_UNSENT = 256 * 1024  # bytes for a connection that does not read
 SILENT_CONNECTION_S = 60.0
 
 
 class Peer(Protocol):
-    """A sender, equal to itself when it sends again."""
+    """A sender; equal for each message from the same address."""
 
     @property
     def name(self) -> str: ...
@@ -33,7 +33,7 @@ class Peer(Protocol):
     def send(self, frame: bytes) -> None: ...
 
 
-Receive = Callable[[list[Frame], Peer, float], None]  # frames, from whom, received at [s since 1970]
+Receive = Callable[[list[Frame], Peer, float], None]  # frames, sender, receipt [Unix s]
 
 
 @dataclass(frozen=True)
@@ -63,16 +63,16 @@ class TcpPeer:
 
 @dataclass
 class Listeners:
-    """All sockets of a gateway. `damages` counts what was no frame."""
+    """All sockets of a gateway. `damages` counts bytes that were not frames."""
 
     receive: Receive
     damages: Counter[Damage] = field(default_factory=Counter)
     _sockets: list[socket.socket] = field(default_factory=list)
     _servers: list[asyncio.Server] = field(default_factory=list)
-    _connections: dict[asyncio.StreamWriter, float] = field(default_factory=dict)  # when each brought a frame last, monotonic
+    _connections: dict[asyncio.StreamWriter, float] = field(default_factory=dict)  # monotonic time of each connection's last frame
 
     async def open(self, udp: list[UdpAddress], tcp: list[UdpAddress]) -> list[str]:
-        """Where it listens, with the ports that the system chose for 0. Raises OSError."""
+        """Open the sockets and return their addresses, with the ports that the system chose for 0. Raises OSError."""
         names = [f"udp:{self._open_udp(address)}" for address in udp]
         for address in tcp:
             server = await asyncio.start_server(self._serve, address.host, address.port, limit=PIECE)
@@ -112,7 +112,7 @@ class Listeners:
                 datagram, address = listener.recvfrom(MAX_DATAGRAM_BYTES)
             except BlockingIOError:
                 return
-            except OSError:  # an answer of ours that could not be delivered is told here
+            except OSError:  # reports an answer that could not be delivered
                 continue
             frames = frames_of_datagram(datagram, self.damages)
             if frames:
@@ -136,19 +136,19 @@ class Listeners:
             self._drop(writer)
 
     def _drop(self, writer: asyncio.StreamWriter) -> None:
-        """At once: one that takes nothing would never be done with what waits for it."""
+        """Abort a connection: closing one that does not read would never complete."""
         self._connections.pop(writer, None)
         writer.transport.abort()
 
 
 async def _read(reader: asyncio.StreamReader) -> bytes:
-    """Return what has come, empty at the end of the stream. Raises TimeoutError, OSError."""
+    """Return the next bytes, empty at the end of the stream. Raises TimeoutError, OSError."""
     async with asyncio.timeout(SILENT_CONNECTION_S):
         return await reader.read(PIECE)
 
 
 def _enlarge(listener: socket.socket) -> None:
-    """A burst must fit while the process does something else. Who may go beyond the system's limit does."""
+    """Enlarge the receive buffer for bursts, beyond the system's limit if the process may."""
     for option in (getattr(socket, "SO_RCVBUFFORCE", 33), socket.SO_RCVBUF):
         with contextlib.suppress(OSError):
             listener.setsockopt(socket.SOL_SOCKET, option, RECEIVE_BUFFER)

@@ -1,4 +1,4 @@
-"""From a command's row to what is to be done with the vehicle, or to the reason why nothing is."""
+"""Converts a command's row to the task of its delivery, or to the reason why it cannot be delivered."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,7 @@ from operation.reasons import Reason, text_reason
 from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 from telemetry.services.returns.along_route import OnBoard, along_route, held_flight
 
-SAME_M = 1.0  # of two legs that are as near it is on the first
+SAME_M = 1.0  # if two legs are equally near within this, the earlier one is used
 LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
 FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
 EMPTY = FlightLoad(())
@@ -33,9 +33,9 @@ NEW_S = 10.0
 
 
 def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> int | None:
-    """The item, from 0 without home, to which the leg leads on which the vehicle is; None where it is on none until `begun_by`.
+    """Return the item, counted from 0 without home, whose leg the vehicle is on; None if on none up to `begun_by`.
 
-    `begun_by` is a waypoint of the route. The first leg has no beginning: it is the first item's place.
+    `begun_by` is a waypoint of the route. The first leg has no start: it is the first item's position.
     """
     places = [number for number, item in enumerate(load.mission) if item.command in FLOWN]
     last = max((number for number in places if load.mission[number].waypoint == begun_by), default=None)
@@ -57,7 +57,7 @@ def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> 
 
 @dataclass(frozen=True)
 class CannotCarry:
-    """`is_for_good`: another try will not help."""
+    """Why a command cannot be delivered. `is_for_good`: a retry will not help."""
 
     code: str
     why: tuple[Reason, ...]
@@ -73,11 +73,11 @@ _OFF_ROUTE = _cannot("off-route", "off_first_leg")
 
 @dataclass(frozen=True)
 class DeliveryTask:
-    """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
+    """The task of a delivery: to bring `load` onto the vehicle, or to carry out `order`.
 
-    `onboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
-    is begun in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its take-off. `along`: the
-    order is to return by the rest of this list.
+    `wanted` is the state of UavLink afterwards, `before` its present state. `onboard` is read back before an order that flies it.
+    `begun_by`: the flight starts in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its
+    take-off. `along`: return by the rest of this list.
     """
 
     load: FlightLoad | None = None
@@ -94,13 +94,13 @@ class DeliveryTask:
 
 
 def reason_not_to_start(start: UavCommand) -> CannotCarry | None:
-    """Others that are in the air come near its route."""
+    """Return a refusal if UAVs in the air come near its route, else None."""
     to_wait = reasons_to_carry_later(start)
     return CannotCarry(START_SLOT, (text_reason(to_wait[0].message),)) if to_wait else None
 
 
 def task_of(command: UavCommand) -> DeliveryTask | CannotCarry:
-    """Reads the database."""
+    """Return the task of a command, or why there is none. Reads the database."""
     before = loaded_on(command.uav_id)
     if command.kind == CommandKind.CLEAR_MISSION:
         return DeliveryTask(load=EMPTY, before=before, known=_others(command, EMPTY))
@@ -145,7 +145,7 @@ def _return_along(command: UavCommand, before: LoadedLists | None) -> DeliveryTa
 
 
 def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: datetime) -> dict[str, float] | CannotCarry:
-    """Parameters of a return along the route from where the vehicle is now; reads the database. now_s: by the state's clock."""
+    """Return the parameters of a return along the route from the vehicle's position. Reads the database. now_s: by the state's clock."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
         return _cannot("no-position", "position_unknown", is_for_good=False)
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
@@ -164,7 +164,7 @@ def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: dateti
 
 
 def _approved(command: UavCommand, before: LoadedLists | None) -> ApprovedLoad | CannotCarry:
-    """The flight that a command is about; a resumed one is that which is on the UAV. Raises as `load_of`."""
+    """Return the flight of a command; for a resume, the flight on the UAV. Raises as `load_of`."""
     approval = command.approval
     if approval is None or command.mission is None:
         return _cannot("no-mission", "not_approved")
@@ -180,9 +180,9 @@ def _approved(command: UavCommand, before: LoadedLists | None) -> ApprovedLoad |
 
 
 def reason_not_to(task: DeliveryTask, state: VehicleState, now_s: float) -> CannotCarry | None:
-    """Whether the vehicle stands where its flight was planned to begin, or flies where it was to fly, and counts its heights from there.
+    """Return a refusal unless the vehicle is at its planned start, or on its leg in the air, with its home at the take-off; else None.
 
-    now_s: by the state's clock. What was told longer ago may have been before a boot, or before somebody carried the vehicle away.
+    now_s: by the state's clock. Older values may date from before a boot, or before the vehicle was moved.
     """
     if task.take_off is None:
         return None
@@ -207,7 +207,7 @@ def reason_not_to(task: DeliveryTask, state: VehicleState, now_s: float) -> Cann
 
 
 def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s: float) -> CannotCarry | None:
-    """It is begun with the item at the end of the leg on which the UAV is: each leg until then was looked at."""
+    """Return a refusal unless the UAV is on a leg that was checked for a mid-air start."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
         return _cannot("no-position", "position_unknown", is_for_good=False)
     item = item_to_begin_with(load, begun_by, state)
@@ -222,7 +222,7 @@ def _not_on_the_way(load: FlightLoad, begun_by: int, state: VehicleState, now_s:
 
 
 def as_begun(task: DeliveryTask, state: VehicleState) -> DeliveryTask | CannotCarry:
-    """With the item that it begins with, where it is held in the air. One that flies its list already is told to fly it."""
+    """Return the task with the item to start with, for a UAV that holds in the air; unchanged if it already flies its mission."""
     if task.begun_by is None or task.onboard is None or state.is_in(Mode.MISSION):
         return task
     item = item_to_begin_with(task.onboard, task.begun_by, state)
@@ -230,7 +230,7 @@ def as_begun(task: DeliveryTask, state: VehicleState) -> DeliveryTask | CannotCa
 
 
 def _off_the_leg(take_off: TakeOff, load: FlightLoad, state: VehicleState, now_s: float) -> CannotCarry | None:
-    """In the air it goes on to its present item, straight on from wherever it is."""
+    """Return a refusal if the UAV is off the leg to its present item, to which it would fly straight."""
     if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
         return _cannot("no-position", "position_unknown", is_for_good=False)
     if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
@@ -256,7 +256,10 @@ def _is_new(sent_at_s: float | None, now_s: float) -> bool:
 
 
 def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, reason: str, off_place: str, off_height: str) -> CannotCarry | None:
-    """amsl_m: None is not compared, as is a take-off without a height. `off_place` and `off_height` are codes."""
+    """Return a refusal if a place or its height is away from the take-off. Unknown heights are not compared.
+
+    `off_place` and `off_height` are codes.
+    """
     away_m = _apart_m(place, take_off.position)
     if away_m > settings.TAKE_OFF_DISTANCE_M:
         return _cannot(off_place, f"{reason}_elsewhere", metres=round(away_m), allowed=round(settings.TAKE_OFF_DISTANCE_M))
@@ -270,7 +273,7 @@ def _elsewhere(take_off: TakeOff, place: LonLat, amsl_m: float | None, reason: s
 
 
 def _others(command: UavCommand, wanted: FlightLoad) -> list[FlightLoad]:
-    """Loads that were sent to the vehicle before: what it holds may be one of them."""
+    """Return loads sent to the vehicle before, one of which it may still hold."""
     earlier = UavCommand.objects.filter(uav=command.uav_id, kind=CommandKind.UPLOAD_MISSION, sequence__lt=command.sequence)
     loads = []
     for other in earlier.select_related("approval").order_by("-sequence")[:KNOWN_LOADS]:

@@ -1,4 +1,4 @@
-"""The gateway as a whole: sockets, vehicles, the database, and the clock that drives them."""
+"""The gateway process: sockets, sessions, database and timers."""
 
 import asyncio
 import hashlib
@@ -50,7 +50,7 @@ LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
 async def listen(on_message: Callable[[], None]) -> None:
-    """Until it is cancelled, over outages of the database, too."""
+    """Call `on_message` for each notification until cancelled; reconnects after database outages."""
     parameters = {name: value for name, value in connection.get_connection_params().items() if name in PLAIN}
     while True:
         try:
@@ -66,14 +66,14 @@ async def listen(on_message: Callable[[], None]) -> None:
 
 @dataclass
 class Gateway:
-    """`run` until `stop`. `listening` says where, once it does."""
+    """The gateway: `run` until `stop`. `listening` has its addresses once it listens."""
 
     options: GatewayOptions
     listening: list[str] = field(default_factory=list)
     sessions: dict[int, Session] = field(default_factory=dict)  # by system id
     damages: Counter[str] = field(default_factory=Counter)
     lost_here: Counter[str] = field(default_factory=Counter)
-    _uavs: dict[int, KnownUav] | None = None  # by system id; None until they were read
+    _uavs: dict[int, KnownUav] | None = None  # by system id; None before they are read
     _is_manned: bool = True
     _early: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=20_000))
 
@@ -92,11 +92,15 @@ class Gateway:
         return list(self.sessions.values())
 
     def dropped(self) -> dict[str, int]:
-        """What was no frame of a UAV, by cause."""
+        """Return the counts of received data that was not a UAV's frame, by cause."""
         return {**self.damages, **{str(cause): number for cause, number in self.listeners.damages.items()}}
 
     def not_ready(self) -> list[str]:
-        """A gateway works while it listens and knows its UAVs: a database that goes away later takes no vehicle's address from it."""
+        """Return why the gateway is not ready.
+
+        It is ready while it listens and knows its UAVs. A later database outage does not make it unready, so that vehicles keep its
+        address.
+        """
         if not self.listening:
             return ["it does not listen yet"]
         return [] if self._uavs is not None else ["its UAVs are not known yet"]
@@ -146,10 +150,10 @@ class Gateway:
         )
         return session
 
-    # The run
+    # Process
 
     async def run(self, *, on_listening: Callable[[list[str]], None] | None = None) -> None:
-        """Raises OSError where an address cannot be listened to."""
+        """Run until stopped. Raises OSError if an address cannot be opened."""
         self.listening = await self.listeners.open(self.options.udp, self.options.tcp)
         logger.info("gateway %s listens on %s", self.options.holder, ", ".join(self.listening))
         if on_listening is not None:
@@ -160,13 +164,13 @@ class Gateway:
         stopping.cancel()
         await self._end(loops)
         for task in done - {stopping}:
-            task.result()  # a loop ends only by an error: the process ends with it, and is started again
+            task.result()  # a loop only ends by an error: the process ends and is restarted
 
     def stop(self) -> None:
         self._stop.set()
 
     def stop_on_signals(self, *, after_s: float) -> None:
-        """Ends the process after so many seconds in any case: a database that neither answers nor refuses holds up nothing."""
+        """Stop on SIGTERM and SIGINT, and exit after `after_s` at the latest, even if the database does not respond."""
 
         def stop() -> None:
             self.stop()
@@ -225,7 +229,7 @@ class Gateway:
         self.desk.database.close()
         self.desk.notes.close()
 
-    # What goes on all the time
+    # Periodic tasks
 
     async def _read_fleet(self) -> None:
         self._uavs = await self.database.run(known_uavs)
@@ -252,7 +256,7 @@ class Gateway:
                 await asyncio.sleep(RETRY_S if self.store.is_away else self.options.flush_s)
 
     def _link_states(self) -> list[LinkState]:
-        """Of vehicles that were heard since they were last asked about."""
+        """Return the states of vehicles received since the last call."""
         unsaved = [
             session for session in self.sessions.values() if session.is_unsaved and session.lease is not None and session.last_message_s
         ]
@@ -266,7 +270,7 @@ class Gateway:
             session.is_unsaved |= session.uav.uav_id in uav_ids
 
     async def _tick(self) -> None:
-        """Nobody can command a UAV through a gateway without its database: it then no longer says that a ground station is there."""
+        """Tick the sessions. Without its database a gateway cannot deliver commands, so it then stops sending heartbeats."""
         loop_heartbeats.send_heartbeat(LOOP, within_s=HANGS_AFTER_S)
         now_s, is_manned = time.time(), time.monotonic() - self.leasing.answered_s <= settings.GATEWAY_ALONE_S
         if is_manned != self._is_manned:
@@ -287,7 +291,7 @@ class Gateway:
 
 
 async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:
-    """Cancel until all have ended: libraries that they wait in may drop a cancellation."""
+    """Cancel until all have ended: libraries may drop a cancellation."""
     while pending := [task for task in tasks if not task.done()]:
         for task in pending:
             task.cancel()
@@ -295,5 +299,5 @@ async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:
 
 
 def _link_id(name: str) -> int:
-    """Of the signatures of this gateway: streams of several ones must not be mixed, and there are 256 of them only."""
+    """Return this gateway's link id for signatures. Streams of several gateways must not mix, and there are only 256 ids."""
     return hashlib.sha256(name.encode()).digest()[0]

@@ -1,4 +1,4 @@
-"""One keeper and its vehicle: messages go to and fro, and time goes on, until there is an outcome."""
+"""Runs a protocol state machine with a vehicle's messages and a clock until its outcome."""
 
 import asyncio
 import time
@@ -25,8 +25,8 @@ from telemetry.gateway.session import Session
 from workspace.live.timed_waits import wait_for_event
 
 MAX_NAP_S = 0.5
-OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
-READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
+OTHER_LIST_READ = "other-list"  # code: the list was read and is not the approved one
+READINGS = 2  # a difference counts after a second reading: the first may be a late answer
 
 
 class StateMachine(Protocol):
@@ -53,7 +53,7 @@ class ProtocolDriver:
     _received: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def run(self, *, on_change: Callable[[], None]) -> Any:
-        """The outcome; None once it is not wanted any more, which is asked before anything is sent."""
+        """Return the outcome; None once it is no longer wanted, which is checked before each send."""
         if not self.is_wanted():
             return None
         self.session.listeners.append(self._receive)
@@ -85,7 +85,7 @@ class ProtocolDriver:
 
 @dataclass(frozen=True)
 class OnboardReading:
-    """`code` and `why` say why it is not `is_onboard`."""
+    """Result of a readback. `code` and `why` are the reason if not `is_onboard`."""
 
     is_onboard: bool
     code: str = ""
@@ -99,9 +99,9 @@ def _notify(on_item: Callable[[int], None], before: int, done: int) -> None:
 async def read_back(
     session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
 ) -> OnboardReading | None:
-    """None once it is not wanted any more. `on_item` is told how many items were read of all lists.
+    """Read all lists and compare them with a load; None once it is no longer wanted. `on_item` receives the number of items read so far.
 
-    `beside` names lists of the vehicle's own that were left there, and told, when the load was brought.
+    `beside` has the hashes of the vehicle's own lists that were kept when the load was uploaded.
     """
     before = 0
     for kind in MissionType:
@@ -116,7 +116,7 @@ async def read_back(
 
 
 async def ask_for_the_present(session: Session, is_wanted: Callable[[], bool]) -> None:
-    """Its state then has its home, and of an ArduPilot in the air how it would go on; what it does not tell is as old as it was."""
+    """Request the home position, and for an ArduPilot in the air whether it would restart its mission. Unanswered values keep their age."""
     addressing, rules = Addressing(session.uav.system), settings.TRANSFER_RULES
     asked: list[StateMachine] = [HomeReading(session.state, addressing, rules)]
     if session.autopilot_type is AutopilotType.ARDUPILOT and session.state.is_in_air:
@@ -141,7 +141,7 @@ async def _read(
         return None
     name = kind.name.lower()
     if outcome.code == "unsupported" and not load.of(kind):
-        return OnboardReading(True)  # it has no such list
+        return OnboardReading(True)  # the vehicle has no such list
     if outcome.state is not TransferState.DONE:
         return OnboardReading(False, outcome.code, (Reason("list_not_read", {"list": list_reason(name)}),))
     autopilot_type = session.autopilot_type or AutopilotType.OTHER

@@ -1,4 +1,4 @@
-"""What vehicles were heard to do, told on to the missions, the fleet and whoever looks: what is not stored with the records."""
+"""Reports what is not stored with the records: flown items, RTL parameters, doubts, key use and second senders."""
 
 import logging
 import math
@@ -26,14 +26,14 @@ SENDERS_INTERVAL_S = 2.0
 
 @dataclass
 class Reporter:
-    """`database` is one of its own: it may wait for missions, and leases do not wait behind it."""
+    """Periodic reports. `database` is a separate thread: it may wait for locks on missions, which must not delay leases."""
 
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-tells"))
     _keys_noted_s: dict[int, float] = field(default_factory=dict)  # by credential, monotonic
 
     def loops(self) -> dict[str, tuple[float, Callable[[], Coroutine[Any, Any, None]]]]:
-        """By name: how often [s], and what."""
+        """Return interval [s] and function by name."""
         return {
             "senders": (SENDERS_INTERVAL_S, self.second_senders),
             "flown": (FLOWN_INTERVAL_S, self.flown),
@@ -43,7 +43,7 @@ class Reporter:
         }
 
     async def second_senders(self) -> None:
-        """Two who bear one system id, or bring the same signed frames: which of them is the UAV nobody can know."""
+        """Raise or end alerts for two senders with one system id, or with the same signed frames: either may be the UAV."""
         now_s = time.time()
         for session in self.sessions():
             if session.authentication.second_sender is None or session.peer is None:
@@ -59,7 +59,7 @@ class Reporter:
                 await self.database.run(raise_second_sender, uav_id=session.uav.uav_id)
 
     async def flown(self) -> None:
-        """In order, each as often as it takes."""
+        """Report flown items in order, each until it succeeds."""
         for session in self.sessions():
             while session.flown:
                 flown = session.flown[0]
@@ -86,7 +86,7 @@ class Reporter:
                     session.lists.found.pop(0)
 
     async def keys(self) -> None:
-        """A key's first use at once, as it ends those before it; later ones now and then."""
+        """Report a key's first use at once, as it ends earlier keys; later uses from time to time."""
         now_s, used = time.monotonic(), set()
         for session in self.sessions():
             used |= {key for key in session.authentication.used if now_s - self._keys_noted_s.get(key, -math.inf) >= KEY_AGAIN_S}
@@ -96,7 +96,7 @@ class Reporter:
             self._keys_noted_s |= dict.fromkeys(used, now_s)
 
     async def _notify(self, session: Session, what: str, note: Callable[..., Any], **values: Any) -> None:
-        """What cannot be told of one UAV holds up no other."""
+        """Write a report; a failure for one UAV does not delay the others."""
         try:
             await self.database.run(note, uav_id=session.uav.uav_id, **values)
         except DatabaseUnavailable:

@@ -1,4 +1,4 @@
-"""Which frames are believed to be a UAV's: signed with its key, or, where that is allowed, from the sender that had its system id first."""
+"""Sender authentication: accepts frames signed with a UAV's key, or, if unsigned links are allowed, from its first sender."""
 
 import time
 from collections.abc import Callable, Iterator
@@ -24,15 +24,15 @@ from telemetry.services.links.sightings import Sighting
 SYSTEMS = range(1, 255)
 ASK_AGAIN_S = 5.0
 POSITION = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
-SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
+SENDER_SILENT_S = 5.0  # after this silence another sender may take the system id on an unsigned link
 SECOND_SENDER = "second-sender"
-LATE_BY_S = 1.0  # that a frame may have been under way for longer than others before it
-COPIED = "copied"  # taken before, and brought by a second address
+LATE_BY_S = 1.0  # maximum difference of transmission times between frames
+COPIED = "copied"  # accepted before, and delivered again by a second address
 
 
 @dataclass
 class UnknownSenders:
-    """`note` is called with each sighting. A vehicle is asked for its position until it has told one."""
+    """Vehicles that are no UAV's. `note` is called with each sighting. A vehicle is asked for its position until it reports one."""
 
     note: Callable[[Sighting], None]
     _positions: dict[int, LonLat] = field(default_factory=dict)
@@ -40,7 +40,7 @@ class UnknownSenders:
     _writer: FrameWriter = field(default_factory=lambda: FrameWriter(OWN_SYSTEM, OWN_COMPONENT), repr=False)
 
     def receive(self, frame: Frame, peer: Peer, now_s: float) -> None:
-        """now_s: seconds since 1970."""
+        """Take a frame. now_s: Unix seconds."""
         if frame.message_id not in (mavlink.MAVLINK_MSG_ID_HEARTBEAT, POSITION) or frame.system not in SYSTEMS:
             return
         message = message_of(frame)
@@ -54,12 +54,12 @@ class UnknownSenders:
             self._note(frame, message, peer, now_s)
 
     def forget(self, system: int) -> None:
-        """It belongs to a UAV by now; another vehicle may have its number later."""
+        """Forget a system id that now belongs to a UAV; another vehicle may have it later."""
         self._positions.pop(system, None)
         self._asked_s.pop(system, None)
 
     def _ask(self, system: int, heartbeat: Message, peer: Peer) -> None:
-        """ArduPilot tells where it is only to whoever asks."""
+        """Request the position, which ArduPilot only sends on request."""
         now_s = time.monotonic()
         is_asked = now_s - self._asked_s.get(system, -ASK_AGAIN_S) < ASK_AGAIN_S
         if system in self._positions or is_asked or autopilot_type_of(heartbeat.autopilot) not in COMMANDED:
@@ -85,10 +85,11 @@ class UnknownSenders:
 
 @dataclass
 class SenderAuthentication:
-    """Times are seconds since 1970. The last frame was believed at `last_message_s`, of `addresses.main` unless it was a second one's.
+    """Sender authentication of one UAV. Times are Unix seconds.
 
-    `credential_id` is that of the key by which the last one was signed, `used` those since somebody asked last, and `ahead_s` by how much
-    the UAV's signing clock was ahead of ours then.
+    The last frame was accepted at `last_message_s`, from `addresses.main` unless from a second address. `credential_id` is the key that
+    signed the last one, `used` are the keys used since the last report. `ahead_s` is by how much the UAV's signing clock was ahead of the
+    server's.
     """
 
     uav: KnownUav
@@ -109,30 +110,30 @@ class SenderAuthentication:
 
     @property
     def key(self) -> bytes | None:
-        """That the UAV signs with, as far as it is known: ours to sign with, too."""
+        """Return the key that the UAV signs with, as far as known; frames to it are signed with it, too."""
         keys = dict(self.uav.keys)
         return self.uav.key if self.credential_id is None else keys.get(self.credential_id, self.uav.key)
 
     def refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
-        """None: it is believed."""
+        """Return why a frame is refused; None: accepted."""
         refused = self._refusal(frame, peer, now_s)
         if refused is None:
             self.last_message_s = now_s
         return refused
 
     def could_be(self, frame: Frame, now_s: float) -> bool:
-        """Of a frame that waits to be received: whether it is worth keeping."""
+        """Return whether a frame that waits for a lease is worth keeping."""
         if self._checks and frame.is_signed:
             fresh = (SignatureCheck(check.key) for check in self._checks.values())
             return any(check.refusal(frame, now_s) in (None, Refusal.TOO_OLD) for check in fresh)
         return self.uav.allows_unsigned
 
     def key_of(self, frame: Frame) -> bytes | None:
-        """By which it was signed, if by one of the UAV's."""
+        """Return the key of the UAV that signed the frame, else None."""
         return next((check.key for check in self._checks.values() if check.is_signed_right(frame)), None)
 
     def change(self, uav: KnownUav) -> None:
-        """The UAV's row or key was changed. Who was believed by a key that counts no more is not believed, nor answered, any more."""
+        """Take a changed row or key. A sender accepted by a key that is no longer valid is neither accepted nor answered."""
         self._checks = {number: self._checks.get(number) or SignatureCheck(key) for number, key in uav.keys}
         is_by_other_key = self.credential_id not in self._checks if self.credential_id is not None else uav.keys != self.uav.keys
         if is_by_other_key or (self.uav.allows_unsigned and not uav.allows_unsigned and self.credential_id is None):
@@ -141,9 +142,9 @@ class SenderAuthentication:
         self.uav = uav
 
     def take_up(self, signing: dict[str, Any], since_s: float) -> None:
-        """What another gateway left of the times of signatures (`to_json`); what was signed before since_s was not sent to this one.
+        """Adopt the signature timestamps of the previous gateway (`to_json`). Frames signed before since_s were not sent to this gateway.
 
-        A clock that was late then may be so still. One that was ahead may have been set since, and is not waited for.
+        A clock that was late may still be late. One that was ahead may have been corrected, and is not waited for.
         """
         since = timestamp_at(since_s - LATE_BY_S + min(float(signing.get("ahead_s", 0.0)), 0.0))
         for credential_id, check in self._checks.items():
@@ -154,7 +155,7 @@ class SenderAuthentication:
                 check.since = since
 
     def to_json(self) -> dict[str, Any]:
-        """Empty where there is no key."""
+        """Return the signature timestamps for the next gateway; empty without a key."""
         if not self._checks:
             return {}
         credential_id = self.credential_id if self.credential_id in self._checks else next(iter(self._checks))
@@ -162,7 +163,7 @@ class SenderAuthentication:
 
     @property
     def _has_shown_its_key(self) -> bool:
-        """To this gateway or one before it: who speaks without it now is somebody else, though unsigned frames be allowed."""
+        """Return whether the UAV has signed to this gateway or an earlier one: unsigned frames are then refused even where allowed."""
         return any(check.last for check in self._checks.values())
 
     def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
@@ -190,7 +191,7 @@ class SenderAuthentication:
         return refusal
 
     def _by_key(self, frame: Frame, now_s: float) -> Iterator[tuple[int, Refusal | None]]:
-        """The key that signed it, and what speaks against it all the same."""
+        """Yield the key that signed the frame, and why it is refused nevertheless."""
         for credential_id, check in self._checks.items():
             refusal = check.refusal(frame, now_s)
             if refusal is not Refusal.WRONG_SIGNATURE:
@@ -198,5 +199,5 @@ class SenderAuthentication:
 
 
 def is_within(at_s: float, now_s: float, span_s: float) -> bool:
-    """Also where our clock of the day was set back since: what seems to lie ahead is no reason to wait for it."""
+    """Return whether two times are within a span, in either order, so that a clock that was set back causes no long wait."""
     return abs(now_s - at_s) < span_s

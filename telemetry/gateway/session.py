@@ -1,4 +1,4 @@
-"""One vehicle: what of its frames is believed, what they tell, and what goes back to it."""
+"""Session of one vehicle: authenticates its frames, decodes them, and sends messages to it."""
 
 import logging
 import math
@@ -34,23 +34,25 @@ from telemetry.services.links.links import Lease, LinkState
 from telemetry.services.links.onboard_lists import Doubt
 
 WINDOW_S = 10.0
-TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these
-QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
+TO_WHO_SENDS_A_LIST = frozenset(
+    {"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"}
+)  # only in transfers that write a list; reading one causes none of these
+QUIET_S = 10.0  # after one of our transfers, its answers may still arrive
 logger = logging.getLogger(__name__)
-MAX_WAITING = 5_000  # frames of a vehicle that is not served yet
-RECEIVED_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
+MAX_WAITING = 5_000  # frames of a vehicle that waits for a lease
+RECEIVED_WITHIN_S = 5.0  # otherwise non-urgent commands wait for it, or for another gateway
 HEARTBEAT_AGAIN_S = 1.0
 LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 SEND_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
-ADDRESS_GOOD_S = 3_600.0  # no flight lasts longer: whoever has an address for longer without a word may not be the UAV any more
+ADDRESS_GOOD_S = 3_600.0  # longer than any flight: after this silence an address may belong to another host
 Listener = Callable[[Message, float], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """None before a whole window was seen."""
+    """Receive rate; None before a whole window."""
 
     bytes_s: float | None = None
     messages_s: float | None = None
@@ -58,7 +60,7 @@ class Rate:
 
 @dataclass
 class LinkRate:
-    """Of what was received in the last whole window. Times are seconds since 1970."""
+    """Rate of the last whole window. Times are Unix seconds."""
 
     _begin_s: float | None = None
     _bytes: int = 0
@@ -82,7 +84,7 @@ class LinkRate:
 
 @dataclass
 class ListWatch:
-    """Of one vehicle. Times are monotonic seconds; `found` is for whoever tells it on to take out."""
+    """Detects changes of one vehicle's lists by others. Times are monotonic seconds; the reporter takes the entries of `found`."""
 
     found: list[tuple[Doubt, float]] = field(default_factory=list)
     _transferred_s: float = -math.inf
@@ -90,12 +92,12 @@ class ListWatch:
     _boot: str | None = None
 
     def note_sent(self, message: Message, now_s: float) -> None:
-        """By us."""
+        """Record a message sent by this gateway."""
         if message.get_type().startswith("MISSION_"):
             self._transferred_s = now_s
 
     def check(self, message: Message, state: VehicleState, now_s: float) -> None:
-        """After the vehicle's state has taken the message."""
+        """Check a message after the vehicle's state has received it."""
         is_ours = now_s - self._transferred_s <= QUIET_S
         if message.get_type() in TO_WHO_SENDS_A_LIST and not (is_ours and _is_to_us(message)):
             self._doubt(Doubt.OTHER_STATION, now_s)
@@ -105,7 +107,7 @@ class ListWatch:
             self._total = state.mission_total
 
     def check_boot(self, boot: str, now_s: float) -> None:
-        """boot: what names the present run of the vehicle's clock."""
+        """Check for a reboot. boot: key of the present run of the vehicle's clock."""
         if self._boot not in (None, boot):
             self._doubt(Doubt.REBOOTED, now_s)
         self._boot = boot
@@ -120,27 +122,29 @@ def _is_to_us(message: Message) -> bool:
 
 @dataclass
 class Session:
-    """`records`, `texts` and `flown` are what is to be stored; whoever stores them takes them out. Serves once it has a lease."""
+    """The session. `records`, `texts` and `flown` are to be stored, and removed by the code that stores them. It serves once it has a
+    lease.
+    """
 
     uav: KnownUav
     records: deque[NewRecord]
     link_id: int
     lease: Lease | None = None
-    held_until_s: float = 0.0  # monotonic: past it another gateway may have the vehicle, and nothing is sent
-    losses: Counter[str] = field(default_factory=Counter)  # also those that gateways before this one have seen
+    held_until_s: float = 0.0  # monotonic; after it another gateway may serve the vehicle, and nothing is sent
+    losses: Counter[str] = field(default_factory=Counter)  # including those counted by earlier gateways
     lost_here: Counter[str] = field(default_factory=Counter)  # of all sessions of this gateway
     texts: list[StatusText] = field(default_factory=list)
     flown: list[FlownMissionItem] = field(default_factory=list)
     authentication: SenderAuthentication = field(init=False)
     state: VehicleState = field(init=False)
     time: VehicleTime = field(default_factory=VehicleTime)
-    listeners: list[Listener] = field(default_factory=list)  # hear every message of the autopilot
+    listeners: list[Listener] = field(default_factory=list)  # receive every message of the autopilot
     log: Callable[[bytes, int, float], None] | None = None
     is_unsaved: bool = False
     message_requests: MessageRequests = field(default_factory=MessageRequests)
     lists: ListWatch = field(default_factory=ListWatch)
     rate: LinkRate = field(default_factory=LinkRate)
-    commanded_s: float | None = None  # monotonic: when a command was last under way
+    commanded_s: float | None = None  # monotonic time of the last command
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MAX_WAITING))
     _writer: FrameWriter = field(init=False, repr=False)
     _reporter: MeasurementDecoder = field(default_factory=MeasurementDecoder)
@@ -148,17 +152,17 @@ class Session:
     _quality: LinkQuality = field(default_factory=LinkQuality)
     _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
-    _greeted: dict[str, float] = field(default_factory=dict)  # when each address was greeted last
+    _greeted: dict[str, float] = field(default_factory=dict)  # time of the last heartbeat to each address
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
         self.authentication = SenderAuthentication(self.uav)
         self._writer = FrameWriter(OWN_SYSTEM, OWN_COMPONENT, self.link_id, self.uav.key)
 
-    # Frames in
+    # Receiving
 
     def receive(self, frame: Frame, peer: Peer, now_s: float) -> None:
-        """now_s: seconds since 1970, as all times here but those of the vehicle's state and the listener, which are monotonic."""
+        """Take a frame. now_s: Unix seconds, as all times here but those of the vehicle's state and the listeners, which are monotonic."""
         if self.lease is None:
             if self.authentication.could_be(frame, now_s):
                 self.waiting.append((frame, peer, now_s))
@@ -187,18 +191,18 @@ class Session:
         self.lost_here[cause] += 1
 
     def note_station(self, peer: Peer) -> None:
-        """Another ground station was heard from this address."""
+        """Record a message of another ground station from this address."""
         if peer == self.peer:
             self.message_requests.note_station(time.monotonic())
 
     def receive_radio(self, frame: Frame, now_s: float) -> None:
-        """Of the radio that the vehicle's frames come through; it cannot sign."""
+        """Take a frame of the vehicle's radio, which cannot sign."""
         message = message_of(frame)
         if message is not None:
             self._quality.receive_radio(message, now_s)
 
     def serve(self, lease: Lease, held_until_s: float) -> deque[tuple[Frame, Peer, float]]:
-        """From now on, with what the gateway before has left. Returns what has waited, for the caller to receive again."""
+        """Begin to serve with the previous gateway's state. Returns the frames that waited, for the caller to receive again."""
         waiting, self.waiting = self.waiting, deque(maxlen=self.waiting.maxlen)
         self.lease, self.held_until_s = lease, held_until_s
         self.losses = Counter(lease.losses)
@@ -210,7 +214,7 @@ class Session:
         return waiting
 
     def change(self, uav: KnownUav) -> None:
-        """The UAV's row or key was changed."""
+        """Take a changed row or key of the UAV."""
         self.authentication.change(uav)
         self.uav = uav
 
@@ -231,25 +235,25 @@ class Session:
         return self.lease is not None and time.monotonic() < self.held_until_s
 
     def is_served(self, now_s: float, within_s: float) -> bool:
-        """Whether it is ours and there, and says how it is: after an outage it may have been armed, or be another one."""
+        """Return whether this gateway serves it and its state is current: after an outage it may be armed, or be another vehicle."""
         is_here = is_within(self.last_message_s, now_s, within_s) and self.state.is_fresh(time.monotonic(), within_s)
         return self.is_held and is_here and self.state.autopilot_type is not None
 
     def may_receive(self, now_s: float) -> bool:
-        """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
+        """Return whether it can be sent to, even if nothing is received: it was recently accepted from a known address."""
         return self.is_held and self._has_address(now_s) and self.state.can_be_stopped
 
     def _has_address(self, now_s: float) -> bool:
         return self.peer is not None and is_within(self.last_message_s, now_s, ADDRESS_GOOD_S)
 
     def unsettled_until_s(self, settling_s: float) -> float | None:
-        """Until when what was sent before may still arrive; monotonic."""
+        """Return until when an earlier message may still arrive, monotonic; None without one."""
         return None if self.commanded_s is None else self.commanded_s + settling_s
 
-    # Frames out
+    # Sending
 
     def send(self, messages: list[Message], now_s: float | None = None) -> None:
-        """Nothing while it is not surely ours."""
+        """Send messages; nothing unless the lease is surely held."""
         if self.is_held:
             self._send(messages, time.time() if now_s is None else now_s)
 
@@ -268,7 +272,9 @@ class Session:
         self.is_unsaved |= bool(messages)
 
     def tick(self, now_s: float, *, is_manned: bool = True) -> None:
-        """Once a second. Without a heartbeat a vehicle thinks that it is left alone, and so it is unless `is_manned`."""
+        """Send the heartbeat and due requests, once a second. Without `is_manned` no heartbeat is sent, so that the vehicle detects the
+        loss of its ground station.
+        """
         self.texts += self._collector.tick(now_s)
         if self.lease is None or not self._has_address(now_s):
             return
@@ -278,11 +284,11 @@ class Session:
             has_position = is_within(self._position_s, now_s, POSITIONS_MISSING_S)
             self.send(self.message_requests.due(self.state, time.monotonic(), has_position=has_position), now_s)
 
-    # What is known
+    # State
 
     @property
     def limits(self) -> dict[str, float]:
-        """Of ground_station.limits.PARAMETERS those that the vehicle has told, in metres."""
+        """Return those of mavlink.mission_sync.limits.PARAMETERS that the vehicle has reported, in metres."""
         return {name: self.state.parameters[name] for name in PARAMETERS if name in self.state.parameters}
 
     def link_state(self) -> LinkState:
@@ -318,7 +324,7 @@ class Session:
         return signing and signing | {"sent": self._writer.last_timestamp}
 
     def _answer_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
-        """Whoever knows the key but not the time sets its clock by a signed frame of ours, whoever else sends its frames."""
+        """Answer a vehicle that has the key but not the time by a signed heartbeat, which sets its clock, whoever else sends its frames."""
         self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, HEARTBEAT_AGAIN_S)}
         if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
             self._greeted[peer.name] = now_s
@@ -344,12 +350,12 @@ class Session:
             listener(message, monotonic_s)
 
     def forget_flown(self) -> None:
-        """Another list was put on it: what it reached before is none of that one's."""
+        """Reset the progress after an upload: items reached before belong to another list."""
         self._flight.forget()
         self.flown.clear()
 
     def _note_flown(self, flown: list[FlownMissionItem]) -> None:
-        """Of items that were reached and wait to be told the last one tells of all; the first may be being told."""
+        """Queue reached items. Only the last waiting one is needed; the first may be in transmission."""
         for item in flown:
             if len(self.flown) > 1 and not (self.flown[-1].is_down or item.is_down):
                 self.flown.pop()
@@ -384,7 +390,7 @@ class Session:
 
 
 def _reports_no_place(message: Message) -> bool:
-    """A position or a home that is none; the rest of such a message is no use to the vehicle's state either."""
+    """Return whether a position or home message has no position; such a message is ignored."""
     if message.get_type() == "GLOBAL_POSITION_INT":
         return not is_place(message.lat, message.lon)
     if message.get_type() == "HOME_POSITION":

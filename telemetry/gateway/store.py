@@ -1,4 +1,4 @@
-"""What was heard, on its way into the database: nothing is lost while that is away, as long as it fits."""
+"""Buffer of received data for the database: keeps it during an outage, up to a limit."""
 
 import logging
 from collections import Counter, deque
@@ -19,7 +19,7 @@ MAX_TEXTS = 10_000
 
 @dataclass
 class Store:
-    """`links` says at each store what is known of the vehicles by then; `unsaved` is told what of it was not stored."""
+    """The buffer. `links` returns the vehicles' states at each store; `unsaved` receives those that could not be stored."""
 
     database: DatabaseThread
     holder: str
@@ -31,15 +31,15 @@ class Store:
     sightings: dict[int, Sighting] = field(default_factory=dict)
     stored: int = 0
     duplicates: int = 0
-    lost: int = 0  # for want of room, or because they could not be stored at all
+    lost: int = 0  # for lack of room, or because they could not be stored
     is_away: bool = False
 
     def note_sighting(self, sighting: Sighting) -> None:
-        """The newest of each system id."""
+        """Keep the newest sighting of each system id."""
         self.sightings[sighting.system] = sighting
 
     async def flush(self) -> bool:
-        """Stores what there is, at most so much at once. Returns whether more waits; while the database is away, False."""
+        """Store a batch. Returns whether more is waiting; False while the database is unavailable."""
         self._drop_overflow()
         records = [self.records.popleft() for _ in range(min(len(self.records), RECORDS_AT_ONCE))]
         texts, self.texts = self.texts, deque(maxlen=MAX_TEXTS)
@@ -55,7 +55,7 @@ class Store:
             self._notify(is_away=True, why=str(error))
             return False
         finally:
-            if not is_stored:  # also when the loop is cancelled: what is stored after all is stored once
+            if not is_stored:  # also when the loop is cancelled; storing twice is harmless
                 self.records.extendleft(reversed(records))
                 self.texts.extendleft(reversed(texts))
                 self.sightings = sightings | self.sightings
@@ -75,7 +75,7 @@ class Store:
             self.duplicates += counted.duplicates
 
     async def _store_what_can_be(self, received: ReceivedBatch) -> None:
-        """One value that the database refuses must not keep out the rest."""
+        """Store in parts, so that one value that the database refuses does not block the rest."""
         for part in _parts(received):
             if len(part.records) <= 1 and part == received:
                 logger.exception("this could not be stored: %s", received.records or received)
@@ -84,7 +84,7 @@ class Store:
                 await self._store(part)
 
     def _drop_overflow(self) -> None:
-        """The oldest of those who have most: one that sends far too much takes no room from the others."""
+        """Drop the oldest records of the UAVs that have most, so that a UAV that sends too much does not displace others."""
         before = len(self.records)
         if before <= self.most_records:
             return
@@ -107,7 +107,7 @@ class Store:
 
 
 def _most_of_each(numbers: Iterable[int], most: int) -> int:
-    """To how many each is cut so that no more than `most` are left of all."""
+    """Return the number to which each is cut so that at most `most` remain in total."""
     room = most
     by_size = sorted(numbers)
     for place, number in enumerate(by_size):
@@ -119,7 +119,7 @@ def _most_of_each(numbers: Iterable[int], most: int) -> int:
 
 
 def _parts(received: ReceivedBatch) -> Sequence[ReceivedBatch]:
-    """Records by halves; apart from them links, texts and sightings one by one."""
+    """Return halves of the records; without records, links, texts and sightings one by one."""
     if len(received.records) > 1 or (received.records and (received.links or received.texts or received.sightings)):
         middle = max(len(received.records) // 2, 1)
         halves = [ReceivedBatch(records) for records in (received.records[:middle], received.records[middle:]) if records]

@@ -1,1 +1,1 @@
-"""Live pages' end on the server: rows are followed once a process and organisation, whoever many pages are open."""
+"""Server side of live pages: follows rows once per process and organisation, for any number of open pages."""

@@ -1,4 +1,4 @@
-"""One organisation's rows, followed for all its open pages at once."""
+"""Follows one organisation's rows for all its open pages."""
 
 import asyncio
 import logging
@@ -15,21 +15,21 @@ from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
-POLL_INTERVAL_S = 1.0  # whether a word has come or not
-POLL_PAUSE_S = 0.1  # between two looks, however many words come
+POLL_INTERVAL_S = 1.0  # without a notification
+POLL_PAUSE_S = 0.1  # between two polls, however many notifications arrive
 
 SnapshotReader = Callable[[int, Collection[UUID], Collection[str], LiveSnapshot], Awaitable[LiveSnapshot]]
 
 
 class Feed:
-    """`run` until it is cancelled. Pages come and go by `join` and `leave`, all in one event loop."""
+    """The feed: `run` until cancelled. Pages `join` and `leave`, all in one event loop."""
 
     def __init__(self, organisation_id: int, read_snapshot: SnapshotReader) -> None:
         self.organisation_id = organisation_id
         self.readers: set[Reader] = set()
         self._read_snapshot = read_snapshot
         self._snapshot = LiveSnapshot()
-        self._waiting: set[Reader] = set()  # for the first look that has begun since they came
+        self._waiting: set[Reader] = set()  # for the first poll that begins after they joined
         self._message = asyncio.Event()
         self._bodies: dict[tuple[UUID | None, str, frozenset[Key] | None], str] = {}
 
@@ -46,7 +46,7 @@ class Feed:
         self._message.set()
 
     def next_message(self, reader: Reader) -> str:
-        """Of a reader to whom something is to be told. Pages that are told the same share the work."""
+        """Return the message that is due for a reader. Readers with the same content share it."""
         sequence, keys = reader.take()
         place = (reader.mission, reader.language, keys)
         body = self._bodies.get(place)
@@ -68,7 +68,7 @@ class Feed:
         languages = {reader.language for reader in self.readers}
         try:
             snapshot = await self._read_snapshot(self.organisation_id, missions, languages, self._snapshot)
-        except DatabaseError as error:  # away for a moment: the next look tells
+        except DatabaseError as error:  # unavailable for now: the next poll retries
             logger.debug("live pages cannot be told: %r", error)
             self._waiting |= newcomers & self.readers
             return

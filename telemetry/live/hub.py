@@ -1,4 +1,4 @@
-"""The one place of a process that follows rows for live pages: one feed an organisation, as long as a page of it is open."""
+"""The hub of a process: one feed per organisation, while a page of it is open."""
 
 import asyncio
 import logging
@@ -25,7 +25,7 @@ HEALTH_INTERVAL_S = 10.0
 
 
 async def listen(on_message: Callable[[int], None]) -> None:
-    """Until it is cancelled, over outages of Redis, too. on_message is given the organisation's key."""
+    """Call `on_message` with the organisation's key for each notification until cancelled; reconnects after Redis outages."""
     every = live_channel("*")
     prefix = every.removesuffix("*")
     while True:
@@ -41,7 +41,7 @@ async def listen(on_message: Callable[[int], None]) -> None:
 
 
 class Hub:
-    """Of one event loop. Reads in a thread of its own, so that it waits for no page's rights to be looked up."""
+    """The hub of one event loop. It reads in its own thread, so that it does not wait for permission checks of pages."""
 
     def __init__(self) -> None:
         self._feeds: dict[int, tuple[Feed, asyncio.Task[None]]] = {}
@@ -84,7 +84,7 @@ _hubs: WeakKeyDictionary[asyncio.AbstractEventLoop, Hub] = WeakKeyDictionary()
 
 
 def hub_here() -> Hub:
-    """That of the running event loop: one a process, as it is served."""
+    """Return the hub of the running event loop: one per process in operation."""
     loop = asyncio.get_running_loop()
     if loop not in _hubs:
         _hubs[loop] = Hub()

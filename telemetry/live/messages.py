@@ -1,4 +1,4 @@
-"""What is said to live pages. Objects are texts already: a message is put together of them."""
+"""Messages to live pages, composed of objects that are already JSON text."""
 
 from collections.abc import Iterable
 from datetime import UTC, datetime
@@ -18,12 +18,12 @@ def message(kind: str, sequence: int, body: str = "") -> str:
 
 
 def everything(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) -> str:
-    """The body of a snapshot."""
+    """Return the body of a snapshot message."""
     return f'"live":{live_text(read_snapshot, mission, language)}'
 
 
 def live_text(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) -> str:
-    """`{"uavs": […], …}`, as GET /api/v1/live has it, too."""
+    """Return `{"uavs": […], …}`, as in GET /api/v1/live."""
     texts: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for key, entry in read_snapshot.shown.items():
         text = read_snapshot.text(key, language)
@@ -33,7 +33,7 @@ def live_text(read_snapshot: LiveSnapshot, mission: UUID | None, language: str) 
 
 
 def changes(read_snapshot: LiveSnapshot, mission: UUID | None, language: str, keys: Iterable[Key]) -> str:
-    """The body of a message of changes: what is shown, whole; of the rest that it is gone."""
+    """Return the body of a changes message: shown objects as a whole, and the ids of removed ones."""
     there: dict[str, list[str]] = {kind: [] for kind in KINDS}
     removed: dict[str, list[str]] = {kind: [] for kind in KINDS}
     for key in sorted(keys):

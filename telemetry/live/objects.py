@@ -1,4 +1,4 @@
-"""What live pages show, whole: one JSON text an object, in the reader's language."""
+"""Objects of live pages: one JSON text each, in the reader's language."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
@@ -17,7 +17,7 @@ from telemetry.models import Alert
 from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
 
-SAME_IN_ALL = ""  # the language of what has no words
+SAME_IN_ALL = ""  # language key of objects without text
 
 
 def missions_json(mission_ids: Iterable[UUID]) -> list[dict[str, Any]]:
@@ -35,7 +35,7 @@ def missions_json(mission_ids: Iterable[UUID]) -> list[dict[str, Any]]:
 
 
 def _places(mission_ids: list[UUID]) -> dict[int, int]:
-    """By target the place of the UAV that flies to it."""
+    """Return the place of the assigned UAV by target."""
     visits = Waypoint.objects.filter(route__mission__in=mission_ids, kind=WaypointKind.TARGET)
     return dict(visits.order_by().values_list("target", "route__mission_uav__sequence"))
 
@@ -68,12 +68,12 @@ def _mission_json(mission: Mission, uavs: list[dict[str, Any]], targets: list[In
 
 
 def language_of(kind: str, language: str) -> str:
-    """That in which objects of the kind are kept for a reader of `language`."""
+    """Return the language in which objects of a kind are stored for a reader of `language`."""
     return SAME_IN_ALL if kind == "uavs" else language
 
 
 def texts_of(keys: Iterable[Key], language: str) -> dict[Key, str]:
-    """Those that are there no more are left out."""
+    """Return the texts of the objects that still exist."""
     by_kind: dict[str, list[str]] = defaultdict(list)
     for kind, key in keys:
         by_kind[kind].append(key)

@@ -1,4 +1,4 @@
-"""One open page: what it has been told, and what it has still to be told. Slow pages are told the latest of each object, and no more."""
+"""State of one open page: what was sent and what is due. Slow pages receive only the latest state of each object."""
 
 import asyncio
 import time
@@ -10,16 +10,16 @@ from telemetry.selectors.live import Key
 from workspace.live.timed_waits import wait_for_event
 
 MAX_UNCONFIRMED = 2  # messages
-RETRY_INTERVAL_S = 1.0  # a page is given everything, at most
+RETRY_INTERVAL_S = 1.0  # between two snapshots to a page
 
 
 class SaysNonsense(ValueError):
-    """It confirms what it was never told."""
+    """The page acknowledges a message that was never sent."""
 
 
 @dataclass(eq=False)
 class Reader:
-    """`mission` is None for pages of the whole organisation. Whoever follows the rows calls `begin`, `note` and `end`."""
+    """One open page. `mission` is None for pages of the whole organisation. The feed calls `begin`, `note` and `end`."""
 
     organisation_id: int
     mission: UUID | None
@@ -34,12 +34,12 @@ class Reader:
     _changed: asyncio.Event = field(default_factory=asyncio.Event)
 
     def begin(self) -> None:
-        """What it has to be told is known from now on."""
+        """Mark the page ready: the feed now knows what to send."""
         self.is_ready = True
         self._changed.set()
 
     def end(self) -> None:
-        """What it shows is not there any more."""
+        """Mark the page ended: its mission no longer exists."""
         self.is_ended = True
         self._changed.set()
 
@@ -49,21 +49,21 @@ class Reader:
             self._changed.set()
 
     def confirm(self, sequence: int) -> None:
-        """Raises SaysNonsense."""
+        """Record an acknowledgement. Raises SaysNonsense."""
         if sequence > self.sequence:
             raise SaysNonsense
         self.confirmed = max(self.confirmed, sequence)
         self._changed.set()
 
     def again(self) -> None:
-        """It has lost count: nothing of what it was told is waited for."""
+        """Send everything again to a page that missed a number; outstanding acknowledgements are dropped."""
         self.confirmed, self.wants_all = self.sequence, True
         self.dirty.clear()
         self._changed.set()
 
     @property
     def is_full(self) -> bool:
-        """Nothing more is sent before it has confirmed some."""
+        """Return whether sending waits for an acknowledgement."""
         return self.sequence - self.confirmed >= MAX_UNCONFIRMED
 
     @property
@@ -73,11 +73,11 @@ class Reader:
 
     @property
     def waits_s(self) -> float:
-        """Until it may be given everything again."""
+        """Return the seconds until everything may be sent again."""
         return self.given_all_s + RETRY_INTERVAL_S - time.monotonic() if self.wants_all else 0.0
 
     async def due(self, within_s: float) -> bool:
-        """Whether there is something to be told within that time."""
+        """Return whether something is to be sent within that time."""
         until_s = time.monotonic() + within_s
         while not self.is_due:
             left_s = until_s - time.monotonic()
@@ -88,7 +88,7 @@ class Reader:
         return True
 
     def take(self) -> tuple[int, frozenset[Key] | None]:
-        """The number of the next message, and what is in it; None is everything."""
+        """Return the number of the next message, and its keys; None for everything."""
         self.sequence += 1
         keys = None if self.wants_all else frozenset(self.dirty)
         if self.wants_all:

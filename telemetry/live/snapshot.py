@@ -1,4 +1,4 @@
-"""One look at an organisation's rows: what is shown now, and the texts of what has changed since the look before."""
+"""Snapshot of an organisation's rows: the objects shown now, and the texts of those changed since the previous snapshot."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ class Text:
 
 @dataclass(frozen=True)
 class LiveSnapshot:
-    """`texts` by language; what has no words is under SAME_IN_ALL."""
+    """A snapshot. `texts` are by language; objects without text are under SAME_IN_ALL."""
 
     shown: Mapping[Key, ShownObject] = field(default_factory=dict)
     texts: Mapping[str, Mapping[Key, Text]] = field(default_factory=dict)
@@ -32,14 +32,14 @@ class LiveSnapshot:
 
 
 def read_snapshot(organisation_id: int, missions: Collection[UUID], languages: Collection[str], before: LiveSnapshot) -> LiveSnapshot:
-    """An object that changes while it is read may be newer than its version: then the next look finds it changed, and tells it again."""
+    """Return the snapshot. An object that changes during the read may be newer than its version; the next poll then sends it again."""
     shown = shown_live(organisation_id, missions)
     texts = {language: _texts(shown, language, before.texts.get(language, {})) for language in {SAME_IN_ALL, *languages}}
     return LiveSnapshot(shown, texts)
 
 
 def page_snapshot(organisation_id: int, mission: UUID | None, language: str, *, known: str = "") -> LiveSnapshot:
-    """Of one page alone; without texts where it is what has the ETag `known`."""
+    """Return the snapshot of one page; without texts if its ETag equals `known`."""
     shown = shown_live(organisation_id, [] if mission is None else [mission])
     snapshot = LiveSnapshot({key: entry for key, entry in shown.items() if entry.is_for(mission)})
     if known and known == etag_of(snapshot, language):
@@ -53,7 +53,7 @@ def etag_of(snapshot: LiveSnapshot, language: str) -> str:
 
 
 def changed_between(before: LiveSnapshot, now: LiveSnapshot, mission: UUID | None) -> set[Key]:
-    """What pages of the mission, or of the whole organisation, are to be told: changed, come, or gone."""
+    """Return the keys to send to pages of the mission, or of the organisation: changed, added or removed."""
     changed = {
         key
         for key, entry in now.shown.items()

@@ -1,4 +1,4 @@
-"""UAVs as live pages show them: the link, what was measured, what is estimated."""
+"""UAVs of live pages: link, measured and estimated values."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -19,7 +19,7 @@ MEASURED = (
     "pitch_deg", "battery_percent", "mode", "is_armed", "is_in_air", "gps_fix", "satellites", "hdop", "link_quality_percent",
     "wind_speed_mps", "wind_from_deg", "waypoint_sequence",
 )  # fmt: skip
-INTERVALS_S = {LinkKind.MAVLINK: 1.0, LinkKind.HTTP: 10.0}  # between reports, until they are known
+INTERVALS_S = {LinkKind.MAVLINK: 1.0, LinkKind.HTTP: 10.0}  # assumed intervals between reports
 GROUPS = ("position", "height", "speed", "attitude", "battery", "state", "link", "gps", "wind", "waypoint")
 
 
@@ -30,7 +30,7 @@ def uavs_json(uav_ids: Iterable[int]) -> list[dict[str, Any]]:
 
 
 def measured_json(stored: Mapping[str, Mapping[str, Any]] | None) -> dict[str, Any] | None:
-    """Flat, as of the newest report; `measured_at_of` has the time of each group of values, null where it was never told."""
+    """Return the newest values, flat; `measured_at_of` has the time of each group, null if never reported."""
     if not stored:
         return None
     values = {name: value for group in stored.values() for name, value in group.items()}
@@ -44,9 +44,9 @@ def measured_json(stored: Mapping[str, Mapping[str, Any]] | None) -> dict[str, A
 
 
 def rhythm_of(interval_s: float, stated: Sequence[Mapping[str, float]]) -> dict[str, float]:
-    """How far apart its reports come, from which age on the last one is late, as alerts have it, and from which on it is silent.
+    """Return the interval of its reports, and the ages at which the last one is late, as in alerts, and at which the UAV is silent.
 
-    stated: limits of alerts, the earlier ones giving way to the later.
+    stated: alert limits, later ones overriding earlier ones.
     """
     late_s = late_after_s(sound_limits(stated), interval_s)
     silent_s = max(late_s, SILENT_S, SILENT_INTERVALS * interval_s)
@@ -54,7 +54,7 @@ def rhythm_of(interval_s: float, stated: Sequence[Mapping[str, float]]) -> dict[
 
 
 def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, int, Mapping[str, float]]]:
-    """The mission that each flies, as selectors/live.py has it, its place and colour there, and the limits of alerts that it states."""
+    """Return the mission that each UAV flies, as in selectors/live.py, its place and colour there, and the mission's alert limits."""
     rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None, route__geometry__isnull=False)
     sent = Subquery(route_commands(OuterRef("uav")).values("mission")[:1])
     first = Case(

@@ -1,1 +1,1 @@
-"""One cause each: a module finds it and says how patient it is."""
+"""Detectors: one cause each, with its delays."""

@@ -1,4 +1,4 @@
-"""The battery: the reserve and the way home are reached, or the vehicle itself reports that it is low."""
+"""Detects that the battery reaches the reserve or the energy needed to return, or that the vehicle reports it low."""
 
 import math
 from dataclasses import dataclass
@@ -37,9 +37,9 @@ NO_WAY_BUT_LANDING = (
 STATED = "%(uav)s itself reports its battery as %(state)s."
 STATED_AS = "%(uav)s itself reports its battery as %(state)s: %(words)s"
 STATES = {"low": WARNING, "critical": CRITICAL, "emergency": CRITICAL, "failed": CRITICAL, "unhealthy": CRITICAL}
-OVERRULES_AFTER_S = 15.0  # a state that is well counts more than words that are so old
-CLEARS_ABOVE_PERCENT = 2.0  # of what raises it
-AHEAD_S = 45.0  # for which a UAV that is still above its reserve is looked ahead
+OVERRULES_AFTER_S = 15.0  # a good state overrides status texts older than this
+CLEARS_ABOVE_PERCENT = 2.0  # above the threshold that raises it
+AHEAD_S = 45.0  # forecast horizon for a UAV still above its reserve
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ class _Judged:
 
 
 def detect(inputs: DetectorInput) -> list[Finding] | None:
-    """By the vehicle's own word, which may go by voltage while its percentage stays high, and by what is left; the worse of both."""
+    """Return the worse of two findings: by the vehicle's own report, which may rest on voltage, and by the percentage left."""
     newest = inputs.uav.newest
     inputs.detector_state.note_mode(inputs.mode, inputs.now_s if newest is None else newest.measured_s)
     forecast = _forecast(inputs)
@@ -110,7 +110,7 @@ def _expected(inputs: DetectorInput, forecast: BatteryForecast) -> list[Finding]
 
 
 def _judged(inputs: DetectorInput, forecast: BatteryForecast) -> _Judged | None:
-    """The worst that the figures say. An open alert is kept until all is CLEARS_ABOVE_PERCENT better than what raises it."""
+    """Return the worst finding by the forecast. An open alert stays until all values are CLEARS_ABOVE_PERCENT above the thresholds."""
     worst = _worst(inputs, forecast, 0.0)
     if worst is not None or not inputs.is_open(CODE):
         return worst
@@ -121,12 +121,12 @@ def _judged(inputs: DetectorInput, forecast: BatteryForecast) -> _Judged | None:
 
 
 def _ends(forecast: BatteryForecast) -> list[float]:
-    """What is left after landing at home, and after the rest of the route."""
+    """Return the percentage left after landing at home, and after the rest of the route."""
     return [forecast.left_percent - need for need in (forecast.home_percent, forecast.rest_percent) if need is not None]
 
 
 def _worst(inputs: DetectorInput, forecast: BatteryForecast, more: float) -> _Judged | None:
-    """more: percent by which all limits are raised."""
+    """more: percent added to all limits."""
     limits, left, reserve, rest = inputs.limits, forecast.left_percent, forecast.reserve_percent + more, forecast.rest_percent
     floor, at_home = limits.battery_critical_percent + more, None if forecast.home_percent is None else left - forecast.home_percent
     best = max(_ends(forecast), default=left)
@@ -151,7 +151,7 @@ def _worst(inputs: DetectorInput, forecast: BatteryForecast, more: float) -> _Ju
 
 
 def _falls_soon(inputs: DetectorInput, forecast: BatteryForecast, below_percent: float) -> bool:
-    """Within AHEAD_S, or before it lands, where it is on its way down by its route, home or here; one that is held stays in the air."""
+    """Return whether the battery falls below a percentage within AHEAD_S, or before landing if it comes down earlier by its mode."""
     down = {ModeKind.RETURN: forecast.home_percent, ModeKind.LAND: forecast.down_percent}
     need = forecast.rest_percent if forecast.rest_percent is not None or inputs.mode is None else down.get(inputs.mode)
     drained = forecast.drain_per_s * AHEAD_S
@@ -159,7 +159,7 @@ def _falls_soon(inputs: DetectorInput, forecast: BatteryForecast, below_percent:
 
 
 def _answer(inputs: DetectorInput, forecast: BatteryForecast | None) -> dict[str, Any]:
-    """What an operator would do, what that costs, and what the UAV does by itself; as an alert has it in its details."""
+    """Return the acts for an operator, their cost, and what the UAV does by itself, in the form of an alert's details."""
     mode, uav_id = inputs.mode, inputs.uav.uav_id
     floor_percent = inputs.limits.battery_critical_percent
     own = {} if inputs.ends_as_planned else own_act(mode, inputs.detector_state.mode_since_s, inputs.order)
@@ -174,13 +174,13 @@ def _answer(inputs: DetectorInput, forecast: BatteryForecast | None) -> dict[str
 
 
 def _best_landing(forecast: BatteryForecast) -> float | None:
-    """What is left after a return home or to the nearest landing place [%], whichever is more; None where neither is known."""
+    """Return the percentage left after a return home or to the nearest landing place, whichever is more; None if both are unknown."""
     needs = [need for need in (forecast.home_percent, forecast.landing_percent) if need is not None]
     return forecast.left_percent - min(needs) if needs else None
 
 
 def _advice_of_return(forecast: BatteryForecast | None) -> dict[str, Any]:
-    """Of a UAV that returns already."""
+    """Return advice for a UAV that already returns."""
     best = None if forecast is None else _best_landing(forecast)
     if forecast is None or best is None:
         return {}
@@ -190,8 +190,10 @@ def _advice_of_return(forecast: BatteryForecast | None) -> dict[str, Any]:
 
 
 def _ways_down(forecast: BatteryForecast | None, floor_percent: float) -> tuple[tuple[str, ...], dict[str, Any]]:
-    """Acts for a UAV that flies on, the best first, with what is said to them: home, else the nearest landing place, to which a return
-    leads as well, else the ground below. A return that leaves less than floor_percent stands beside a landing here.
+    """Return the acts for a UAV that flies on, the best first, and their advice.
+
+    Preferred is home, then the nearest landing place, which a return also leads to, then the ground below. A return that leaves less than
+    floor_percent is offered together with landing here.
     """
     best = None if forecast is None else _best_landing(forecast)
     if forecast is None or best is None:

@@ -1,4 +1,4 @@
-"""Two UAVs come too near each other. The pair has one alert: of the UAV with the smaller key, its subject is the other."""
+"""Detects two UAVs that come too near each other. The pair has one alert, on the UAV with the smaller key; the subject is the other."""
 
 from typing import Any
 
@@ -36,8 +36,8 @@ def detect(inputs: DetectorInput) -> list[Finding]:
 
 
 def _finding(inputs: DetectorInput, conflict: Conflict, level: str) -> Finding:
-    """With the distance of this moment, whatever its bound is."""
-    in_s = conflict.in_s / inputs.link.clock_rate  # for those who look at the server's clock
+    """Return the finding with the distance at this moment, regardless of its bound."""
+    in_s = conflict.in_s / inputs.link.clock_rate  # server seconds, as users see them
     values: dict[str, Any] = {
         "uav": inputs.uav.name, "other": conflict.other_name, "metres": round(conflict.now_lateral_m),
         "height": "–" if conflict.now_height_m is None else round(conflict.now_height_m), "bound": round(conflict.bound_m),

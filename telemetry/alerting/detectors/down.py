@@ -1,4 +1,4 @@
-"""It is on the ground where its flight does not end: crashed, or landed by itself. Only a person closes this alert, with a reason."""
+"""Detects a UAV on the ground away from its plan: crashed, or landed by itself. Only a user closes this alert, with a reason."""
 
 import math
 from collections.abc import Iterable
@@ -15,15 +15,15 @@ CODE = "down-off-plan"
 WORDS = (
     "%(uav)s is on the ground %(metres)s m from where its flight begins or ends, last at %(place)s: it has crashed, or landed by itself."
 )
-AWAY_M = 30.0  # of the places at which it was planned to stand; GPS and a landing by hand stay well within
+AWAY_M = 30.0  # from the planned places on the ground; above the error of GPS and of a manual landing
 SETS_OFF = frozenset({"start", "take-off", "resume"})
-ORDERED_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
+ORDERED_TO = frozenset({"land"})  # commanded from here: no alert
 FELL_WITHIN_S = 10.0  # before it was on the ground
-GIVEN_AFTER_S = 2.0  # that clocks and reports may differ by
+GIVEN_AFTER_S = 2.0  # tolerance between clocks and reports
 
 
 def detect(inputs: DetectorInput) -> Iterable[Finding] | None:
-    """None where nothing is found: what is open stays open."""
+    """Return the finding; None without one, so that an open alert stays open."""
     if inputs.is_accounted_for:
         return None
     away = _away(inputs)
@@ -31,15 +31,15 @@ def detect(inputs: DetectorInput) -> Iterable[Finding] | None:
 
 
 def is_down_away(inputs: DetectorInput) -> bool:
-    """Tell whether it is on the ground where its flight does not end, and no person has said what became of it."""
+    """Return whether it is on the ground away from its plan, and no user has closed that alert."""
     return not inputs.is_accounted_for and (any(code == CODE for code, _ in inputs.open_levels) or _away(inputs) is not None)
 
 
 def has_ended(inputs: DetectorInput) -> bool:
-    """Tell whether its flight is over: seen in flight, it came down away from its plan, and has stood there disarmed since.
+    """Return whether its flight is over: it came down away from its plan during the flight, and has been disarmed there since.
 
-    One that came down where its plan has it stand is none, though it is carried away: it can be started again. Nor is one that was told
-    to land, is silent, or was down before it was watched.
+    Returns False for a UAV that came down at a planned place, even if carried away later: it can start again. Also for one that was
+    commanded to land, is silent, or was down before monitoring began.
     """
     detector_state, model, newest = inputs.detector_state, inputs.model, inputs.uav.newest
     if model is None or newest is None or detector_state.down_s is None or detector_state.down_at is None or not inputs.is_disarmed:
@@ -51,7 +51,7 @@ def has_ended(inputs: DetectorInput) -> bool:
 
 
 def _away(inputs: DetectorInput) -> tuple[LonLat, float] | None:
-    """Where it is, and how far from its plan [m]."""
+    """Return its position and the distance from its plan [m]; None if it is not down off plan."""
     newest, model = inputs.uav.newest, inputs.model
     if newest is None or model is None or not inputs.is_known_down or not _was_started(inputs):
         return None
@@ -69,13 +69,13 @@ def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:
 
 
 def degrees_text(position: LonLat) -> str:
-    """Return a position as map programs take it and people tell its halves apart: latitude first, as in ISO 6709, to 1 m."""
+    """Return a position as text for people and map programs: latitude first, as in ISO 6709, to 1 m."""
     north, east = "N" if position.lat >= 0.0 else "S", "E" if position.lon >= 0.0 else "W"
     return f"{abs(position.lat):.5f}° {north}, {abs(position.lon):.5f}° {east}"
 
 
 def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[LonLat] = ()) -> float:
-    """From the nearest place at which it was planned to stand on the ground, or may land when it returns by itself."""
+    """Return the distance to the nearest planned place on the ground, rally points included [m]."""
     stands = [
         line.vertices[0],
         line.vertices[-1],
@@ -94,7 +94,7 @@ def _was_started(inputs: DetectorInput) -> bool:
 
 
 def _could_land(detector_state: DetectorState, order: IssuedOrder) -> bool:
-    """Whether its being down can be what the order was for: it did not fall there, nor was it down before it was told to."""
+    """Return whether the landing can be the effect of the order: it did not fall, and was not down before the order."""
     if detector_state.down_s is None:
         return True
     fell = detector_state.fell_s is not None and detector_state.down_s - detector_state.fell_s <= FELL_WITHIN_S

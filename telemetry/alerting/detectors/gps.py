@@ -1,4 +1,4 @@
-"""It does not know well where it is: no fix, a weak one, or a position that jumps."""
+"""Detects an unreliable position: no fix, a weak fix, or a jump."""
 
 import math
 
@@ -15,17 +15,17 @@ NO_POSITION = "%(uav)s: telemetry without position. %(own)s"
 JUMPED = "The position of %(uav)s has jumped by %(metres)s m."
 FEW = "%(uav)s sees %(satellites)s satellites only."
 WEAK = "The position of %(uav)s is weak: its HDOP is %(hdop)s."
-# What the autopilot does by itself: ArduCopter's EKF failsafe (FS_EKF_ACTION 1, after 1 s above FS_EKF_THRESH); PX4's failsafe of a lost
+# The autopilot's own reaction: ArduCopter's EKF failsafe (FS_EKF_ACTION 1, after 1 s above FS_EKF_THRESH); PX4's failsafe of a lost
 # position (Commander, blind descend), once EKF2 has been without aiding for EKF2_NOAID_TOUT.
 OWN_ARDUPILOT = "ArduPilot usually lands by itself within seconds (FS_EKF_ACTION) and drifts with the wind."
 OWN_PX4 = "PX4 usually descends by itself 5 s after it lost its position (EKF2_NOAID_TOUT) and drifts with the wind."
 OWN_UNKNOWN = "What its autopilot does by itself is not known."
 OWN = {"ardupilot": OWN_ARDUPILOT, "px4": OWN_PX4}
 FIX_IN_SPACE = 3
-MORE_SATELLITES, CLEAR_SHARE = 1, 0.85  # than raise it; of the HDOP that raises it
+MORE_SATELLITES, CLEAR_SHARE = 1, 0.85  # to clear: satellites above the limit; share of the HDOP limit
 MIN_JUMP_M = 50.0
 JUMP_LASTS_S = 6.0
-BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown it
+BETWEEN_S = 5.0  # reports farther apart show no jump: a UAV may have flown the distance
 
 
 def detect(inputs: DetectorInput) -> list[Finding] | None:
@@ -63,7 +63,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
 
 
 def _jump_m(inputs: DetectorInput, fresh: Report) -> float | None:
-    """Of its last jump, as long as that is news. The memory is written to."""
+    """Return the distance of its last jump while that is recent. Updates the detector state."""
     detector_state = inputs.detector_state
     before = detector_state.before
     if before is not None and detector_state.jumped_s != fresh.received_s:
@@ -78,7 +78,7 @@ def _jump_m(inputs: DetectorInput, fresh: Report) -> float | None:
 
 
 def _own_s(before: Report, after: Report, clock_rate: float) -> float:
-    """Between two measurements by the UAV's own clock: as it told; else by the rate that was learnt."""
+    """Return the seconds between two measurements on the UAV's own clock: as reported, else by its estimated rate."""
     if before.boot is not None and after.boot is not None and before.boot.stream == after.boot.stream:
         return after.boot.clock_s - before.boot.clock_s
     return (after.measured_s - before.measured_s) * clock_rate

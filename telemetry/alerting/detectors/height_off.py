@@ -1,4 +1,4 @@
-"""It flies its list, but higher or lower than approved."""
+"""Detects a UAV that flies its mission higher or lower than approved."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
@@ -17,7 +17,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
     if place is None or fresh is None or model is None or fresh.measurement.altitude_relative_m is None:
         return None
     if place.across_m > limits.off_route_critical_m:
-        return None  # which leg it would be on is not known
+        return None  # its leg is unknown
     low_m, high_m = model.line.heights_at(place)
     height_m = fresh.measurement.altitude_relative_m
     off_m = max(height_m - high_m, low_m - height_m)

@@ -1,4 +1,4 @@
-"""Nothing is heard of a UAV in flight: late first, then lost."""
+"""Detects missing telemetry of a UAV in flight: first late, then lost."""
 
 from typing import Any
 
@@ -63,7 +63,7 @@ def detect(inputs: DetectorInput) -> list[Finding]:
 
 
 def _does_by_itself(inputs: DetectorInput) -> dict[str, Any]:
-    """What it does meanwhile: as it was last heard, and as was planned for a lost link. Failsafes of autopilots are not read."""
+    """Return what it does meanwhile, by its last messages and its lost-link plan. Failsafe parameters of autopilots are not read."""
     mode, model = inputs.mode, inputs.model
     if mode in _LAST_RECEIVED:
         return advice(_LAST_RECEIVED[mode])

@@ -1,4 +1,4 @@
-"""Its mode is not what we told it: it acts by itself, or somebody else flies it."""
+"""Detects a mode that was not commanded from here: an action of the autopilot, a pilot or another ground station."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
@@ -17,7 +17,7 @@ LANDING_TEXTS = "%(uav)s is landing (%(mode)s), not commanded from here. Autopil
 PILOT_TEXTS = "%(uav)s is under other control (mode %(mode)s). Autopilot: %(words)s"
 HOLD_TEXTS = "%(uav)s has stopped its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
 MISSION_TEXTS = "%(uav)s has resumed its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
-SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
+SETTLES_S = 4.0  # after one of our commands, until modes are compared again
 
 _WORDS = {
     ModeKind.RETURN: RETURNS, ModeKind.LAND: LANDS, ModeKind.HOLD: HOLDS, ModeKind.MISSION: FLIES, ModeKind.TAKE_OFF: FLIES,
@@ -51,7 +51,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
 
 
 def _words_about(inputs: DetectorInput, mode: str) -> str:
-    """What the vehicle said when it changed to this mode, kept as long as it is in it."""
+    """Return the vehicle's status texts around the change to this mode, stored while it stays in it."""
     cause, (of_mode, words) = inputs.detector_state.causes.get((CODE, "")), inputs.detector_state.mode_words
     if of_mode == mode and words:
         return words

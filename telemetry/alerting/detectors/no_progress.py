@@ -1,4 +1,4 @@
-"""It is to fly its list and does not come on."""
+"""Detects a UAV that should fly its mission but makes no progress."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
@@ -7,10 +7,10 @@ from telemetry.alerting.finding import WARNING, Finding
 
 CODE = "no-progress"
 WORDS = "%(uav)s flies its route, but has not come on for %(seconds)s s."
-STEP_M, CLIMB_STEP_M = 10.0, 6.0  # what counts as coming on: more than receivers stray
-CLEAR_STEPS = 2.0  # that it has to come on, once it has been told
+STEP_M, CLIMB_STEP_M = 10.0, 6.0  # minimum progress: more than GPS noise
+CLEAR_STEPS = 2.0  # progress that clears an open alert
 AT_END_M = 15.0
-SLACK = 1.2  # of a planned stay, which autopilots round up
+SLACK = 1.2  # factor on a planned stay, which autopilots round up
 
 
 def detect(inputs: DetectorInput) -> list[Finding] | None:

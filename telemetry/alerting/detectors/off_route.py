@@ -1,4 +1,4 @@
-"""It flies its list, but beside the approved route."""
+"""Detects a UAV that flies its mission beside the approved route."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput
@@ -6,7 +6,7 @@ from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 
 CODE = "off-route"
 WORDS = "%(uav)s is %(metres)s m beside its route; %(limit)s m are allowed."
-CLEAR_SHARE = 0.8  # of the limit, below which it is over
+CLEAR_SHARE = 0.8  # of the limit, to clear
 
 
 def detect(inputs: DetectorInput) -> list[Finding] | None:

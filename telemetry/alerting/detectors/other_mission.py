@@ -1,4 +1,4 @@
-"""What it holds, or flies, is not what was approved."""
+"""Detects a UAV that holds or flies a mission other than the approved one."""
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.detector_input import DetectorInput

@@ -1,4 +1,4 @@
-"""More wind than the UAV or the mission may have."""
+"""Detects wind above the limit of the UAV or the mission."""
 
 import math
 
@@ -27,7 +27,7 @@ def detect(inputs: DetectorInput) -> list[Finding] | None:
 
 
 def wind_of(reported: Measurement) -> float | None:
-    """As measured; else the least that it can be by the speeds through the air and over ground. None where neither is told."""
+    """Return the measured wind, else its lower bound by airspeed and ground speed [m/s]; None if neither is reported."""
     if reported.wind_north_mps is not None and reported.wind_east_mps is not None:
         return math.hypot(reported.wind_north_mps, reported.wind_east_mps)
     if reported.airspeed_mps is None or reported.velocity_north_mps is None or reported.velocity_east_mps is None:

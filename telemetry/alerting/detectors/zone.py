@@ -1,4 +1,4 @@
-"""A no-fly zone that is in force: it flies towards it, or is in it. Of one zone there is one alert."""
+"""Detects a UAV in a no-fly zone in force, or on course for one. Each zone has one alert."""
 
 import math
 from collections.abc import Iterator
@@ -16,7 +16,7 @@ from telemetry.alerting.surroundings import NearZone
 CODE = "zone"
 INSIDE = "%(uav)s is in the no-fly zone %(zone)s."
 AHEAD = "%(uav)s will be in the no-fly zone %(zone)s in %(seconds)s s."
-STEPS = 10  # into which the time ahead is cut
+STEPS = 10  # of the prediction
 SLOW_MPS = 0.5
 
 
@@ -54,7 +54,7 @@ def _finding(inputs: DetectorInput, zone: NearZone, in_s: float) -> Finding:
 
 
 def _heights_ahead(inputs: DetectorInput, agl_m: float | None) -> tuple[float | None, float | None]:
-    """The lowest and the highest above ground within the time ahead, by its climb and by its route."""
+    """Return the lowest and highest height above ground until the horizon, by its climb and by its route."""
     reported, place, model = inputs.uav.newest, inputs.place, inputs.model
     if agl_m is None or reported is None:
         return None, None
@@ -66,7 +66,7 @@ def _heights_ahead(inputs: DetectorInput, agl_m: float | None) -> tuple[float | 
 
 
 def _ways(inputs: DetectorInput, position: LonLat) -> Iterator[list[tuple[float, float]]]:
-    """Where it will be at each step, in lon/lat: by its velocity, and along its route."""
+    """Yield the predicted positions at each step, in lon/lat: by its velocity, and along its route."""
     reported, horizon_s = inputs.uav.newest, inputs.limits.zone_ahead_s
     if reported is None:
         return
@@ -92,7 +92,9 @@ def _degrees(line: RouteLine, along_m: float) -> tuple[float, float]:
 
 
 def _reached_in_s(way: list[tuple[float, float]], zone: NearZone, inputs: DetectorInput) -> float | None:
-    """The end of the first step that touches the zone while it applies, by the server's clock; the way is cut by the UAV's own."""
+    """Return the end of the first step that touches the zone while it applies [server seconds]; None if none does. Steps are of the UAV's
+    clock.
+    """
     if not zone.polygon.intersects(shapely.LineString(way)):
         return None
     step_s = inputs.limits.zone_ahead_s / STEPS / inputs.link.clock_rate

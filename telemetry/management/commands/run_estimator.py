@@ -1,4 +1,4 @@
-"""Runs a watch until it is told to stop (SIGTERM)."""
+"""Runs an estimator until it is stopped by SIGTERM."""
 
 import os
 import signal
@@ -16,7 +16,7 @@ ENDS_WITHIN_S = 9.5
 
 
 class Command(BaseCommand):
-    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
+    requires_system_checks = ()  # checked at set-up; a killed process restarts without delay
     help = (
         "Run a watch: it estimates where each UAV on a mission is, once a second. "
         "Any number can run at once; each UAV is estimated by one of them, and taken over when it is gone."
@@ -31,7 +31,7 @@ class Command(BaseCommand):
 
         def stop(*_: Any) -> None:
             watch.stop()
-            last_resort = threading.Timer(ENDS_WITHIN_S, os._exit, [1])  # a database that neither answers nor refuses holds up nothing
+            last_resort = threading.Timer(ENDS_WITHIN_S, os._exit, [1])  # exits even if the database does not respond
             last_resort.daemon = True
             last_resort.start()
 

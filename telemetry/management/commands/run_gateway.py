@@ -1,4 +1,4 @@
-"""Runs a MAVLink gateway until it is told to stop (SIGTERM)."""
+"""Runs a MAVLink gateway until it is stopped by SIGTERM."""
 
 import asyncio
 import errno
@@ -21,7 +21,7 @@ ENDS_WITHIN_S = 9.5
 
 
 class Command(BaseCommand):
-    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
+    requires_system_checks = ()  # checked at set-up; a killed process restarts without delay
     help = (
         "Run a MAVLink gateway: vehicles talk to it by UDP and TCP, it stores what they report and brings them their commands. "
         "Any number can run at once; each UAV is served by one of them."
