@@ -1,1 +1,1 @@
-"""Users and service accounts of organisations: signing in, second factors, invitations, tokens and sessions."""
+"""Users and service accounts of organisations: login, second factors, invitations, tokens and sessions."""

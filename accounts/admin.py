@@ -1,8 +1,8 @@
-"""The admin's pages for the workspace: people, tokens, and the histories that nobody edits."""
+"""Admin pages of the workspace: users, tokens, and the read-only histories."""
 
 from typing import Any
 
-import django.contrib.auth.admin  # noqa: F401 - registers groups, also where this module is the first to be loaded
+import django.contrib.auth.admin  # noqa: F401 - registers groups, also if this module is loaded first
 from django.contrib import admin, messages
 from django.contrib.auth.models import Group
 from django.db import transaction
@@ -19,11 +19,11 @@ from workspace.api.permissions import may_change
 from workspace.api.signed_in import user_of
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
 
-admin.site.unregister(Group)  # what somebody may do follows from the role
+admin.site.unregister(Group)  # permissions follow from the role
 
 
 class ReadOnlyAdmin(OrganisationScopedAdmin):
-    """Rows that the program writes: they can be looked at."""
+    """Read-only admin for rows that the program writes."""
 
     def has_add_permission(self, request: HttpRequest) -> bool:
         return False
@@ -37,7 +37,7 @@ class ReadOnlyAdmin(OrganisationScopedAdmin):
 
 @admin.register(Organisation)
 class OrganisationAdmin(OrganisationScopedAdmin):
-    """For installation operators. One that has anything is renamed, not deleted: its missions and its history hang on it."""
+    """Organisations, for installation operators. One with missions or history can be renamed, but not deleted."""
 
     organisation_path = "pk"
     is_for_operators_alone = True
@@ -62,7 +62,7 @@ class OrganisationAdmin(OrganisationScopedAdmin):
 
 @admin.register(User)
 class UserAdmin(HistoryAdmin):
-    """Accounts and their roles. One administrator who can sign in is always left. New ones are invited; each sets their own password."""
+    """Accounts and their roles. At least one administrator who can log in remains. New users are invited and set their own password."""
 
     history_subject = "user"
     list_display = ["username", "first_name", "last_name", "email", "role", "organisation", "is_active", "last_login"]
@@ -80,7 +80,7 @@ class UserAdmin(HistoryAdmin):
     actions = ["let_in", "keep_out", "make_viewers", "make_operators", "make_curators", "make_administrators"]
 
     def get_readonly_fields(self, request: HttpRequest, obj: Any = None) -> Any:
-        """A service account keeps its name, and has neither a person's name nor an address to which a link could be mailed."""
+        """Return the read-only fields: a service account keeps its name, and has no personal name or mail address."""
         fixed = ["username", "first_name", "last_name", "email"] if obj is not None and obj.is_service else []
         return [*super().get_readonly_fields(request, obj), *fixed]
 
@@ -154,7 +154,7 @@ class UserAdmin(HistoryAdmin):
 
 @admin.register(ApiToken)
 class ApiTokenAdmin(OrganisationScopedAdmin):
-    """Tokens are made by their owner, or by `manage.py api_token`, and shown once; here they are revoked."""
+    """Tokens, which their owner or `manage.py api_token` makes and sees once; here they are revoked."""
 
     organisation_path = "user__organisation"
 
@@ -177,7 +177,7 @@ class ApiTokenAdmin(OrganisationScopedAdmin):
 
 @admin.register(Invitation)
 class InvitationAdmin(ReadOnlyAdmin):
-    """Invitations are made on the administration page, which shows their link once; here they can be taken back."""
+    """Invitations, which the administration page makes, showing their link once; here they are revoked."""
 
     list_display = ["email", "role", "organisation", "invited_by", "created_at", "expires_at", "revoked_at", "accepted_at", "accepted_by"]
     list_filter = ["role", "organisation", "accepted_at", "revoked_at"]
@@ -195,7 +195,7 @@ class InvitationAdmin(ReadOnlyAdmin):
 
 @admin.register(SignInEntry)
 class SignInEntryAdmin(ReadOnlyAdmin):
-    """Tries with names that nobody has belong to no organisation: installation operators see them here."""
+    """The sign-in log. Tries with unknown names belong to no organisation: installation operators see them here."""
 
     organisation_path = "user__organisation"
     list_display = ["recorded_at", "outcome", "user", "address", "user_agent"]

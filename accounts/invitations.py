@@ -1,4 +1,4 @@
-"""Invitations: a link lets one person make an account with the role that an administrator has chosen."""
+"""Invitations: a link with which one user makes an account with the role that an administrator has chosen."""
 
 import secrets
 from datetime import timedelta
@@ -32,7 +32,7 @@ class InvitationState(StrEnum):
 
 
 class InvitationGone(Exception):
-    """It was used, revoked, or is too old, or there never was one."""
+    """Raised for an invitation that is used, revoked, expired or unknown."""
 
 
 def in_state(state: InvitationState) -> Q:
@@ -59,7 +59,7 @@ def invitations_of(actor: User) -> QuerySet[Invitation]:
 
 
 def invite(*, organisation: Organisation, actor: User | None, role: Role, email: str, days: int) -> tuple[Invitation, str]:
-    """The row and the link's secret, which cannot be shown again. Nobody is the actor of what is done on the machine."""
+    """Return the row and the link's secret, which cannot be shown again. The actor is None for actions on the machine itself."""
     token = secrets.token_urlsafe(32)
     with transaction.atomic():
         invitation = Invitation.objects.create(
@@ -75,23 +75,23 @@ def invite(*, organisation: Organisation, actor: User | None, role: Role, email:
 
 
 def mail_leaves_here() -> bool:
-    """On the console a link would stand in a log."""
+    """Whether mail is sent: the console backend would write a link into a log."""
     return bool(settings.EMAIL_BACKEND != ON_THE_CONSOLE)
 
 
 def send_invitation(*, invitation: Invitation, link: str) -> bool:
-    """Whether the mail server took it."""
+    """Send the invitation; returns whether the mail server accepted it."""
     if not (invitation.email and mail_leaves_here()):
         return False
     text = render_to_string("account/invitation_mail.txt", {"invitation": invitation, "link": link})
     try:
         return bool(send_mail(_("Your account for Spanwise"), text, None, [invitation.email]))
-    except OSError:  # SMTP's errors are among them
+    except OSError:  # includes SMTP's errors
         return False
 
 
 def revoke_invitation(*, invitation: Invitation, actor: User) -> Invitation:
-    """The link works no more. One that was used stays used; a second time changes nothing."""
+    """Revoke the link. A used one stays used; a repeated call changes nothing."""
     with transaction.atomic():
         if Invitation.objects.filter(in_state(InvitationState.OPEN), pk=invitation.pk).update(revoked_at=timezone.now()):
             _record(invitation, actor, "revoked")
@@ -100,7 +100,7 @@ def revoke_invitation(*, invitation: Invitation, actor: User) -> Invitation:
 
 
 def open_invitation(token: str) -> Invitation:
-    """Raises InvitationGone."""
+    """Return the open invitation of a token. Raises InvitationGone."""
     if not token.isascii() or len(token) > MAX_TOKEN_LENGTH:
         raise InvitationGone
     found = Invitation.objects.filter(in_state(InvitationState.OPEN), token_sha256=hash_token(token)).first()
@@ -110,7 +110,7 @@ def open_invitation(token: str) -> Invitation:
 
 
 def accept_invitation(*, token: str, user: User) -> User:
-    """Store the new account with the invitation's role; of two at the same moment one comes too late. Raises InvitationGone."""
+    """Store the new account with the invitation's role; of two concurrent calls one fails. Raises InvitationGone."""
     with transaction.atomic():
         invitation = Invitation.objects.select_for_update().get(pk=open_invitation(token).pk)
         if state_of(invitation) != InvitationState.OPEN:
@@ -141,10 +141,10 @@ OWN_MACHINE = {"127.0.0.1", "localhost", "[::1]"}
 
 
 def public_address(request: HttpRequest) -> str:
-    """Scheme and host, as `SPANWISE_PUBLIC_ADDRESS` has it.
+    """Return scheme and host of `SPANWISE_PUBLIC_ADDRESS`.
 
-    Without it the host that was asked for, which is one of `SPANWISE_ALLOWED_HOSTS`: its port counts on one's own machine alone, since
-    whoever asks could name another program's.
+    Without it, returns the requested host, which is one of `SPANWISE_ALLOWED_HOSTS`. Its port counts only on localhost, as the client could
+    name another program's.
     """
     if settings.PUBLIC_ADDRESS:
         return str(settings.PUBLIC_ADDRESS)

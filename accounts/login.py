@@ -1,4 +1,4 @@
-"""From a right password to a session: at once, or with a second factor in between. Until then nobody is signed in."""
+"""From a right password to a session: at once, or after a second factor. Until then the user is not logged in."""
 
 import time
 from dataclasses import dataclass
@@ -21,11 +21,11 @@ from workspace.models import SignInEntry, SignInOutcome, User
 from workspace.sessions.browser_sessions import note_session
 from workspace.sessions.sign_in_attempts import address_of, is_first_in, network_of, remember
 
-HELD_BACK_INTERVAL_S = 60  # of one name from one network: a flood of tries is no flood of rows
+HELD_BACK_INTERVAL_S = 60  # per name and network: many tries do not write many rows
 
 
 def record_sign_in(request: HttpRequest, outcome: SignInOutcome, *, user: User | None = None, name: str = "") -> None:
-    """Of a name that nobody has only the try is kept: people type passwords there."""
+    """Store a sign-in attempt. The name is stored only if it is known: users type passwords there."""
     address = address_of(request)
     if outcome == SignInOutcome.HELD_BACK and not is_first_in(HELD_BACK_INTERVAL_S, name, network_of(address)):
         return
@@ -42,20 +42,20 @@ def forget_old_sign_ins() -> int:
 
 
 BACKEND = "workspace.api.authentication.RoleBackend"
-MFA_PENDING = "workspace.mfa_pending"  # in the session: who has shown the password, when, and where they wanted to go
+MFA_PENDING = "workspace.mfa_pending"  # in the session: the user who gave the password, the time, and the next address
 MFA_PENDING_S = 10 * 60
 
 
 @dataclass(frozen=True)
 class HalfIn:
-    """Somebody who has shown their password here a few minutes ago."""
+    """A user who has given the password and not yet the second factor."""
 
     user: User
-    wanted: str  # address
+    wanted: str  # the requested address
 
 
 def let_in(request: HttpRequest, user: User, wanted: str) -> HttpResponse:
-    """After the password: to where they wanted to go, to the page that asks for a code, or to the one that sets the codes up."""
+    """Respond after the password: redirect to the requested address, to the code page, or to the page that sets up a second factor."""
     has_one = has_second_factor(user)
     if not (has_one or is_required_of(user)):
         response = HttpResponseRedirect(wanted)
@@ -67,7 +67,7 @@ def let_in(request: HttpRequest, user: User, wanted: str) -> HttpResponse:
 
 
 def user_with_mfa_pending(request: HttpRequest) -> HalfIn | None:
-    """None after ten minutes, and once the password is another one or they may not sign in any more."""
+    """Return the pending login; None after ten minutes, once the password has changed, or if the user may no longer log in."""
     kept = request.session.get(MFA_PENDING)
     if kept is None or not 0 <= time.time() - kept["at"] <= MFA_PENDING_S:
         return None
@@ -78,7 +78,7 @@ def user_with_mfa_pending(request: HttpRequest) -> HalfIn | None:
 
 
 def sign_in(request: HttpRequest, response: HttpResponse, user: User) -> None:
-    """The session begins: the log has it, and the browser is known from now on."""
+    """Begin the session, write the log, and remember the browser as a trusted device."""
     request.session.pop(MFA_PENDING, None)
     login(request, user, backend=BACKEND)
     note_session(request.session, user, is_act=True, user_agent=request.headers.get("User-Agent", ""))
@@ -92,12 +92,12 @@ PASSWORD_NEEDED = OpenApiResponse(description="`password_needed`: say it at `/ac
 
 
 def note_reauthentication(session: Any) -> None:
-    """Somebody has just shown their password in this session."""
+    """Record that the user has just entered their password in this session."""
     session[PROVED_AT] = time.time()
 
 
 def require_reauthentication(request: Request) -> None:
-    """Raises ApiProblem 403 `password_needed` unless the password was shown within 15 min: by signing in, or by saying it again."""
+    """Raise ApiProblem 403 `password_needed` unless the password was entered within 15 min, by a login or a reauthentication."""
     row = getattr(request.session, "in_use", None)
     since_sign_in_s = REAUTHENTICATION_S + 1.0 if row is None else (timezone.now() - row.began_at).total_seconds()
     since_reauthentication_s = time.time() - request.session.get(PROVED_AT, 0.0)

@@ -1,4 +1,4 @@
-"""What a new password may not be, and how passwords are kept."""
+"""Validation of new passwords, and their hashing."""
 
 import re
 from typing import Any
@@ -14,20 +14,20 @@ PRODUCT_AND_TRADE = (
     "stromleitung", "leitung", "freileitung", "strommast", "mast", "turm", "brücke", "bruecke", "bahn", "eisenbahn", "drohne", "flug",
     "bediener", "kurator", "betrachter", "verwalter", "geheim", "willkommen", "sommer", "winter", "herbst", "frühling",
 )  # fmt: skip
-MIN_WORD_LENGTH = 3  # of an organisation's name: what is shorter is in every password
-MIN_REST_LENGTH = 8  # characters that have to be something else
+MIN_WORD_LENGTH = 3  # of an organisation's name: shorter words are in every password
+MIN_REST_LENGTH = 8  # required characters besides the words
 LIKE_LETTERS = str.maketrans({"0": "o", "1": "i", "!": "i", "3": "e", "4": "a", "@": "a", "5": "s", "$": "s", "7": "t"})
 
 
 def context_words(organisation: str) -> set[str]:
-    """As they are compared: small letters and digits, written out."""
+    """Return the words as they are compared: lower-case letters and digits, transliterated."""
     site = [host for host in settings.ALLOWED_HOSTS if not re.fullmatch(r"[\d.:\[\]*]+|localhost", host)]
     named = re.findall(r"[^\W_]+", " ".join([organisation, *site, *settings.PASSWORD_WORDS]).casefold())
     return {_plain(word) for word in (*PRODUCT_AND_TRADE, *named) if len(word) >= MIN_WORD_LENGTH}
 
 
 def rest_beside(password: str, words: set[str]) -> str:
-    """What is left of a password without such words, whichever digits stand for letters, and without what is between words."""
+    """Return a password without such words, with digits read as letters and separators removed."""
     rest = _plain(password)
     for word in sorted(words, key=len, reverse=True):
         rest = rest.replace(word, "")
@@ -35,7 +35,7 @@ def rest_beside(password: str, words: set[str]) -> str:
 
 
 class ContextWordsValidator:
-    """Refuses what is such a word with little beside it: "Spanwise2026!", not a long sentence that has one in it."""
+    """Refuses passwords that are mostly such a word: "Spanwise2026!", but not a long sentence that contains one."""
 
     def validate(self, password: str, user: Any = None) -> None:
         organisation = "" if user is None else user.organisation.name
@@ -54,9 +54,9 @@ def _plain(text: str) -> str:
 
 
 class Argon2id(Argon2PasswordHasher):
-    """Twice over 46 MiB on one thread: twice what OWASP's Password Storage Cheat Sheet asks for, 0.1 s of a core.
+    """Argon2id with 46 MiB, twice, on one thread: twice what OWASP's Password Storage Cheat Sheet recommends, 0.1 s of a core.
 
-    Django's own figures take 100 MiB and eight threads each: a few people who sign in at once would hold all cores of a machine.
+    Django's own parameters use 100 MiB and eight threads each: a few concurrent logins would occupy all cores.
     """
 
     time_cost = 2

@@ -1,4 +1,4 @@
-"""Second factors: setting one up, trying a code, recovery codes, taking one away. Each change stands in the history."""
+"""Second factors: setup, codes, recovery codes, removal. Each change is recorded in the history."""
 
 import secrets
 from base64 import b32encode
@@ -21,7 +21,7 @@ from workspace.models import Organisation, RecoveryCode, SecondFactor, User
 STEP_S = 30
 DIGITS = 6
 SEED_BYTES = 20  # RFC 4226, 4: 160 bits are recommended
-STEPS_BESIDE = 1  # clocks of telephones differ, and people type: RFC 6238, 5.2
+STEPS_BESIDE = 1  # for clock differences and typing: RFC 6238, 5.2
 RECOVERY_CODES = 8
 RECOVERY_GROUPS, RECOVERY_GROUP = 6, 4
 RECOVERY_LETTERS = "23456789abcdefghjkmnpqrstuvwxyz"  # 31: 24 of them are 118 bits
@@ -37,12 +37,12 @@ def code_of(seed: bytes, step: int) -> str:
 
 
 def matching_step(code: str, seed: bytes, *, at_s: float, after: int) -> int | None:
-    """The step of 30 s whose code this is, later than `after`; None if it is none of now. `at_s`: seconds since 1970."""
+    """Return the 30 s step of this code, later than `after`; None if it is no current code. `at_s`: seconds since 1970."""
     now = int(at_s // STEP_S)
     generator = _generator(seed)
     for step in range(max(now - STEPS_BESIDE, after + 1), now + STEPS_BESIDE + 1):
         try:
-            generator.verify(code.encode(), step)  # takes as long for every code
+            generator.verify(code.encode(), step)  # constant time
         except InvalidToken:
             continue
         return step
@@ -50,18 +50,18 @@ def matching_step(code: str, seed: bytes, *, at_s: float, after: int) -> int | N
 
 
 def address_for_apps(seed_text: str, account: str) -> str:
-    """What the QR code says: the key-URI of authenticator apps."""
+    """Return the content of the QR code: the key URI of authenticator apps."""
     facts = urlencode({"secret": seed_text, "issuer": ISSUER, "algorithm": "SHA1", "digits": DIGITS, "period": STEP_S}, quote_via=quote)
     return f"otpauth://totp/{quote(ISSUER)}:{quote(account, safe='')}?{facts}"
 
 
 def new_recovery_codes() -> list[str]:
-    """Such as "k3pm-9vxq-…": no letter that is taken for another one."""
+    """Return codes such as "k3pm-9vxq-…", without letters that are easily confused."""
     return ["-".join(_group() for _ in range(RECOVERY_GROUPS)) for _ in range(RECOVERY_CODES)]
 
 
 def bare(code: str) -> str:
-    """As it is compared: without what people type between the letters."""
+    """Return the code as it is compared: without separators."""
     return "".join(character for character in code.lower() if character.isalnum())
 
 
@@ -74,15 +74,15 @@ def _group() -> str:
 
 
 def _generator(seed: bytes) -> HOTP:
-    return HOTP(seed, DIGITS, SHA1())  # noqa: S303 - the algorithm that every app knows; HMAC does not rest on collisions
+    return HOTP(seed, DIGITS, SHA1())  # noqa: S303 - the algorithm that every app supports; HMAC does not depend on collision resistance
 
 
-TRIES = 5  # wrong codes of one person, from wherever: who comes so far knows the password
+TRIES = 5  # wrong codes of one user, from any address: they already know the password
 WINDOW = timedelta(minutes=15)
 
 
 class WrongCode(Exception):
-    """It is no code of now, or was used before. `left` says how many tries there are in the window."""
+    """Raised for a code that is not current, or was used before. `left` is the number of tries left in the window."""
 
     def __init__(self, left: int) -> None:
         super().__init__(f"wrong code, {left} left")
@@ -90,11 +90,11 @@ class WrongCode(Exception):
 
 
 class TooManyCodes(Exception):
-    """No code is looked at for now."""
+    """Raised while codes are not checked after too many wrong ones."""
 
 
 class SetUpFirst(Exception):
-    """Whoever asks everybody for a second factor has one."""
+    """Raised when an administrator without a second factor would require one of all users."""
 
 
 def has_second_factor(user: User) -> bool:
@@ -102,17 +102,17 @@ def has_second_factor(user: User) -> bool:
 
 
 def is_required_of(user: User) -> bool:
-    """By their organisation, or by whoever runs the installation."""
+    """Whether the user's organisation or the installation requires a second factor."""
     return bool(settings.REQUIRES_SECOND_FACTOR or user.organisation.requires_second_factor)
 
 
 def seed_text(seed: bytes) -> str:
-    """As people type it, and apps read it."""
+    """Return the seed as users type it, and apps read it."""
     return b32encode(seed).decode()
 
 
 def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
-    """Keep the seed, whose code shows that an app has it. Returns the recovery codes, which cannot be shown again. Raises WrongCode."""
+    """Store the seed if the code matches it, and return the recovery codes, which cannot be shown again. Raises WrongCode."""
     step = matching_step(bare(code), seed, at_s=timezone.now().timestamp(), after=-1)
     if step is None:
         raise WrongCode(TRIES)
@@ -125,11 +125,11 @@ def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
 
 
 def try_code(*, user: User, code: str) -> None:
-    """A code of the app, or a recovery code; either is taken once. Raises WrongCode, TooManyCodes; SecondFactor.DoesNotExist.
+    """Accept a code of the app, or a recovery code; each works once. Raises WrongCode, TooManyCodes; SecondFactor.DoesNotExist.
 
-    After too many wrong ones no code of the app counts for a while; a recovery code, which nobody guesses, lets its owner in even then.
+    After too many wrong codes, codes of the app are refused for a while; a recovery code, which cannot be guessed, is still accepted.
     """
-    with transaction.atomic():  # one try at a time: many at once gain nothing
+    with transaction.atomic():  # one try at a time: concurrent ones gain nothing
         factor = SecondFactor.objects.select_for_update().select_related("user").get(user=user)
         is_held_back = _is_in_window(factor) and factor.wrong_tries >= TRIES
         is_right = (not is_held_back and _take_code(factor, bare(code))) or _take_recovery_code(factor, bare(code))
@@ -145,7 +145,7 @@ def try_code(*, user: User, code: str) -> None:
 
 
 def renew_recovery_codes(*, user: User) -> list[str]:
-    """Eight new ones; the old ones count no more."""
+    """Return eight new codes and invalidate the old ones."""
     with transaction.atomic():
         factor = SecondFactor.objects.select_for_update().get(user=user)
         factor.recovery_codes.all().delete()
@@ -159,7 +159,7 @@ def recovery_codes_left(user: User) -> int:
 
 
 def take_away(*, user: User, actor: User | None) -> bool:
-    """Somebody's own, or by an administrator for whoever has lost theirs: then all their sessions end, too. False if there was none."""
+    """Remove a second factor. If an administrator resets it, the user's sessions end too. Returns False if there was none."""
     with transaction.atomic():
         deleted, _ = SecondFactor.objects.filter(user=user).delete()
         if not deleted:
@@ -171,7 +171,7 @@ def take_away(*, user: User, actor: User | None) -> bool:
 
 
 def require_second_factor(*, actor: User, required: bool) -> None:
-    """Of everybody in the organisation, from their next sign-in on. Raises SetUpFirst."""
+    """Require a second factor of all users of the organisation from their next login on, or no longer. Raises SetUpFirst."""
     if required and not has_second_factor(actor):
         raise SetUpFirst
     with transaction.atomic():
@@ -192,7 +192,7 @@ def require_second_factor(*, actor: User, required: bool) -> None:
 
 
 def encrypt_with_current_key() -> int:
-    """Seeds that were sealed with an old secret key, so that it can be taken away. Returns how many were looked at."""
+    """Encrypt seeds of old secret keys again, so that the old keys can be removed. Returns how many were checked."""
     if not settings.SECRET_KEY_FALLBACKS:
         return 0
     factors = SecondFactor.objects.select_related("user")

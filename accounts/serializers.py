@@ -1,4 +1,4 @@
-"""Shapes of the API about accounts, people, invitations and sign-ins."""
+"""API shapes of accounts, users, invitations and logins."""
 
 from datetime import datetime
 from typing import Any, ClassVar
@@ -34,7 +34,7 @@ MAX_TOKEN_DAYS = 365
 
 
 class AccountSerializer(serializers.ModelSerializer):
-    """Who is signed in, and what they prefer. What is stored and sent stays metric and UTC whatever they prefer."""
+    """The authenticated user and their preferences. Stored and sent values are always metric and UTC."""
 
     organisation = serializers.CharField(source="organisation.name", read_only=True)
 
@@ -48,7 +48,7 @@ class AccountSerializer(serializers.ModelSerializer):
 
 
 class AccountChangeSerializer(serializers.Serializer):
-    """Only what is to change."""
+    """Only the fields to change."""
 
     first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
     last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
@@ -93,7 +93,7 @@ class TokenSerializer(serializers.ModelSerializer):
 
 
 class NewTokenSerializer(TokenSerializer):
-    """The one answer that has the token itself."""
+    """The only response that contains the token itself."""
 
     token = serializers.CharField(read_only=True, help_text="shown this once")
 
@@ -177,7 +177,7 @@ class UserSerializer(serializers.ModelSerializer):
 
 
 class UserChangeSerializer(serializers.Serializer):
-    """Only what is to change."""
+    """Only the fields to change."""
 
     first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
     last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
@@ -221,7 +221,7 @@ class ServiceAccountInputSerializer(serializers.Serializer):
 
 
 class ServiceAccountChangeSerializer(serializers.Serializer):
-    """Only what is to change."""
+    """Only the fields to change."""
 
     role = serializers.ChoiceField(choices=Role.choices, required=False)
     is_active = serializers.BooleanField(required=False, help_text="false: none of its tokens works")
@@ -255,7 +255,7 @@ class InvitationSerializer(serializers.ModelSerializer):
 
 
 class NewInvitationSerializer(InvitationSerializer):
-    """The one answer that has the link itself."""
+    """The only response that contains the link itself."""
 
     link = serializers.CharField(read_only=True, help_text="shown this once")
     was_mailed = serializers.BooleanField(read_only=True)
@@ -277,7 +277,7 @@ class InvitationPageSerializer(serializers.Serializer):
 
 
 class SignInSerializer(serializers.ModelSerializer):
-    """A try to sign in, or a signing out. `username` is null where nobody has the name that was typed."""
+    """A login attempt or a logout. `username` is null where the typed name is unknown."""
 
     username = serializers.SerializerMethodField()
     outcome = serializers.ChoiceField(choices=SignInOutcome.choices)
@@ -297,7 +297,7 @@ class SignInPageSerializer(serializers.Serializer):
 
 
 def with_secret(shape: type[serializers.ModelSerializer], row: Any, **secret: Any) -> dict[str, Any]:
-    """A row with what is shown once."""
+    """Return a row with values that are shown once."""
     for name, value in secret.items():
         setattr(row, name, value)
     return dict(shape(row).data)

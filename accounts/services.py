@@ -1,4 +1,4 @@
-"""Writes of one's own account, and of other people's by an administrator: preferences, passwords, sessions, tokens."""
+"""Writes of accounts, by their users and by administrators: preferences, passwords, sessions, tokens."""
 
 import json
 import zlib
@@ -15,12 +15,12 @@ from workspace.api_tokens import create_api_token
 from workspace.audit import record_change, user_facts
 from workspace.models import ApiToken, Role, User
 
-MAX_TOKENS = 50  # of one person, valid at the same time
+MAX_TOKENS = 50  # of one user, valid at the same time
 CHANGEABLE_BY_ADMINISTRATORS = ("first_name", "last_name", "email", "role", "is_active")
 
 
 class ChangedMeanwhile(Exception):
-    """Somebody else has changed the person since; nothing was stored. `person` is how they are now."""
+    """Raised when the user was changed since; nothing was stored. `person` is the current row."""
 
     def __init__(self, person: User) -> None:
         super().__init__("changed meanwhile")
@@ -28,11 +28,11 @@ class ChangedMeanwhile(Exception):
 
 
 class TooManyTokens(Exception):
-    """Each is a key that somebody may find: old ones are to be revoked first."""
+    """Raised at the limit of valid tokens, each of which could be stolen: old ones must be revoked first."""
 
 
 def change_account(*, user: User, **values: Any) -> User:
-    """One's own name and preferences."""
+    """Change the user's own name and preferences."""
     for name, value in values.items():
         setattr(user, name, value)
     user.save(update_fields=list(values))
@@ -40,7 +40,7 @@ def change_account(*, user: User, **values: Any) -> User:
 
 
 def change_password(*, user: User, password: str, ends_tokens: bool = False) -> None:
-    """All sessions end, and tokens if that is wanted; the caller keeps the session it works for."""
+    """Set the password and end all sessions, optionally revoking tokens; the caller keeps its own session."""
     with transaction.atomic():
         user.set_password(password)
         user.save(update_fields=["password"])
@@ -50,14 +50,14 @@ def change_password(*, user: User, password: str, ends_tokens: bool = False) -> 
 
 
 def revoke_tokens(*, user: User, actor: User) -> None:
-    """All that work: from now on no program gets in with one."""
+    """Revoke all valid tokens of the user."""
     with transaction.atomic():
         for token in user.api_tokens.filter(revoked_at=None):
             revoke_token(token=token, actor=actor)
 
 
 def end_sessions(*, user: User, actor: User | None) -> None:
-    """Everywhere, at once; the caller may keep the one it works for. Tokens stay."""
+    """End all sessions at once; the caller may keep its own. Tokens stay valid."""
     with transaction.atomic():
         User.objects.filter(pk=user.pk).update(session_generation=F("session_generation") + 1)
         user.refresh_from_db(fields=["session_generation"])
@@ -65,7 +65,7 @@ def end_sessions(*, user: User, actor: User | None) -> None:
 
 
 def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None = None, actor: User | None = None) -> tuple[ApiToken, str]:
-    """The row and the token itself, which cannot be shown again. The actor is its user unless told. Raises TooManyTokens."""
+    """Return the row and the token itself, which cannot be shown again. The default actor is the user. Raises TooManyTokens."""
     expires_at = timezone.now() + timedelta(days=days)
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)
@@ -78,7 +78,7 @@ def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None
 
 
 def revoke_token(*, token: ApiToken, actor: User) -> ApiToken:
-    """From now on nobody gets in with it. A second time changes nothing."""
+    """Revoke the token. A repeated call changes nothing."""
     with transaction.atomic():
         if ApiToken.objects.filter(pk=token.pk, revoked_at=None).update(revoked_at=timezone.now()):
             _record_token(token, actor, "revoked", {"name": token.name})
@@ -87,13 +87,13 @@ def revoke_token(*, token: ApiToken, actor: User) -> ApiToken:
 
 
 def revision_of_user(user: User) -> int:
-    """A short digest of what administrators change: it differs when somebody else was faster."""
+    """Return a short digest of what administrators change, to detect concurrent changes."""
     facts = json.dumps([getattr(user, name) for name in CHANGEABLE_BY_ADMINISTRATORS])
     return zlib.crc32(facts.encode()) % 1_000_000_000
 
 
 def change_user(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
-    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft, OperatorsAlone."""
+    """Change a user. Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         user = User.objects.select_for_update().get(pk=user_id, organisation_id=actor.organisation_id)
         if seen_revision is not None and seen_revision != revision_of_user(user):
@@ -123,11 +123,11 @@ def _seconds(time: datetime) -> str:
 
 
 class AccountNameTaken(ValueError):
-    """The organisation has a service account of this name."""
+    """Raised when the organisation has a service account of this name."""
 
 
 def service_accounts_of(actor: User) -> QuerySet[User]:
-    """Those of the actor's organisation, with `valid_tokens` and `last_used_at`."""
+    """Return those of the actor's organisation, with `valid_tokens` and `last_used_at`."""
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
     own = User.objects.filter(organisation_id=actor.organisation_id, is_service=True)
     return own.annotate(valid_tokens=Count("api_tokens", filter=valid), last_used_at=Max("api_tokens__last_used_at"))
@@ -138,7 +138,7 @@ def name_of(account: User) -> str:
 
 
 def make_service_account(*, actor: User, name: str, role: Role) -> User:
-    """Raises NameTaken."""
+    """Create a service account. Raises AccountNameTaken."""
     username = f"service:{actor.organisation_id}:{name}"
     if User.objects.filter(username__iexact=username).exists():
         raise AccountNameTaken
@@ -147,10 +147,10 @@ def make_service_account(*, actor: User, name: str, role: Role) -> User:
     try:
         with transaction.atomic():
             return save_user(user=account, actor=actor)
-    except IntegrityError as error:  # two at the same moment
+    except IntegrityError as error:  # concurrent requests
         raise AccountNameTaken from error
 
 
 def tokens_of(account: User) -> QuerySet[ApiToken]:
-    """Those that work first, then the newest."""
+    """Return the account's tokens: valid ones first, then the newest."""
     return account.api_tokens.select_related("user").order_by(F("revoked_at").desc(nulls_first=True), "-created_at")

@@ -1,4 +1,4 @@
-"""What is cleared and sealed again from time to time."""
+"""Periodic clean-up and re-encryption."""
 
 from celery import shared_task
 

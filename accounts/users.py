@@ -1,4 +1,4 @@
-"""Writes of users by administrators: roles, access, deletion, installation operators. Each stands in the history."""
+"""Writes of users by administrators: roles, access, deletion, installation operators. Each is recorded in the history."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -18,18 +18,18 @@ from workspace.models import (
     User,
 )
 
-ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
+ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: changes that remove an administrator are serialised
 
 
 class NoAdministratorLeft(ValueError):
-    """Without an administrator who may sign in nobody could give the role back."""
+    """Raised when no administrator who may log in would be left, so that no user could restore the role."""
 
     def __init__(self) -> None:
         super().__init__(_("This would leave no administrator who can sign in. Make somebody else an administrator first."))
 
 
 class OperatorsAlone(PermissionError):
-    """Whoever could change an installation operator's account could become one."""
+    """Raised when another user would change an installation operator's account, and so could become one."""
 
     def __init__(self) -> None:
         super().__init__(_("Only installation operators change the account of one."))
@@ -50,7 +50,7 @@ def save_user(*, user: User, actor: User) -> User:
 
 
 def change_users(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
-    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises as save_user."""
+    """Set the role or access of several accounts; returns how many were changed. Raises as save_user."""
     changed = 0
     with transaction.atomic():
         for user in users:
@@ -63,7 +63,7 @@ def change_users(*, users: Iterable[User], actor: User, role: Role | None = None
 
 
 def delete_user(*, user: User, actor: User) -> None:
-    """What they did stays in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
+    """Delete a user. Their actions stay in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
     if not may_change(actor, User.objects.get(pk=user.pk)):
         raise OperatorsAlone
     with transaction.atomic():
@@ -76,7 +76,7 @@ def delete_user(*, user: User, actor: User) -> None:
 
 
 def set_installation_operator(*, user: User, is_operator: bool) -> None:
-    """On the machine, by whoever has it; no page and no address of the API gives this."""
+    """Grant or revoke the installation operator flag. Only a command on the machine does this; no page or endpoint."""
     with transaction.atomic():
         before = user_facts(user)
         user.is_installation_operator = is_operator
@@ -88,7 +88,7 @@ def set_installation_operator(*, user: User, is_operator: bool) -> None:
 
 
 def _refuse_without_administrator(before: User | None) -> None:
-    """After a change, in its transaction. Two that are made at once wait for each other here."""
+    """Raise NoAdministratorLeft after a change, in its transaction. Concurrent changes are serialised here."""
     if before is None or not _administrates(before):
         return
     lock_until_end(ADMINISTRATORS_LOCK)
@@ -104,7 +104,7 @@ def _administrates(user: User) -> bool:
 
 
 def _withdraw_invitations(user: User, actor: User) -> None:
-    """Whoever loses the role, or access, has no link at hand that gives it back."""
+    """Withdraw the open invitations of a user who loses the role or access, as they could restore it."""
     now = timezone.now()
     still_open = Invitation.objects.filter(invited_by=user, accepted_at=None, revoked_at=None, expires_at__gt=now)
     for invitation in still_open.select_for_update():

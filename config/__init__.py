@@ -1,4 +1,4 @@
-"""The composition root: settings, addresses, servers; it knows every app and no app knows it."""
+"""The composition root: settings, URLs, servers. It knows every app, and no app knows it."""
 
 from config.celery import app as celery_app
 from config.compiled.compiled_core import use_compiled_directory

@@ -1,4 +1,4 @@
-"""Registers Django's admin with our site; config/urls.py looks for its pages, which programs without addresses need not load."""
+"""Registers Django's admin with our site; config/urls.py discovers its pages, which programs without URLs need not load."""
 
 from django.contrib.admin.apps import SimpleAdminConfig
 

@@ -1,7 +1,7 @@
 """The Celery application, whose queues are
 
-`data` (imports, graph), `flight` (what UAVs on a mission wait for: starts, ends of commands, alerts about them), `planning` (large plans)
-and `simulation` (rehearsals).
+`data` (imports, graph), `flight` (urgent for UAVs on a mission: starts, ends of commands, alerts), `planning` (large plans) and
+`simulation` (rehearsals).
 """
 
 import os
@@ -28,20 +28,20 @@ MAKES_NO_PLANS = {"data", "flight", "simulation"}
 
 @worker_before_create_process.connect
 def keep_before_fork(**_: object) -> None:
-    """What a look for garbage walks through it writes to, and has no longer in common with the process it came from: 80 MiB of each."""
+    """Freeze objects before a fork: a collection writes to every object that it traverses, which would unshare 80 MiB per process."""
     freeze_startup_objects()
 
 
 @worker_process_init.connect
 def warm_up_process(**_: object) -> None:
-    """A worker's process loads what plans are made with before it takes a task, unless its queues bring it none."""
+    """Load what plans need before a worker's process takes a task, unless its queues have no plans."""
     if not set(app.amqp.queues.consume_from) <= MAKES_NO_PLANS:
-        from missions.services import warm_up  # noqa: PLC0415 (Django is set up by then, not when this module is read)
+        from missions.services import warm_up  # noqa: PLC0415 (Django is set up only when this runs)
 
         begin_tracing("worker")
         warm_up()
     freeze_startup_objects()
-    task_postrun.connect(trim_memory_after_task)  # here alone: a test that runs a task in itself has much to look through
+    task_postrun.connect(trim_memory_after_task)  # only here: a test that runs a task in its own process has many objects to traverse
 
 
 def trim_memory_after_task(**_: object) -> None:
@@ -50,7 +50,7 @@ def trim_memory_after_task(**_: object) -> None:
 
 @beat_init.connect
 def report_the_installation(**_: object) -> None:
-    """The schedule runs once, so it is the one that tells how long queues are."""
+    """Export installation metrics from the schedule, of which there is one process."""
     from config.instrumentation.system_metrics import InstallationState  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
     InstallationState(app).snapshot().__enter__()

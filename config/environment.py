@@ -1,6 +1,6 @@
 """Environment variables as settings: flags, lists, numbers, secrets from files, mail and log.
 
-A secret may be named by a file, as container platforms hand them over: NAME_FILE in place of NAME.
+A secret may come from a file, as on container platforms: NAME_FILE in place of NAME.
 """
 
 import os
@@ -15,11 +15,11 @@ TIMEOUT_S = 10
 
 
 class WrongMailAddress(ValueError):
-    """SPANWISE_EMAIL_URL cannot be understood. The message does not repeat it: it may hold a password."""
+    """Raised for an invalid SPANWISE_EMAIL_URL. The message does not repeat it, as it may hold a password."""
 
 
 def mail_settings(address: str) -> dict[str, Any]:
-    """Django's settings for console://, file:///folder, smtp://, smtp+tls:// (STARTTLS) or smtp+ssl://. Raises WrongMailAddress."""
+    """Return Django's settings for console://, file:///folder, smtp://, smtp+tls:// (STARTTLS) or smtp+ssl://. Raises WrongMailAddress."""
     try:
         parts = urlsplit(address)
         port = parts.port
@@ -42,7 +42,7 @@ def mail_settings(address: str) -> dict[str, Any]:
 
 
 def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
-    """Django's LOGGING: everything to the console, in one of two forms."""
+    """Return Django's LOGGING: everything to the console, in one of two formats."""
     form = "json" if environment.get("SPANWISE_LOG_FORMAT") == "json" else "line"
     return {
         "version": 1,
@@ -57,13 +57,13 @@ def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
 
 
 class SecretUnreadable(Exception):
-    """The file that a variable names cannot be read. The message names the variable and the file, never what is in it."""
+    """Raised when the file that a variable names cannot be read. The message names both, never the content."""
 
 
 def secret(name: str, default: str = "") -> str:
-    """The variable `name`, else the text of the file that `name`_FILE leads to without the line's end, else `default`.
+    """Return the variable `name`, else the text of the file in `name`_FILE without the line's end, else `default`.
 
-    Raises SecretUnreadable: a program that would go on with a default in a secret's place is worse than one that does not start.
+    Raises SecretUnreadable: a program must not start with a default in place of a secret.
     """
     if value := os.environ.get(name):
         return value
@@ -82,15 +82,15 @@ def flag(name: str, default: bool) -> bool:
 
 
 def entries(name: str, default: str) -> list[str]:
-    """The entries of a list with commas."""
+    """Return the entries of a comma-separated list."""
     return [entry.strip() for entry in os.environ.get(name, default).split(",") if entry.strip()]
 
 
 def number(name: str, default: float) -> float:
-    """The variable as a number. Raises ValueError."""
+    """Return the variable as a number. Raises ValueError."""
     return float(os.environ.get(name, default))
 
 
 def mebibytes(name: str, default: int) -> int:
-    """The variable, in MiB, as bytes."""
+    """Return the variable, in MiB, as bytes."""
     return int(number(name, default) * 1024 * 1024)

@@ -1,4 +1,4 @@
-"""Answers to errors that no view has caught: JSON under /api/, a page elsewhere."""
+"""Responses to uncaught errors: JSON under /api/, a page elsewhere."""
 
 import sys
 from http import HTTPStatus
@@ -34,10 +34,10 @@ def not_found(request: HttpRequest, exception: Exception | None = None) -> HttpR
 
 
 def server_error(request: HttpRequest) -> HttpResponse:
-    """Django calls this while it handles the exception: a database that is away, and a value that none can hold, are not our fault."""
+    """Respond to the exception that Django is handling: 503 for an unavailable database, 400 for an unstorable value, else 500."""
     error = sys.exc_info()[1]
     if isinstance(error, DataError):
-        return _answer(request, 400)  # such as a NUL character in the address of a filtered list
+        return _answer(request, 400)  # such as a NUL character in the URL of a filtered list
     return _answer(request, 503 if isinstance(error, DATABASE_UNAVAILABLE) else 500)
 
 
@@ -54,7 +54,7 @@ def _answer(request: HttpRequest, status: int) -> HttpResponse:
 
 
 def _page(status: int) -> str:
-    """The designed page, drawn without the request: context processors would ask the database, which may be the trouble."""
+    """Return the designed page, rendered without the request: context processors would query the database, which may have failed."""
     try:
         return render_to_string(f"{status}.html")
     except TemplateDoesNotExist:

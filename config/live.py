@@ -1,4 +1,4 @@
-"""What the websocket program answers to plain HTTP: whether it lives and can work, and that all else is for websockets."""
+"""The websocket program's middleware and its responses to plain HTTP: probes, and 426 for all else."""
 
 import asyncio
 import json
@@ -27,10 +27,10 @@ Application = Callable[[dict[str, Any], Receive, Send], Awaitable[None]]
 
 
 class OriginCheck:
-    """Lets through who comes from a page of this site, and programs with a token that name no origin at all.
+    """Accepts connections from a page of this site, and programs with a token that send no origin.
 
-    A page of this site has the scheme, the host and the port that the socket is asked for at, or is one of CSRF_TRUSTED_ORIGINS. A cookie
-    alone is never enough.
+    A page of this site has the scheme, host and port at which the socket is requested, or is one of CSRF_TRUSTED_ORIGINS. A cookie alone is
+    never sufficient.
     """
 
     def __init__(self, application: Application) -> None:
@@ -44,7 +44,7 @@ class OriginCheck:
 
 
 def is_own_origin(origin: bytes, scope: dict[str, Any]) -> bool:
-    """Whether a page of this origin is one of this site's."""
+    """Whether this origin is one of this site's."""
     host = dict(scope["headers"]).get(b"host", b"").decode("latin-1").lower()
     named = origin.decode("latin-1").lower()
     if named in settings.CSRF_TRUSTED_ORIGINS:
@@ -54,9 +54,9 @@ def is_own_origin(origin: bytes, scope: dict[str, Any]) -> bool:
 
 
 class SaysGoodbye:
-    """Around everything: from the first request on it hears that the program is told to stop, and then takes no more websockets.
+    """The outermost application: handles SIGTERM from the first request on, and then refuses websockets.
 
-    They are refused in a way that has the proxy ask the next program.
+    The refusal makes the proxy try the next program.
     """
 
     def __init__(self, application: Application) -> None:

@@ -7,7 +7,7 @@ from workspace.api.headers import HEADERS
 
 
 def _contact() -> dict[str, str]:
-    """Return whom integrators ask: those who run this installation."""
+    """Return the contact for integrators: the administrators of this installation."""
     email = os.environ.get("SPANWISE_CONTACT_EMAIL", "")
     return {"name": "Administrators of this installation"} | ({"email": email} if email else {})
 

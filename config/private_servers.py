@@ -1,4 +1,4 @@
-"""Where this checkout's private PostgreSQL and Redis live."""
+"""Locations of this checkout's private PostgreSQL and Redis."""
 
 import hashlib
 import os
@@ -12,14 +12,14 @@ DATABASE_ROLE = "spanwise"
 
 
 def state_directory() -> Path:
-    """The folder that holds all state of this installation: SPANWISE_VAR, else var/ in the checkout."""
+    """Return the folder that holds all state of this installation: SPANWISE_VAR, else var/ in the checkout."""
     return Path(os.environ.get("SPANWISE_VAR") or PROJECT_DIR / "var").resolve()
 
 
 def socket_directory(state: Path) -> Path:
-    """The short folder of this state's unix sockets (their paths may have 107 bytes at most).
+    """Return the short folder of this state's unix sockets (their paths may have 107 bytes at most).
 
-    The folder that `./run` has noted in the state wins, so that every shell finds the same one whatever its TMPDIR is.
+    A folder that `./run` has stored in the state takes precedence, so that every shell finds the same one whatever its TMPDIR is.
     """
     note = state / "socket_directory"
     if note.exists():
@@ -38,7 +38,7 @@ def private_redis_url(state: Path) -> str:
 
 
 def broker_url(redis_url: str) -> str:
-    """The same Redis, and the same database in it, as Celery writes it."""
+    """Return the URL of the same Redis and database, in Celery's form."""
     if not redis_url.startswith("unix://"):
         return redis_url
     parts = urlsplit(redis_url)

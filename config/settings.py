@@ -24,7 +24,7 @@ STATE_DIR = state_directory()
 
 
 def _secret_key() -> str:
-    """SPANWISE_SECRET_KEY, else a key made once and kept in the state folder, readable by its owner alone."""
+    """Return SPANWISE_SECRET_KEY, else a key made once and stored in the state folder, readable by its owner only."""
     if key := secret("SPANWISE_SECRET_KEY"):
         return key
     path = STATE_DIR / "secret_key"
@@ -40,36 +40,36 @@ def _secret_key() -> str:
 
 
 SECRET_KEY = _secret_key()
-SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions and links that were signed with these still hold
+SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions and links signed with these stay valid
 DEBUG = flag("SPANWISE_DEBUG", default=False)
 ALLOWED_HOSTS = entries("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
 CSRF_TRUSTED_ORIGINS = entries("SPANWISE_TRUSTED_ORIGINS", "")
 TRUSTED_PROXIES = trusted_proxies()
-PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: where links in mails lead
+PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: base of links in mails
 
-# Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.
+# Plain HTTP is for one machine: SPANWISE_HTTPS=1 enables what a public host needs.
 HTTPS = flag("SPANWISE_HTTPS", default=False)
 SECURE_SSL_REDIRECT = HTTPS
 SESSION_COOKIE_SECURE = HTTPS
 CSRF_COOKIE_SECURE = HTTPS
-COOKIE_PREFIX = "__Host-" if HTTPS else ""  # browsers take such a cookie from this very host alone, and over TLS
+COOKIE_PREFIX = "__Host-" if HTTPS else ""  # browsers accept such a cookie only from this host, over TLS
 SESSION_COOKIE_NAME = f"{COOKIE_PREFIX}sessionid"
 CSRF_COOKIE_NAME = f"{COOKIE_PREFIX}csrftoken"
 SECURE_HSTS_SECONDS = 31_536_000 if HTTPS else 0
 SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
 SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
-SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
+SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, require an origin
 SESSION_ENGINE = "workspace.sessions.session_store"
-SESSION_COOKIE_AGE = int(number("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
+SESSION_COOKIE_AGE = int(number("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from the login, whatever the activity
 SESSION_IDLE_S = number("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
-SESSION_WATCHING_S = number("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
+SESSION_WATCHING_S = number("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page that the user does not use
 SESSION_COOKIE_HTTPONLY = True
 PASSWORD_HASHERS = ["accounts.password_words.Argon2id", "django.contrib.auth.hashers.PBKDF2PasswordHasher"]  # new, old
-MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
+MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's messages need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
-# Debian's GDAL is older than 3.9. GDAL reads terrain files alone, from the command line, with its driver named (GTiff, SRTMHGT).
+# Debian's GDAL is older than 3.9. GDAL reads terrain files only, from the command line, with its driver named (GTiff, SRTMHGT).
 SILENCED_SYSTEM_CHECKS = ["gis.W001"]
 
 INSTALLED_APPS = [
@@ -134,7 +134,7 @@ _database = dj_database_url.parse(
     conn_max_age=60,
     conn_health_checks=True,
 )
-# Prepared by workspace/prepared_statements.py alone: Django sends its own as text. The name is shown in pg_stat_activity.
+# Only workspace/prepared_statements.py prepares statements: Django sends its own as text. The name is shown in pg_stat_activity.
 _named = {"application_name": os.environ.get("SPANWISE_PROGRAM", "spanwise")}
 _database["OPTIONS"] = _named | _database.get("OPTIONS", {}) | {"prepare_threshold": 0}
 DATABASES = {"default": _database}
@@ -146,11 +146,11 @@ CACHES = {
         "BACKEND": "django.core.cache.backends.redis.RedisCache",
         "LOCATION": REDIS_URL,
         "KEY_PREFIX": "spanwise",
-        "OPTIONS": {"socket_connect_timeout": 1, "socket_timeout": 1},  # what the cache holds can be done without
+        "OPTIONS": {"socket_connect_timeout": 1, "socket_timeout": 1},  # the cache's content is dispensable
     },
 }
 
-# Words between programs and open pages. A page that hears none looks at the row itself, so Redis may be away, or come back empty.
+# Notifications between programs and open pages. A page without them polls the row, so Redis may be unavailable, or come back empty.
 CHANNEL_LAYERS = {
     "default": {
         "BACKEND": "channels_redis.pubsub.RedisPubSubChannelLayer",
@@ -169,8 +169,8 @@ AUTH_PASSWORD_VALIDATORS = [
     *({"NAME": f"django.contrib.auth.password_validation.{name}Validator"} for name in _DJANGOS_VALIDATORS),
     {"NAME": "accounts.password_words.ContextWordsValidator"},
 ]
-PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
-REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
+PASSWORD_WORDS = entries("SPANWISE_PASSWORD_WORDS", "")  # forbidden in passwords, beside those of the trade
+REQUIRES_SECOND_FACTOR = flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # for all users, whatever their organisation requires
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"
@@ -196,7 +196,7 @@ STORAGES = {
 }
 STATICFILES_DIRS = [BASE_DIR / "static", ("lib", BASE_DIR / "node_modules" / ".spanwise")]
 
-# What users may send in one request. Files come in as uploads, part by part, into a folder that web and worker-data share.
+# Limits of one request of a user. Files are uploaded in parts to a folder that web and worker-data share.
 UPLOAD_DIR = Path(os.environ.get("SPANWISE_UPLOAD_DIR") or STATE_DIR / "uploads")
 DATA_UPLOAD_MAX_MEMORY_SIZE = 2 * 1024 * 1024
 MAX_UPLOAD_BYTES = {
@@ -206,7 +206,7 @@ MAX_UPLOAD_BYTES = {
     "zones": mebibytes("SPANWISE_MAX_ZONES_MIB", 16),
 }
 
-UPLOADS_BYTES = mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
+UPLOADS_BYTES = mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # of one organisation: announced files that are stored
 
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
@@ -234,11 +234,11 @@ REST_FRAMEWORK: dict[str, Any] = {
 
 SPECTACULAR_SETTINGS = openapi_settings()
 
-# Open websockets over all `live` programs; 0: as many as there are. Those of an address count for all operators behind it.
+# Open websockets over all `live` programs; 0: no limit. Those of an address count for all operators behind it.
 SOCKETS_PER_USER = int(os.environ.get("SPANWISE_SOCKETS_PER_USER", "32"))
 SOCKETS_PER_ADDRESS = sockets_per_address(operators_per_address())
 
-# Celery: rows in PostgreSQL are the truth, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).
+# Celery: rows in PostgreSQL are authoritative, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).
 CELERY_BROKER_URL = broker_url(REDIS_URL)
 CELERY_TASK_IGNORE_RESULT = True
 CELERY_TASK_ACKS_LATE = True
@@ -249,7 +249,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # what is not done by then goes back to the queue: config/worker_shutdown.py
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # unfinished work then returns to the queue: config/worker_shutdown.py
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,
@@ -257,7 +257,7 @@ CELERY_BROKER_TRANSPORT_OPTIONS = {
     "socket_timeout": 10,
     "socket_connect_timeout": 2,
     "health_check_interval": 5,
-    # A request that sends a job waits for no queue that is away (kombu's own would be 6 s): the sweep sends the job later.
+    # A request that sends a job does not wait for an unavailable queue (kombu's own wait would be 6 s): the sweep sends the job later.
     "max_retries": 1,
     "interval_start": 0.0,
     "interval_step": 0.1,
@@ -302,7 +302,7 @@ CELERY_BEAT_SCHEDULE = {
 CELERY_BEAT_SCHEDULER = "config.instrumentation.task_instrumentation:WatchedScheduler"
 CELERY_BEAT_SCHEDULE_FILENAME = str(STATE_DIR / "celerybeat-schedule")
 
-# The field's own rules, each with a unit in its name.
+# Domain rules, each with a unit in its name.
 GRAPH_RULES = LinkingRules(
     bridge_to_tower_m=number("SPANWISE_BRIDGE_TO_TOWER_M", LinkingRules.bridge_to_tower_m),
     bridge_to_bridge_m=number("SPANWISE_BRIDGE_TO_BRIDGE_M", LinkingRules.bridge_to_bridge_m),
@@ -350,23 +350,23 @@ COMMAND_RULES = CommandLifetimes(
     speed_s=number("SPANWISE_SPEED_COMMAND_S", CommandLifetimes.speed_s),
     read_back_s=number("SPANWISE_READ_BACK_S", CommandLifetimes.read_back_s),
 )
-# The MAVLink gateway: where it listens (HOST:PORT, several with commas, empty for none), and what it keeps.
+# The MAVLink gateway: where it listens (HOST:PORT, comma-separated, empty for none), and its limits.
 GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
-GATEWAY_MAX_COMMANDS = int(number("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # carried at once, above which speeds wait
+GATEWAY_MAX_COMMANDS = int(number("SPANWISE_GATEWAY_MAX_COMMANDS", 200))  # concurrent, above which speeds wait
 LINK_BUDGET_BYTES_S = number("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
 GATEWAY_ALONE_S = number("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
-GATEWAY_MAX_RECORDS = int(number("SPANWISE_GATEWAY_MAX_RECORDS", 100_000))  # kept in memory while the database is away
+GATEWAY_MAX_RECORDS = int(number("SPANWISE_GATEWAY_MAX_RECORDS", 100_000))  # kept in memory while the database is unavailable
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
 MAX_FLIGHT_LOG_MIB = number("SPANWISE_MAX_FLIGHT_LOG_MIB", 256)
-# The watch, which estimates where UAVs are between their reports.
+# The estimator, which computes where UAVs are between their reports.
 ESTIMATOR_NAME = os.environ.get("SPANWISE_ESTIMATOR_NAME", "")
-ESTIMATOR_MAX_UAVS = int(number("SPANWISE_ESTIMATOR_MAX_UAVS", 1_000))  # that one watch holds at once
-TAKE_OFF_DISTANCE_M = number("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is loaded
-# by which the heights that it reports may differ from the planned one: never more than what plans keep free of zones above and below
+ESTIMATOR_MAX_UAVS = int(number("SPANWISE_ESTIMATOR_MAX_UAVS", 1_000))  # that one estimator holds at once
+TAKE_OFF_DISTANCE_M = number("SPANWISE_TAKE_OFF_DISTANCE_M", 100.0)  # at most from the planned take-off, or nothing is uploaded
+# Largest difference of reported and planned heights: never more than the margins that plans keep above and below zones.
 TAKE_OFF_HEIGHT_M = min(number("SPANWISE_TAKE_OFF_HEIGHT_M", ZONE_RULES.height_margin_m), ZONE_RULES.height_margin_m)
-RESUME_DISTANCE_M = number("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would go on with
+RESUME_DISTANCE_M = number("SPANWISE_RESUME_DISTANCE_M", 30.0)  # at most from the leg that a UAV in the air would continue
 TRANSFER_RULES = TransferRules(
     timeout_s=number("SPANWISE_TRANSFER_TIMEOUT_S", TransferRules.timeout_s),
     item_timeout_s=number("SPANWISE_TRANSFER_ITEM_TIMEOUT_S", TransferRules.item_timeout_s),
@@ -377,15 +377,15 @@ VEHICLE_COMMAND_RULES = VehicleCommandRules(
     timeout_s=number("SPANWISE_VEHICLE_COMMAND_TIMEOUT_S", VehicleCommandRules.timeout_s),
     retries=int(number("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
 )
-TELEMETRY_DAYS = number("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
+TELEMETRY_DAYS = number("SPANWISE_TELEMETRY_DAYS", 365)  # that records are stored; 0: forever
 MAX_SYSTEM_IDS = int(number("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
 DATA_WORKERS = int(number("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
-READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # that reading a file may use, by its size
+READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # limit for reading a file, by its size
 MAX_OPEN_PLANS = int(number("SPANWISE_MAX_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 MAX_OPEN_REHEARSALS = int(number("SPANWISE_MAX_OPEN_REHEARSALS", 4))  # of one user, waiting and running
-# Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.
+# Simulated UAVs in real time: how many, where pool UAVs listen, and where those of missions connect.
 SIMULATOR_NAME = os.environ.get("SPANWISE_SIMULATOR_NAME", "")
-SIMULATOR_MAX_UAVS = int(number("SPANWISE_SIMULATOR_MAX_UAVS", 60))  # of one simulator; each counts as often as its speed
+SIMULATOR_MAX_UAVS = int(number("SPANWISE_SIMULATOR_MAX_UAVS", 60))  # of one simulator; each counts times its speed factor
 SIMULATOR_GATEWAY = os.environ.get("SPANWISE_SIMULATOR_GATEWAY", "")  # HOST:PORT; empty: the first of SPANWISE_GATEWAY_UDP
 SIMULATOR_HOST = os.environ.get("SPANWISE_SIMULATOR_HOST", "127.0.0.1")
 SIMULATOR_PORTS = os.environ.get("SPANWISE_SIMULATOR_PORTS", "14600-14799")
@@ -394,18 +394,18 @@ MAX_SIMULATION_H = number("SPANWISE_MAX_SIMULATION_H", 8.0)
 MAX_WAIT_S = number("SPANWISE_MAX_WAIT_S", 20.0)  # that a request may wait for a large plan (Prefer: wait)
 GRAPH_CACHE_DIR = STATE_DIR / "graphs"
 
-# Where curators take the visible area's OpenStreetMap data from; empty for nowhere.
+# Source of the visible area's OpenStreetMap data for curators; empty for none.
 OVERPASS_ADDRESS = os.environ.get("SPANWISE_OVERPASS_ADDRESS", "https://overpass-api.de/api/interpreter")
 OVERPASS_MAX_KM2 = number("SPANWISE_OVERPASS_MAX_KM2", 5_000.0)
 
-# Raster tiles under the map: addresses only; the page works without them on a quiet background.
+# Raster tiles under the map: addresses only; without them the page shows a plain background.
 BASE_MAP_TILES = os.environ.get("SPANWISE_BASE_MAP_TILES", "https://tile.openstreetmap.org/{z}/{x}/{y}.png")
 BASE_MAP_ATTRIBUTION = os.environ.get("SPANWISE_BASE_MAP_ATTRIBUTION", "© OpenStreetMap contributors")
 SATELLITE_TILES = os.environ.get("SPANWISE_SATELLITE_TILES", "")
 SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 
-# Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
+# Hosts (host:port) that may be fetched from although they are not on the public internet, such as an own Overpass server.
 OUTGOING_ALLOWED_HOSTS = entries("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
-LOG_REQUESTS = flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
+LOG_REQUESTS = flag("SPANWISE_LOG_REQUESTS", default=False)  # one line each, for installations whose proxy logs none
 LOGGING = log_settings(os.environ)

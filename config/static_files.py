@@ -5,12 +5,12 @@ from typing import Any
 
 from django.contrib.staticfiles.storage import ManifestStaticFilesStorage
 
-MAX_CHAIN_LENGTH = 12  # modules that import modules: one pass over all files for each step
-# Whose imports are rewritten: our own modules and style sheets, and libraries that consist of several modules. Other libraries are
-# served as they came; looking for imports in them takes most of the time. A library's files are named with and without lib/.
+MAX_CHAIN_LENGTH = 12  # imports in a row: one pass over all files for each
+# Files whose imports are rewritten: our own modules and style sheets, and libraries of several modules. Other libraries are served
+# unchanged, as searching them for imports takes most of the time. A library's files are named with and without lib/.
 REWRITTEN_FOLDERS = ("js", "css", "lib/maplibre-gl", "maplibre-gl", "lib/three", "three")
-# Imports as our own modules are formatted: at the start of a line, in double quotes. Django's patterns fit any format and take nine
-# tenths of the time: they look for an end from each "import" on, those in comments included.
+# Imports as our own modules are formatted: at the start of a line, in double quotes. Django's patterns fit any format and take nine tenths
+# of the time: they search for an end from each "import" on, including those in comments.
 OWN_IMPORTS = [
     (re.compile(r'(?m)^(?P<matched>(?P<import>(?:import|export) (?:[^;"]*? from )?)"(?P<url>[./][^"]+)";)'), '%(import)s"%(url)s";'),
     (re.compile(r'(?P<matched>import\("(?P<url>[./][^"]+\.js)"\))'), 'import("%(url)s")'),
@@ -22,7 +22,7 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
 
     support_js_module_import_aggregation = True
     max_post_process_passes = MAX_CHAIN_LENGTH
-    _patterns: dict[str, list[tuple[re.Pattern[str], str]]]  # Django's own: by folder and extension, what is replaced by what
+    _patterns: dict[str, list[tuple[re.Pattern[str], str]]]  # Django's: by folder and extension, patterns and replacements
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)

@@ -1,4 +1,4 @@
-"""The HTTP application of UAVs alone (WSGI), program `uav-link`: its threads are taken by no page, and it plans nothing."""
+"""The HTTP application of UAVs only (WSGI), program `uav-link`: pages cannot occupy its threads, and it plans nothing."""
 
 import os
 
@@ -14,7 +14,7 @@ settings.MIDDLEWARE = [
     "django.middleware.security.SecurityMiddleware",
     "workspace.api.query_parameters.KnownQueryParameters",
 ]
-begin_tracing("uav-link")  # before the middleware is put together, of which it is a part
+begin_tracing("uav-link")  # before the middleware that it extends is built
 application = get_wsgi_application()
 
 import config.uav_link_urls  # noqa: E402, F401 (Django first; before the first request comes in)

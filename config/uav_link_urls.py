@@ -1,4 +1,4 @@
-"""Every address of the program `uav-link`."""
+"""All URLs of the program `uav-link`."""
 
 from django.urls import include, path
 

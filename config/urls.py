@@ -1,4 +1,4 @@
-"""Every address of the program."""
+"""All URLs of the program."""
 
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
@@ -8,7 +8,7 @@ from workspace.api.api_document import api_document
 
 admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
-    path("api/v1/", include("missions.urls")),  # first, with what is asked for most: addresses are tried one after the other
+    path("api/v1/", include("missions.urls")),  # first, as the most frequent: URLs are tried in order
     path("api/schema", api_document, name="schema"),
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),

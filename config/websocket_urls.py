@@ -1,4 +1,4 @@
-"""Every address of a websocket."""
+"""All URLs of websockets."""
 
 from telemetry.websocket_urls import websocket_urlpatterns as of_telemetry
 from workspace.live.websocket_urls import websocket_urlpatterns as of_the_workspace

@@ -1,8 +1,8 @@
-"""How a worker ends when it is told to (SIGTERM, SIGQUIT): what is short is finished, what is long goes back to its queue, within 10 s.
+"""Shutdown of a worker on SIGTERM or SIGQUIT: short work is finished, long work returns to its queue, within 10 s.
 
-Celery's own soft shutdown sleeps its whole time in the signal's handler, however soon the work is done, and then waits for processes
-that are still warming up and do not hear a signal by then. Here the worker's loop goes on meanwhile: results are taken, and messages
-acknowledged. A process that has not ended by itself is killed, which work has to survive anyway.
+Celery's own soft shutdown sleeps its whole time in the signal handler, however soon the work is done, and then waits for processes that
+are still warming up and ignore signals. Here the worker's loop continues meanwhile: it takes results and acknowledges messages. Processes
+that have not ended are killed, which work must survive anyway.
 """
 
 import logging
@@ -23,14 +23,14 @@ from django.conf import settings
 logger = logging.getLogger(__name__)
 
 POLL_INTERVAL_S = 0.2
-GIVE_BACK_S = 1.0  # for work that is told to end: its job is another worker's from then on
-GO_S = 0.5  # for processes without work, until they are killed
+GIVE_BACK_S = 1.0  # for interrupted work: its job is then another worker's
+GO_S = 0.5  # for idle processes, until they are killed
 ENDS_WITHIN_S = 9.5
 SIGNALS = (signal.SIGTERM, signal.SIGQUIT)
 
 
 class SoftEnd(StartStopStep):
-    """Of one worker. Its loop looks several times a second whether it has been told to end."""
+    """The shutdown of one worker. Its loop polls several times a second for a received signal."""
 
     requires = ("celery.worker.components:Timer",)
 
@@ -43,8 +43,8 @@ class SoftEnd(StartStopStep):
         signals.worker_before_create_process.connect(self._receive, weak=False)
 
     def _receive(self, **_: Any) -> None:
-        """Before the first process is begun: from then on Celery's own way to end may wait for one that does not hear."""
-        is_main = threading.current_thread() is threading.main_thread()  # no other hears signals
+        """Install the handlers before the first process starts; later Celery's own shutdown may wait for one that ignores signals."""
+        is_main = threading.current_thread() is threading.main_thread()  # only this one receives signals
         if is_main and not self._receives and os.getpid() == self._process:
             self._receives = True
             for number in SIGNALS:
@@ -58,17 +58,17 @@ class SoftEnd(StartStopStep):
         self._timer.cancel()
 
     def _end(self, number: int, frame: FrameType | None) -> None:
-        if os.getpid() != self._process:  # a process of the pool between its fork and handlers of its own: it has no work yet
+        if os.getpid() != self._process:  # a pool process between its fork and its own handlers: it has no work yet
             os._exit(1)
         if self._reported_s is not None:
             return
         self._reported_s = time.monotonic()
-        _later(ENDS_WITHIN_S, os._exit, 1)  # a queue that neither answers nor refuses holds up nothing
+        _later(ENDS_WITHIN_S, os._exit, 1)  # an unresponsive queue must not block the shutdown
         if not state.active_requests:
             self._leave()
 
     def _look(self) -> None:
-        """In the worker's loop."""
+        """Poll from the worker's loop."""
         if self._reported_s is None or state.should_terminate is not None:
             return
         self._take_nothing_more()
@@ -90,7 +90,7 @@ class SoftEnd(StartStopStep):
                 consumer.cancel()
 
     def _leave(self) -> None:
-        """The loop ends the worker, and what has no acknowledgement is put back into its queue."""
+        """End the worker's loop; unacknowledged messages return to their queue."""
         state.should_terminate = os.EX_OK  # type: ignore[assignment] # its stub knows None alone
         _later(GO_S, self._kill_processes)
 
@@ -99,7 +99,7 @@ class SoftEnd(StartStopStep):
         for process in list(getattr(pool, "_pool", [])):
             with suppress(ProcessLookupError):
                 os.kill(process.pid, signal.SIGKILL)
-        _later(GO_S, self._kill_processes)  # a pool that has not been closed yet starts others
+        _later(GO_S, self._kill_processes)  # a pool that is not closed yet would start others
 
 
 def _later(after_s: float, do: Callable[..., object], *arguments: object) -> None:

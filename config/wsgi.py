@@ -7,7 +7,7 @@ from django.core.wsgi import get_wsgi_application
 from operation.tracing import begin_tracing
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
-begin_tracing("web")  # before the middleware is put together, of which it is a part
+begin_tracing("web")  # before the middleware that it extends is built
 application = get_wsgi_application()
 
 import config.urls  # noqa: E402, F401 (Django first; before the first request comes in)

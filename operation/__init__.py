@@ -1,1 +1,1 @@
-"""How the programs are watched: what they count, what they write down, and whether they can work. It knows no app."""
+"""Monitoring of the programs: metrics, logs and readiness. It knows no app."""

@@ -1,4 +1,4 @@
-"""Where a process tells how it does: HOST:PORT or unix:PATH, from SPANWISE_METRICS. Only the standard library: the probe starts often."""
+"""Address of a process's metrics: HOST:PORT or unix:PATH, from SPANWISE_METRICS. Only the standard library: the probe starts often."""
 
 import os
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ VARIABLE = "SPANWISE_METRICS"
 
 
 class WrongAddress(ValueError):
-    """Neither HOST:PORT nor unix:PATH."""
+    """Raised for text that is neither HOST:PORT nor unix:PATH."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Address:
 
 
 def address_of(text: str) -> Address | None:
-    """None for an empty one: nobody is told anything. Raises WrongAddress."""
+    """Return the address; None for an empty text: metrics are off. Raises WrongAddress."""
     text = text.strip()
     if not text:
         return None
@@ -40,5 +40,5 @@ def address_of(text: str) -> Address | None:
 
 
 def address_of_environment() -> Address | None:
-    """Raises WrongAddress."""
+    """Return the address of the environment. Raises WrongAddress."""
     return address_of(os.environ.get(VARIABLE, ""))

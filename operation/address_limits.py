@@ -1,6 +1,6 @@
-"""Limits of what one network address may ask for, for the proxy and the programs: each is so much for every operator behind one address.
+"""Limits per client address, for the proxy and the programs, scaled by the number of operators behind one address.
 
-Operators behind one NAT share an address, so an address is allowed what OPERATORS_PER_ADDRESS of them use at the same time.
+Operators behind one NAT share an address, so an address may use what OPERATORS_PER_ADDRESS of them need at the same time.
 """
 
 import ipaddress
@@ -15,13 +15,13 @@ SOCKETS_PER_OPERATOR = 12  # a page has one, and one more for each job that it f
 
 @dataclass(frozen=True)
 class CostlyKind:
-    """Requests that cost much: which paths, and what one operator asks for at most."""
+    """A kind of expensive requests: its paths, and the limits of one operator."""
 
     name: str
     location: str  # as nginx writes it
-    per_second: float  # of one operator, over a long time
+    per_second: float  # of one operator, long-term average
     burst: int  # of one operator, at once
-    at_once: int = 0  # of one operator, under way; 0: without limit
+    at_once: int = 0  # of one operator, concurrent; 0: no limit
 
 
 EXPORTS = r"^/api/v1/(missions|uavs)/[^/]+/(record\.zip|telemetry\.[a-z]+|flight-logs/[0-9]+/file)$"
@@ -34,7 +34,7 @@ COSTLY = (
 
 
 def operators_per_address() -> int:
-    """SPANWISE_OPERATORS_PER_ADDRESS; 0 for no limits by address. Raises ValueError for what is no such number."""
+    """Return SPANWISE_OPERATORS_PER_ADDRESS; 0: no limits by address. Raises ValueError for an invalid number."""
     operators = int(os.environ.get("SPANWISE_OPERATORS_PER_ADDRESS", OPERATORS_PER_ADDRESS))
     if operators < 0:
         raise ValueError("SPANWISE_OPERATORS_PER_ADDRESS is below 0")
@@ -42,7 +42,7 @@ def operators_per_address() -> int:
 
 
 def requests_per_minute(kind: CostlyKind, operators: int) -> int:
-    """The rate of one address, in the unit of nginx that has no fractions at these rates."""
+    """Return the rate of one address, in the unit of nginx that has no fractions at these rates."""
     return max(1, ceil(kind.per_second * 60 * operators))
 
 
@@ -51,6 +51,6 @@ def sockets_per_address(operators: int) -> int:
 
 
 def trusted_proxies() -> list[ipaddress.IPv4Network | ipaddress.IPv6Network]:
-    """SPANWISE_TRUSTED_PROXIES: from where a proxy of ours may come by TCP. Raises ValueError for what is no network."""
+    """Return SPANWISE_TRUSTED_PROXIES: networks from which our own proxy may connect. Raises ValueError for an invalid network."""
     named = os.environ.get("SPANWISE_TRUSTED_PROXIES", PRIVATE_NETWORKS)
     return [ipaddress.ip_network(network.strip()) for network in named.split(",") if network.strip()]

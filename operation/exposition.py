@@ -1,4 +1,4 @@
-"""A small server of each process's own, beside its work: `/metrics` for Prometheus, `/healthz` and `/readyz` for whoever watches it."""
+"""A small HTTP server in each process: `/metrics` for Prometheus, `/healthz` and `/readyz` for probes."""
 
 import json
 import logging
@@ -25,12 +25,12 @@ from operation.version import VERSION
 
 logger = logging.getLogger(__name__)
 
-AGAIN_AFTER_S = 2.0  # an address that somebody else holds: the process before this one, on its way out
+AGAIN_AFTER_S = 2.0  # while another process, usually the previous one, still holds the address
 MAX_REQUEST_S = 10.0
 
 
 class _Handler(BaseHTTPRequestHandler):
-    """Three addresses, nothing else, and no word about it in the log."""
+    """Serves three paths and writes no access log."""
 
     server: "_Server"
     timeout = MAX_REQUEST_S
@@ -65,7 +65,7 @@ class _Handler(BaseHTTPRequestHandler):
             self.wfile.write(body)
 
     def address_string(self) -> str:
-        return "-"  # of a unix socket there is none
+        return "-"  # a unix socket has none
 
     def log_message(self, format: str, *args: object) -> None:
         pass
@@ -82,7 +82,7 @@ class _Server(ThreadingHTTPServer):
         super().__init__(address.path or (address.host, address.port), _Handler)  # type: ignore[arg-type]
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """Whoever asked may have gone before the answer."""
+        """Ignore clients that disconnected before the response."""
         if not isinstance(sys.exc_info()[1], ConnectionError):
             logger.exception("a question about how this program does was not answered")
 
@@ -92,14 +92,14 @@ class _Server(ThreadingHTTPServer):
             return
         path = str(self.server_address)
         with suppress(FileNotFoundError):
-            Path(path).unlink()  # of a process that was killed
+            Path(path).unlink()  # left by a killed process
         self.socket.bind(path)
         Path(path).chmod(0o600)
         self.server_name, self.server_port = "localhost", 0
 
 
 class Exposition:
-    """Tells from `start` until `close`. Never in the way of the work: what cannot be listened to is tried again in the background."""
+    """Serves from `start` until `close`. It never blocks the program: a failed bind is retried in the background."""
 
     def __init__(self, address: Address, readiness: Readiness) -> None:
         self.address = address
@@ -121,7 +121,7 @@ class Exposition:
 
     @property
     def port(self) -> int:
-        """That was given, where port 0 was asked for."""
+        """Return the assigned port, where port 0 was requested."""
         return int(self._server.server_address[1]) if self._server is not None else self.address.port
 
     def _run(self) -> None:
@@ -145,7 +145,7 @@ _begins = threading.Lock()
 
 
 def serve_health(program: str, *checks: Callable[[], list[str]]) -> Exposition | None:
-    """Where SPANWISE_METRICS says so, once a process. `checks` are what the program needs to work, else database and Redis."""
+    """Serve at the address of SPANWISE_METRICS, once per process. `checks` are what the program needs, by default database and Redis."""
     global _here
     address = address_of_environment()
     if address is None:
@@ -159,7 +159,7 @@ def serve_health(program: str, *checks: Callable[[], list[str]]) -> Exposition |
 
 
 def metrics_text() -> bytes:
-    """Of this process, or of all that count into one folder."""
+    """Return the metrics of this process, or of all that share one folder."""
     if PROCESSES_FOLDER in os.environ:
         together = CollectorRegistry()
         MultiProcessCollector(together)

@@ -1,4 +1,4 @@
-"""How often Python looks for garbage, rarely while a program starts and then only among what is new; when free memory is given back."""
+"""Tuning of Python's garbage collector, and returning free memory to the OS."""
 
 import ctypes
 import gc
@@ -7,21 +7,22 @@ import threading
 import time
 
 INTERVAL_S = 60.0
-_RETURN_TO_SYSTEM = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None  # of the GNU C library alone
+_RETURN_TO_SYSTEM = getattr(ctypes.CDLL(None), "malloc_trim", None) if sys.platform == "linux" else None  # GNU C library only
 
 
 def collect_rarely() -> None:
-    """A start makes hundreds of thousands of objects that stay; walking through them again and again is a third of its time."""
+    """Collect rarely during a start, which makes hundreds of thousands of permanent objects; traversing them takes a third of its time."""
     gc.set_threshold(50_000, 20, 50)
 
 
 def freeze_startup_objects() -> None:
-    """Once a start has ended: what it has made (code, models, graphs) stays, and nobody walks through it again.
+    """Freeze the objects of a start (code, models, graphs), which stay, so that no collection traverses them again.
 
-    Then a look costs little and comes often, as programs that do little leave little behind: ten circles at each question to the
-    database, which at 20,000 a look were half an hour's growth. Python looks at all that is old only when a quarter of it is new, and goes
-    on counting what has been frozen until it looks once more. Without that second look some 800,000 objects of the start count, and what a
-    request left behind while others were answered waits for 200,000 of its kind: a web program grew by a sixth an hour.
+    Collections are then cheap and run often: each database query leaves ten cycles, which at a threshold of 20,000 would take half an hour
+    to
+    collect. Python collects old objects only when a quarter of them is new, and counts frozen ones until its next full collection. Without
+    the second collection here some 800,000 start objects count, and cycles from requests wait for 200,000 of their kind: a web program grew
+    by a sixth an hour.
     """
     gc.collect()
     gc.freeze()
@@ -30,11 +31,11 @@ def freeze_startup_objects() -> None:
 
 
 def trim_memory() -> None:
-    """Once a piece of work has ended: what it left in circles goes, and what it needed for a time goes back to the system.
+    """Collect cycles and return unused memory to the OS after a piece of work.
 
-    Otherwise each task begins among what the ones before it left, and reaches higher than any of them now and then; the memory that it
-    took for that is returned only from its end, where something small stays: a worker of the ground grew by some 6 MiB an hour, of which
-    nothing was in use.
+    Otherwise each task starts with the garbage of earlier ones and peaks higher. The allocator returns memory only from the top of the
+    heap,
+    which one small object can block: a data worker grew by some 6 MiB an hour, none of it in use.
     """
     gc.collect()
     if _RETURN_TO_SYSTEM is not None:
@@ -42,7 +43,7 @@ def trim_memory() -> None:
 
 
 def trim_memory_periodically() -> None:
-    """In programs whose work never ends: the same each minute."""
+    """Trim memory each minute, in programs whose work never ends."""
     threading.Thread(target=_keep_giving_back, name="memory", daemon=True).start()
 
 

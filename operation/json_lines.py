@@ -1,7 +1,7 @@
-"""Every line that a program writes is JSON, whoever writes it: python -m operation.json_lines MODULE [ARGUMENT...]
+"""JSON for every line that a program writes: python -m operation.json_lines MODULE [ARGUMENT...]
 
-The formatters of logging are here as well. Run as a program it makes JSON of all other lines: what is printed, warned of, raised and not
-caught, also before logging is set up, and in processes that are forked off. A file that ends in .py may stand for the module.
+Also holds the formatters of logging. Run as a program it converts all other lines to JSON: prints, warnings and uncaught exceptions, also
+before logging is set up, and in forked processes. The module may be a file that ends in .py.
 """
 
 import io
@@ -20,11 +20,11 @@ from operation.log_context import ABOUT_REQUEST, FIELDS, facts
 from operation.redaction import without_secrets
 
 IN_ONE_LINE = {code: f"\\x{code:02x}" for code in (*range(32), 127, 0x85, 0x2028, 0x2029)} | {9: "\\t", 10: "\\n", 13: "\\r"}
-MAX_LINE_LENGTH = 100_000  # signs; a line without an end is cut
+MAX_LINE_LENGTH = 100_000  # characters; an endless line is cut
 
 
 class LineFormatter(logging.Formatter):
-    """`2026-01-31 12:00:00,000 INFO name message [request=… mission=…]`. Whatever the message holds, it begins no line of its own."""
+    """`2026-01-31 12:00:00,000 INFO name message [request=… mission=…]`. Line breaks in a message are escaped."""
 
     def __init__(self) -> None:
         super().__init__("{asctime} {levelname} {name} {message}", style="{")
@@ -40,7 +40,7 @@ class LineFormatter(logging.Formatter):
 
 
 class JsonFormatter(logging.Formatter):
-    """One object a line: time (RFC 3339, UTC), level, logger, message, and what the work is about."""
+    """One object per line: time (RFC 3339, UTC), level, logger, message, and the context of the work."""
 
     def __init__(self, program: str = "", **_: object) -> None:
         super().__init__()
@@ -60,12 +60,13 @@ class JsonFormatter(logging.Formatter):
             reported["exception"] = without_secrets(self.formatException(record.exc_info))
         if record.stack_info:
             reported["stack"] = without_secrets(record.stack_info)
-        return json.dumps(reported, default=str)  # in ASCII: some programs take other signs for the end of a line
+        return json.dumps(reported, default=str)  # in ASCII: some programs treat other characters as line ends
 
 
 def named_in(record: logging.LogRecord) -> dict[str, str]:
-    """What the line itself says in `extra`, before what is known of the work at hand. Django writes some lines once a request is over, and
-    names the request object in them.
+    """Return the context of a line: its own `extra` before the current context. Django logs some lines after a request, and passes the
+    request
+    object in them.
     """
     reported = {name: getattr(record, name, None) for name in FIELDS}
     read = getattr(reported.pop("request"), ABOUT_REQUEST, None)
@@ -86,7 +87,7 @@ def json_line(message: str, *, level: str = "INFO", logger: str = "output") -> s
 
 
 def is_json(line: str) -> bool:
-    """Whether it is an object already."""
+    """Whether the line is already a JSON object."""
     if not line.startswith("{"):
         return False
     try:
@@ -97,7 +98,7 @@ def is_json(line: str) -> bool:
 
 
 class JsonLines(io.TextIOBase):
-    """In place of a stream. Whole lines are written at once, so that those of several processes do not mix."""
+    """Replaces a stream. It writes whole lines at once, so that those of several processes do not mix."""
 
     def __init__(self, stream: TextIO, name: str) -> None:
         self._stream, self._name = stream, name
@@ -105,7 +106,7 @@ class JsonLines(io.TextIOBase):
         os.register_at_fork(after_in_child=self._forget)
 
     def _forget(self) -> None:
-        """What a parent has begun is the parent's."""
+        """Drop a line that the parent process began."""
         self._begun, self._lock = "", threading.RLock()
 
     @property
@@ -135,7 +136,7 @@ class JsonLines(io.TextIOBase):
         self._stream.flush()
 
     def close(self) -> None:
-        """At the end of the program: what has no end yet is told as well."""
+        """Write an unfinished line at the end of the program."""
         if self._begun:
             self.write("\n")
 
@@ -144,7 +145,7 @@ class JsonLines(io.TextIOBase):
 
 
 def write_json_lines() -> None:
-    """From here on, in this process and those that it forks."""
+    """Write JSON from here on, in this process and its forks."""
     sys.stdout = sys.__stdout__ = JsonLines(sys.stdout, "stdout")  # type: ignore[assignment,misc]
     sys.stderr = sys.__stderr__ = JsonLines(sys.stderr, "stderr")  # type: ignore[assignment,misc]
     sys.excepthook = _log_uncaught

@@ -1,4 +1,4 @@
-"""What the work at hand is about: a request, a mission, a UAV. Every line of log that is written meanwhile names it."""
+"""The context of the current work: a request, a mission, a UAV. Every log line written meanwhile contains it."""
 
 import re
 import secrets
@@ -8,7 +8,7 @@ from contextvars import ContextVar
 
 REQUEST_ID_HEADER = "X-Request-ID"
 FIELDS = ("request", "user", "mission", "uav", "job")
-ABOUT_REQUEST = "spanwise_about"  # what a request object itself knows of this, for lines that are written when it is over
+ABOUT_REQUEST = "spanwise_about"  # attribute of a request object, for lines logged after the request
 
 _SANE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{7,63}")
 
@@ -17,12 +17,12 @@ _about: ContextVar[Facts | Callable[[], Facts] | None] = ContextVar("about", def
 
 
 def sane_request_id(reported: str | None) -> str:
-    """The one that came along, if it is fit to be written down and sent on; else a new one."""
+    """Return the received id if it is safe to log and forward; else a new one."""
     return reported if reported is not None and _SANE_ID.fullmatch(reported) else secrets.token_hex(16)
 
 
 def facts() -> Facts:
-    """Of the work at hand; empty where nothing is known."""
+    """Return the context of the current work; empty where nothing is known."""
     about = _about.get()
     if about is None:
         return {}
@@ -31,7 +31,7 @@ def facts() -> Facts:
 
 @contextmanager
 def about(**named: object) -> Iterator[None]:
-    """In addition to what is known, or instead of it; None changes nothing."""
+    """Add to the context, or override it; None changes nothing."""
     known = {name: str(value) for name, value in named.items() if value is not None}
     token = _about.set({**facts(), **known})
     try:
@@ -42,7 +42,7 @@ def about(**named: object) -> Iterator[None]:
 
 @contextmanager
 def about_lazily(read: Callable[[], Facts]) -> Iterator[None]:
-    """The facts are asked for only where something is written down: a request costs nothing for them."""
+    """Set a context that is computed only when a line is logged, so that a request does not pay for it."""
     token = _about.set(read)
     try:
         yield

@@ -1,7 +1,7 @@
-"""For programs that answer no requests: python -m operation.probe [live | ready]
+"""Probe for programs that serve no requests: python -m operation.probe [live | ready]
 
-Asks the process at SPANWISE_METRICS (or the address after the word) for /healthz or /readyz. Exit code 0 yes, 1 no or no answer,
-2 nowhere to ask. Needs only the standard library, as it is started every few seconds.
+Requests /healthz or /readyz from the process at SPANWISE_METRICS (or the address after the word). Exit code 0 yes, 1 no or no response, 2
+no address. Needs only the standard library, as it is started every few seconds.
 """
 
 import http.client
@@ -26,7 +26,7 @@ class _Connection(http.client.HTTPConnection):
             self.sock.settimeout(TIMEOUT_S)
             self.sock.connect(address.path)
         else:
-            host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(address.host, address.host)  # noqa: S104 - where it listens, not where this does
+            host = {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(address.host, address.host)  # noqa: S104 - an address to connect to
             self.sock = socket.create_connection((host, address.port), TIMEOUT_S)
 
 

@@ -1,4 +1,4 @@
-"""Can this process work now? What is missing, in words: the database, its migrations, Redis, or what the program says of itself."""
+"""Readiness of this process. It lists what is missing as text: the database, its migrations, Redis, or a check of the program."""
 
 import threading
 import time
@@ -19,7 +19,7 @@ Check = Callable[[], list[str]]
 
 
 def database_faults() -> list[str]:
-    """One question to the database. Migrations that this version does not know yet do not trouble it."""
+    """Return faults with one database query. Migrations that this version does not know do not matter."""
     try:
         if _own_migrations() - MigrationRecorder(connection).applied_migrations().keys():
             return [NO_MIGRATIONS]
@@ -37,7 +37,7 @@ def redis_faults() -> list[str]:
 
 
 class Readiness:
-    """What a program needs. Asked by several at a time it looks once, and again a second later at the earliest."""
+    """The checks of a program. Concurrent calls share one run, and results are reused for a second."""
 
     def __init__(self, *checks: Check) -> None:
         self._checks = checks or (database_faults, redis_faults)
@@ -55,5 +55,5 @@ class Readiness:
 
 @lru_cache(maxsize=1)
 def _own_migrations() -> frozenset[tuple[str, str]]:
-    """The last one of each app: whatever it stands on was applied before it."""
+    """Return the last migration of each app, which implies its predecessors."""
     return frozenset(MigrationLoader(None).graph.leaf_nodes())

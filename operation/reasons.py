@@ -1,4 +1,4 @@
-"""Reasons as a code and what fills its sentence. Sentences are English; `workspace/reason_texts.py` translates them."""
+"""Reasons as a code and the parameters of its sentence. Sentences are English; `workspace/reason_texts.py` translates them."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -17,11 +17,11 @@ def ngettext_noop(singular: str, plural: str) -> tuple[str, str]:
 
 
 Sentences = Mapping[str, str | tuple[str, str]]  # by code; a pair is the singular and the plural, chosen by the parameter `count`
-SENTENCES: dict[str, str | tuple[str, str]] = {"text": "%(text)s"}  # of all packages; `text` is what a vehicle or a library says itself
+SENTENCES: dict[str, str | tuple[str, str]] = {"text": "%(text)s"}  # of all packages; `text` comes from a vehicle or a library
 
 
 def register_sentences(sentences: Sentences) -> Sentences:
-    """Make codes known to all who read reasons. Raises ValueError for a code that has another sentence already."""
+    """Register codes. Raises ValueError for a code that already has another sentence."""
     for code, sentence in sentences.items():
         if SENTENCES.setdefault(code, sentence) != sentence:
             raise ValueError(f"two sentences for the code {code}")
@@ -30,12 +30,12 @@ def register_sentences(sentences: Sentences) -> Sentences:
 
 MINUTES = gettext_noop("%(sentence)s: %(minutes)s min of flight.")
 OR = gettext_noop("or")
-MAX_NAMED = 3  # UAVs that a reason names; of more it tells how many
+MAX_NAMED = 3  # UAVs that a reason names; the others are counted
 
 
 @dataclass(frozen=True)
 class Wording:
-    """How texts are written in one language: gettext, ngettext, and a number with so many decimals."""
+    """How texts are written in one language: gettext, ngettext, and a number with a number of decimals."""
 
     gettext: Callable[[str], str]
     ngettext: Callable[[str, str, int], str]
@@ -47,10 +47,10 @@ ENGLISH = Wording(lambda text: text, lambda one, many, count: one if count == 1 
 
 @dataclass(frozen=True)
 class Reason:
-    """code is a key of SENTENCES; params fill its sentence.
+    """A reason. code is a key of SENTENCES; params fill its sentence.
 
-    A param is a text, a number, a Reason, or a sequence of texts or Reasons; a number whose name ends in _m, _km or _wh is written with
-    its unit. `minutes` of flight, if given, are told behind a sentence that has no place for them.
+    A param is a text, a number, a Reason, or a sequence of texts or Reasons; a number whose name ends in _m, _km or _wh is written with its
+    unit. `minutes` of flight, if given, are appended to a sentence that has no place for them.
     """
 
     code: str
@@ -60,7 +60,7 @@ class Reason:
         return self.text(ENGLISH)
 
     def text(self, wording: Wording) -> str:
-        """The sentence in the language of the wording."""
+        """Return the sentence in the language of the wording."""
         sentence = SENTENCES[self.code]
         words = wording.gettext(sentence) if isinstance(sentence, str) else wording.ngettext(*sentence, self.params["count"])
         words = words % {name: _text(name, value, wording) for name, value in self.params.items()}
@@ -74,31 +74,31 @@ class Reason:
 
 
 def text_reason(text: str) -> Reason:
-    """What a vehicle, a companion or a library says itself: it is shown as it is."""
+    """Return a reason with the unchanged text of a vehicle, a companion or a library."""
     return Reason("text", {"text": text})
 
 
-# What is told of something: reasons, or a text that somebody else wrote.
+# Reasons, or a text from elsewhere.
 Why = Reason | Sequence[Reason] | str
 
 
 def reason_of(error: Exception) -> "Reason | str":
-    """The reason with which an exception was raised; its text, if with none."""
+    """Return the reason with which an exception was raised, or its text without one."""
     return error.args[0] if error.args and isinstance(error.args[0], Reason) else str(error)
 
 
 def reasons_of(why: Why) -> Sequence[Reason]:
-    """None of a text."""
+    """Return the reasons; none for a text."""
     return () if isinstance(why, str) else (why,) if isinstance(why, Reason) else why
 
 
 def english(why: Why, separator: str = " ") -> str:
-    """The sentences one behind the other."""
+    """Return the sentences in English, joined."""
     return why if isinstance(why, str) else separator.join(map(str, reasons_of(why)))
 
 
 def reason_from_json(value: Mapping[str, Any]) -> Reason:
-    """The inverse of Reason.to_json. Raises KeyError for a code that is not known."""
+    """Return the inverse of Reason.to_json. Raises KeyError for an unknown code."""
     SENTENCES[value["code"]]
     return Reason(value["code"], {name: _from_json(param) for name, param in value["params"].items()})
 
@@ -134,13 +134,13 @@ def _text(name: str, value: Any, wording: Wording) -> str:
 
 
 def _figure_text(value: float, wording: Wording) -> str:
-    """Six digits at most, without zeros at the end."""
+    """Return the number with at most six digits, without trailing zeros."""
     shown = f"{value:g}"
     return wording.number(value, len(shown.partition(".")[2])) if "." in shown and "e" not in shown else shown
 
 
 def _list_text(name: str, words: Sequence[str], wording: Wording) -> str:
-    """`limits` and `parts` stand one behind the other, of `any_uav` one is meant, of other names the first few are told."""
+    """Join the texts: all of `limits` and `parts`, `any_uav` with "or", and of other names the first few."""
     if name in ("limits", "parts"):
         return ("; " if name == "limits" else ", ").join(words)
     if name == "any_uav":

@@ -1,11 +1,11 @@
-"""What no log may hold: whatever lets its holder in."""
+"""Removal of secrets from logs."""
 
 import re
 from collections.abc import Callable
 
 HIDDEN = "..."
 
-# Tokens of people and UAVs begin with spw_ and spu_; MAVLink's signing keys are 64 hexadecimal digits behind a word for them.
+# Tokens of users and UAVs begin with spw_ and spu_; MAVLink's signing keys are 64 hexadecimal digits behind a word for them.
 _RULES: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] = (
     (re.compile(r"(/(?:new-password|invitation)/)[^\s\"'?]+"), r"\1" + HIDDEN),
     (re.compile(r"(?i)\b(bearer|basic)\s+[A-Za-z0-9._~+/=-]{8,}"), r"\1 " + HIDDEN),
@@ -22,7 +22,7 @@ _HINT = re.compile(r"(?i)new-password/|invitation/|sp[wu]_|bearer|basic|sessioni
 
 
 def without_secrets(text: str) -> str:
-    """The text with every secret that can be recognised left out."""
+    """Return the text without recognisable secrets."""
     if _HINT.search(text) is None:
         return text
     for pattern, instead in _RULES:

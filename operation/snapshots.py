@@ -1,4 +1,4 @@
-"""Metrics that are read off a program's own state when somebody asks, so that the work itself counts nothing."""
+"""Metrics read from a program's own state on request, so that its work need not count."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ Values = Mapping[Labels, float]
 
 @dataclass(frozen=True)
 class Described:
-    """A metric and what it means. A counter's name has no `_total`, which is added where it is told."""
+    """A metric and its description. A counter's name has no `_total`, which is appended on output."""
 
     name: str
     meaning: str
@@ -28,7 +28,7 @@ class Described:
 
 
 class SnapshotCollector(Collector):
-    """`read` returns the values of each of `described` by its name; those that it leaves out are not known now."""
+    """`read` returns the values of each of `described` by its name; missing ones are unknown at present."""
 
     def __init__(self, described: Iterable[Described], read: Callable[[], Mapping[str, Values]]) -> None:
         self.described = tuple(described)

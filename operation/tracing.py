@@ -1,7 +1,7 @@
-"""OpenTelemetry, where SPANWISE_TRACING asks for it and requirements-tracing.txt is installed. Off, nothing of it is even imported.
+"""OpenTelemetry, if SPANWISE_TRACING is set and requirements-tracing.txt is installed. Otherwise none of it is imported.
 
-Where spans go is said by OpenTelemetry's own variables (OTEL_EXPORTER_OTLP_ENDPOINT and so on). No span holds a header, a body or the
-parameters of a statement.
+OpenTelemetry's own variables (OTEL_EXPORTER_OTLP_ENDPOINT and so on) set the destination of spans. No span holds a header, a body or
+the parameters of a statement.
 """
 
 import importlib
@@ -14,7 +14,7 @@ from operation.version import VERSION
 logger = logging.getLogger(__name__)
 
 VARIABLE = "SPANWISE_TRACING"
-NOT_TRACED = "healthz,readyz,invitation/,new-password/"  # the last two let their holder in, and a span names its address
+NOT_TRACED = "healthz,readyz,invitation/,new-password/"  # a span contains the address, and the last two addresses grant access
 _MISSING = "%s is set, but OpenTelemetry is not installed (requirements-tracing.txt): nothing is traced"
 
 _begun = False
@@ -25,7 +25,7 @@ def is_wanted() -> bool:
 
 
 def begin_tracing(program: str) -> bool:
-    """Once a process, after it was forked. Returns whether spans are made from now on."""
+    """Start tracing, once per process and after a fork. Returns whether spans are made from now on."""
     global _begun
     if _begun or not is_wanted():
         return _begun
@@ -52,7 +52,7 @@ def _provide(program: str) -> None:
 
 
 def _instrument(program: str) -> None:
-    """Requests and tasks, joined by the header that goes with them, and statements without what is put into them."""
+    """Instrument requests and tasks, joined by a header, and statements without their parameters."""
     if program == "web":
         os.environ.setdefault("OTEL_PYTHON_DJANGO_EXCLUDED_URLS", NOT_TRACED)
         _of("opentelemetry.instrumentation.django", "DjangoInstrumentor")().instrument()

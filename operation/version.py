@@ -1,4 +1,4 @@
-"""Which version runs: SPANWISE_VERSION, as an image says it, else the project's own."""
+"""The running version: SPANWISE_VERSION, as set in an image, else the project's own."""
 
 import os
 import tomllib

@@ -1,3 +1,3 @@
-"""Who works here: organisations, jobs, history, live pages, and what the API has in common."""
+"""Organisations, jobs, history, live pages, and what the endpoints of the API share."""
 
 from workspace import reasons as reasons

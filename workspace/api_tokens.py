@@ -1,4 +1,4 @@
-"""API tokens: made once, kept as a hash, their use noted."""
+"""API tokens: made once, stored as a hash, their use recorded."""
 
 import hashlib
 import secrets
@@ -14,7 +14,7 @@ from workspace.models import (
 )
 from workspace.prepared_statements import prepared_rows
 
-# Nobody waits for the disk: after a failure of power the last uses of a fraction of a second may be forgotten.
+# No request waits for the disk: a power failure may lose the uses of the last fraction of a second.
 _NOTE_USE = """
     WITH quick AS (SELECT set_config('synchronous_commit', 'off', true))
     UPDATE workspace_apitoken SET last_used_at = %s FROM quick WHERE id = %s"""
@@ -34,7 +34,7 @@ def create_api_token(*, user: User, name: str, expires_at: datetime, scopes: Ite
 
 
 def note_use(*, token: int, last_used_at: datetime | None) -> None:
-    """When the token with this key was used last, to the minute: a script that asks often writes seldom."""
+    """Store when the token with this key was last used, to the minute, so that frequent requests write rarely."""
     now = timezone.now()
     if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
         prepared_rows(_NOTE_USE, [now, token])

@@ -31,7 +31,7 @@ def record_change(
 
 
 def user_facts(user: User) -> dict[str, Any]:
-    """What the history says of an account; never its password."""
+    """Return the facts of an account for the history; never its password."""
     names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")
     facts = {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
     return facts | ({"is_service": True} if user.is_service else {})

@@ -1,4 +1,4 @@
-"""What the cache raises when it is away: everything kept there can be made again, so nobody waits for it."""
+"""Exceptions of an unavailable cache: all of its content can be made again, so no request waits for it."""
 
 from redis.exceptions import RedisError
 

@@ -1,4 +1,4 @@
-"""Secrets that have to be read again, kept so that the database alone does not tell them: AES-256-GCM with a key of the secret key."""
+"""Encryption of secrets in the database: AES-256-GCM with a key derived from the secret key."""
 
 from base64 import b64decode, b64encode
 from secrets import token_bytes
@@ -13,17 +13,17 @@ SALT = "workspace.sealing"
 
 
 class CannotDecrypt(Exception):
-    """It was sealed for something else, or with a key that is not named any more."""
+    """Raised for a value that was encrypted for something else, or with a secret key that is no longer configured."""
 
 
 def encrypt(secret: bytes, *, of: str) -> str:
-    """`of` says what it belongs to: nobody can put it elsewhere."""
+    """Return the encrypted secret. `of` binds it to its owner, so that it cannot be moved to another row."""
     nonce = token_bytes(NONCE_BYTES)
     return b64encode(nonce + _cipher(settings.SECRET_KEY).encrypt(nonce, secret, of.encode())).decode()
 
 
 def decrypt(encrypted: str, *, of: str) -> bytes:
-    """Also what was sealed with an old secret key that is still named. Raises CannotDecrypt."""
+    """Return the secret, also if it was encrypted with an old secret key that is still configured. Raises CannotDecrypt."""
     content = b64decode(encrypted)
     for key in (settings.SECRET_KEY, *settings.SECRET_KEY_FALLBACKS):
         try:

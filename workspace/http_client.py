@@ -1,4 +1,4 @@
-"""The only door to other servers: fetches an address that a person has given, without lending them this machine's place in its network."""
+"""SSRF-safe HTTP client: fetches addresses that users enter, without access to this machine's own network."""
 
 import hashlib
 import http.client
@@ -22,11 +22,11 @@ MAX_ADDRESS_LENGTH = 2_000
 USER_AGENT = "Spanwise"
 _BLOCK_BYTES = 64 * 1024
 _REDIRECTS = {301, 302, 303, 307, 308}
-_REPEATED = {307, 308}  # a request with data is sent again as it was
+_REPEATED = {307, 308}  # a request with data is repeated unchanged
 _PORTS = {"http": 80, "https": 443}
-_KEPT_SIGNS = "/?:@!$&'()*+,;=~%[]"  # of a path and a query
+_KEPT_SIGNS = "/?:@!$&'()*+,;=~%[]"  # kept as they are in a path and a query
 
-_GLOBAL_UNICAST = ipaddress.IPv6Network("2000::/3")  # all that IANA has given out
+_GLOBAL_UNICAST = ipaddress.IPv6Network("2000::/3")  # all that IANA has allocated
 _NAT64 = ipaddress.IPv6Network("64:ff9b::/96")  # RFC 6052: the last 32 bits are the IPv4 address
 _NEVER = (
     ipaddress.IPv6Network("2001::/23"),  # IETF protocols, Teredo among them, which like
@@ -38,15 +38,15 @@ _NEVER = (
 
 
 class OutgoingError(Exception):
-    """The message is a sentence for whoever gave the address."""
+    """Base error; the message is a sentence for the user who entered the address."""
 
 
 class OutgoingRefused(OutgoingError):
-    """The address is not one that may be fetched; nothing was sent there."""
+    """Raised for an address that may not be fetched; nothing was sent there."""
 
 
 class OutgoingFailed(OutgoingError):
-    """The other side did not answer, or not with what was asked for. status and retry_after_s as it stated them, if it did."""
+    """Raised for no response or a wrong one. status and retry_after_s are the server's, if it sent them."""
 
     def __init__(self, message: str, *, status: int | None = None, retry_after_s: int | None = None) -> None:
         super().__init__(message)
@@ -61,7 +61,7 @@ class Fetched:
     last_modified: str
     bytes: int
     sha256: str
-    address: str  # that answered, after redirects
+    address: str  # the one that responded, after redirects
 
 
 @dataclass(frozen=True)
@@ -85,11 +85,12 @@ def fetch(
     data: bytes | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Fetched:
-    """Write what the address answers to a file. Raises OutgoingRefused, OutgoingFailed; then there is no file.
+    """Write the response of an address to a file. Raises OutgoingRefused or OutgoingFailed; then there is no file.
 
     A name is resolved once, and the connection goes to the address that was checked; each redirect is checked again. timeout_s is the
-    longest silence, total_s the longest time for everything. The headers must hold no secret: they go where a redirect leads, too.
-    Proxies named in the environment are not used. progress is told the bytes so far, and may raise to stop.
+    longest
+    silence, total_s the longest total time. The headers must hold no secret: they are also sent to redirects.
+    Proxies named in the environment are not used. progress is called with the bytes so far, and may raise to stop.
     """
     sent = {"User-Agent": USER_AGENT, "Accept-Encoding": "identity", "Connection": "close", **(headers or {})}
     target = _target(address)
@@ -113,20 +114,20 @@ def fetch(
 
 
 def check_address(address: str) -> None:
-    """Whether the address may be fetched as far as its text tells; its name is looked up when it is fetched. Raises OutgoingRefused."""
+    """Raise OutgoingRefused if the address's text shows that it may not be fetched; its name is resolved when it is fetched."""
     target = _target(address)
     with suppress(ValueError):
         _check_reachable(target, [str(ipaddress.ip_address(target.host))])
 
 
 def resolve(host: str, port: int) -> list[str]:
-    """The addresses of a host, asked for once. Raises OSError."""
+    """Return the addresses of a host, resolved once. Raises OSError."""
     found = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)
     return list(dict.fromkeys(str(entry[4][0]) for entry in found))
 
 
 def is_global(address: str) -> bool:
-    """Whether the address is one of the public internet, also looking at the IPv4 address that an IPv6 one holds."""
+    """Whether the address belongs to the public internet; an IPv4 address embedded in an IPv6 one is checked too."""
     ip = ipaddress.ip_address(address)
     if isinstance(ip, ipaddress.IPv6Address):
         if ip in _NAT64:
@@ -137,7 +138,7 @@ def is_global(address: str) -> bool:
 
 
 class _Deadline:
-    """Cuts the connection when the time is up, whatever the other side drips: handshake, headers or body."""
+    """Cuts the connection at the deadline in every phase: handshake, headers or body."""
 
     def __init__(self, total_s: float) -> None:
         self._ends_at = time.monotonic() + total_s
@@ -158,7 +159,7 @@ class _Deadline:
         return time.monotonic() >= self._ends_at
 
     def left_s(self) -> float:
-        """Never 0, which a socket would take for "do not wait"."""
+        """Return the seconds left; never 0, which a socket would take for "do not wait"."""
         return max(self._ends_at - time.monotonic(), 0.001)
 
     def watch(self, connected: socket.socket) -> None:
@@ -173,11 +174,11 @@ class _Deadline:
     def _cut(self) -> None:
         if self._socket is not None:
             with suppress(OSError):
-                socket.socket.shutdown(self._socket, socket.SHUT_RDWR)  # not SSLSocket's: that would let its reader see raw bytes
+                socket.socket.shutdown(self._socket, socket.SHUT_RDWR)  # SSLSocket's own would let its reader see raw bytes
 
 
 class _PinnedConnection(http.client.HTTPConnection):
-    """Connects to an address that was resolved and checked; the name stays for the Host header, SNI and the certificate."""
+    """Connects to an address that was resolved and checked; the name is used for the Host header, SNI and the certificate."""
 
     def __init__(self, target: _Target, timeout_s: float, deadline: _Deadline) -> None:
         super().__init__(target.host, target.port, timeout=timeout_s)
@@ -214,7 +215,7 @@ def _target(address: str) -> _Target:
         port = parts.port
         host = (parts.hostname or "").rstrip(".")
         host = host if ":" in host else host.encode("idna").decode("ascii")
-    except ValueError as error:  # UnicodeError is one
+    except ValueError as error:  # including UnicodeError
         raise OutgoingRefused(_("This is not an address.")) from error
     if parts.scheme not in _PORTS:
         raise OutgoingRefused(_("Only addresses that begin with https:// or http:// are fetched."))
@@ -229,7 +230,7 @@ def _target(address: str) -> _Target:
 
 
 def _check_reachable(target: _Target, addresses: list[str]) -> None:
-    """One address that is not public refuses the name: which one a connection takes is up to whoever answers for the name."""
+    """Raise OutgoingRefused if any address is not public: the name's owner decides which one a connection takes."""
     if f"{_shown(target)}:{target.port}" in settings.OUTGOING_ALLOWED_HOSTS:
         return
     if not addresses or not all(is_global(address) for address in addresses):
@@ -237,7 +238,7 @@ def _check_reachable(target: _Target, addresses: list[str]) -> None:
 
 
 def _no_public_host(target: _Target) -> str:
-    """The same for a name that is not known: else anybody could ask which names this machine's network has."""
+    """Return the same text for an unknown name, or users could probe the names of this machine's network."""
     return _(
         "%(host)s is not a host of the public internet, or not known, so it is not fetched. "
         "An administrator can allow one with %(setting)s."
@@ -288,7 +289,7 @@ def _receive(
             deadline.check(target.host)
             raise OutgoingFailed(_sentence(target, error)) from error
         deadline.check(target.host)
-        if answer.length:  # bytes that were announced and never came
+        if answer.length:  # announced bytes that never arrived
             raise OutgoingFailed(_("The connection to %(host)s was cut after %(size)s bytes.") % {"host": target.host, "size": size})
     return Fetched(
         status=answer.status, content_type=answer.getheader("Content-Type", "")[:200], etag=_header(answer, "ETag", 300),
@@ -314,7 +315,7 @@ def _too_large(target: _Target, max_bytes: int) -> OutgoingFailed:
 
 
 def _header(answer: http.client.HTTPResponse, name: str, longest: int) -> str:
-    """A value to send back later; one that does not fit into its column would be another one."""
+    """Return a header to send back later; empty if it does not fit into its column."""
     value = answer.getheader(name, "")
     return value if len(value) <= longest and value.isascii() and value.isprintable() else ""
 

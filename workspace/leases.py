@@ -1,9 +1,8 @@
-"""Which process holds a row until when, by a lease, and which transaction alone does something, by a lock.
+"""Leases, by which a process holds a row until a time, and locks, by which one transaction at a time does something.
 
-What a killed process held is soon another's. A row that can be held has `lease_expires_at` and `holder`: "name/run", where the name stays
-the same at every start of one process. Times are the database's, so that the clocks of machines do not matter. Whatever a holder writes
-into its row is conditional on its being the holder, or, for a job, on the attempt: a process that lost its lease without noticing changes
-nothing.
+Rows of a killed process are soon free for others. A leasable row has `lease_expires_at` and `holder`: "name/run", where the name stays the
+same at every start of a process. Times are the database's, so that machine clocks do not matter. A holder's writes to its row are
+conditional on the holder, or, for a job, on the attempt: a process that lost its lease unnoticed changes nothing.
 """
 
 import os
@@ -22,17 +21,17 @@ from django.db.models.functions import Now
 from django.db.models.sql import UpdateQuery
 from django.utils import timezone
 
-SURE_SHARE = 0.8  # of a lease: clocks do not run quite alike, and what is on its way still arrives
+SURE_SHARE = 0.8  # of a lease: a margin for clock drift and writes under way
 _Row = TypeVar("_Row", bound=Model)
 
 
 @dataclass(frozen=True, kw_only=True)
 class HolderOptions:
-    """`name` is the same at every start of one process, and no other's; `run` and `holder` are of this run alone."""
+    """Identity of a holder. `name` is unique and the same at every start of a process; `run` and `holder` differ for each run."""
 
     name: str
     run: str = field(default_factory=lambda: secrets.token_hex(4))
-    lease_s: float = 10.0  # what a killed process held is taken over within this
+    lease_s: float = 10.0  # rows of a killed process are taken over within this
 
     @property
     def holder(self) -> str:
@@ -40,34 +39,34 @@ class HolderOptions:
 
 
 def holder_name(configured: str | None) -> str:
-    """Return the name as holders may have it; without one, a name of this process alone: two on a machine are two."""
+    """Return the configured name in the form of holders; without one, a name unique to this process on its machine."""
     return re.sub(r"[^\w.-]", "-", configured or f"{socket.gethostname()}-{os.getpid()}")[:80]
 
 
 def held_until_s(asked_s: float, lease_s: float) -> float:
-    """Until when a lease that was asked for at a time, and granted, is surely nobody else's; monotonic seconds."""
+    """Return until when a lease requested at a time, and granted, is surely held; monotonic seconds."""
     return asked_s + SURE_SHARE * lease_s
 
 
 def from_now(seconds: float) -> CombinedExpression:
-    """A time by the database's clock, for the queries of this module's callers."""
+    """Return an expression for a time by the database's clock."""
     return Now() + timedelta(seconds=seconds)
 
 
 def has_run_out(lease_expires_at: datetime | None) -> bool:
-    """Of a row that was read just now: whether nobody holds it."""
+    """Whether the lease of a row that was just read has run out."""
     return lease_expires_at is None or lease_expires_at < timezone.now()
 
 
 def is_free() -> Q:
-    """Rows that nobody holds, or whose holder has not renewed its lease."""
+    """Return a condition for rows without a holder, or with an expired lease."""
     return Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now())
 
 
 def is_free_for(holder: str, *, lease_s: float, namesake_s: float | None = None) -> Q:
-    """As is_free, and rows of the same process, started again: at once, or after `namesake_s` without renewal.
+    """Return is_free, or rows of the same process before a restart: at once, or after `namesake_s` without renewal.
 
-    With `namesake_s`, two processes that run under one name by mistake do not take rows from each other.
+    With `namesake_s`, two processes that share a name by mistake do not take rows from each other.
     """
     namesake = Q(holder__startswith=f"{holder.rsplit('/', 1)[0]}/")
     if namesake_s is not None:
@@ -76,16 +75,16 @@ def is_free_for(holder: str, *, lease_s: float, namesake_s: float | None = None)
 
 
 def take(rows: QuerySet[_Row], *, holder: str, lease_s: float, skip_locked: bool = False, **changes: Any) -> list[_Row]:
-    """Hold these rows, of which the caller has left only those that may be taken, and return them as they are then.
+    """Lease these rows, which the caller has filtered to free ones, and return them as updated.
 
-    Of two processes that ask at once one has a row. skip_locked: rows that others write just now are left instead of waited for.
+    Of two concurrent calls one gets a row. skip_locked: skip rows that other transactions are writing instead of waiting.
     """
     found = _update(rows, {"holder": holder, "lease_expires_at": from_now(lease_s), **changes}, skip_locked=skip_locked)
     return [] if found is None else list(rows.model._default_manager.raw(f"{found[0]}.*", found[1]))
 
 
 def renew(held: QuerySet[Any], *, lease_s: float, column: str = "pk") -> dict[Any, Any]:
-    """Extend the leases of rows; by the key of each that is still held, the value of a column."""
+    """Extend the leases of rows; returns the value of a column for each row still held, by its key."""
     found = _update(held, {"lease_expires_at": from_now(lease_s)})
     if found is None:
         return {}
@@ -97,15 +96,15 @@ def renew(held: QuerySet[Any], *, lease_s: float, column: str = "pk") -> dict[An
 
 
 def release(held: QuerySet[Any], *, after_s: float = 0.0, **changes: Any) -> int:
-    """Anybody may take these rows from now on, or after so many seconds. Returns how many there were."""
+    """Free these rows for any holder, now or after some seconds. Returns how many there were."""
     return held.update(lease_expires_at=from_now(after_s) if after_s else None, **changes)
 
 
 def _update(rows: QuerySet[Any], values: dict[str, Any], *, skip_locked: bool = False) -> tuple[str, tuple[Any, ...]] | None:
-    """An update up to the table's name after RETURNING, and its parameters; None where there can be no such row.
+    """Return an update up to the table's name after RETURNING, and its parameters; None where no row can match.
 
-    One statement, which needs no transaction; rows are locked in the order of the queryset, or of their keys, so that no two processes
-    wait for each other.
+    It is one statement and needs no transaction; rows are locked in the order of the queryset, or of their keys, so that processes cannot
+    deadlock.
     """
     meta = rows.model._meta
     ordered = rows if rows.query.order_by else rows.order_by("pk")
@@ -127,13 +126,13 @@ def _quoted(name: str) -> str:
 
 
 def lock_until_end(*numbers: int) -> None:
-    """Wait for this lock (a number, or a number and a key), and keep others waiting until the caller's transaction ends."""
+    """Wait for this lock (a number, or a number and a key), and hold it until the caller's transaction ends."""
     with connection.cursor() as cursor:
         cursor.execute(f"SELECT pg_advisory_xact_lock({_placeholders(numbers)})", numbers)
 
 
 def try_lock_until_end(*numbers: int) -> bool:
-    """As lock_until_end, without waiting: whether no other transaction had the lock."""
+    """Try lock_until_end without waiting; returns False if another transaction has the lock."""
     with connection.cursor() as cursor:
         cursor.execute(f"SELECT pg_try_advisory_xact_lock({_placeholders(numbers)})", numbers)
         (is_ours,) = cursor.fetchone()

@@ -1,4 +1,4 @@
-"""Who works here, and what has been asked for: organisations, users, tokens, jobs, history."""
+"""Models of organisations, users, tokens, jobs and history."""
 
 import uuid
 from typing import Any, ClassVar
@@ -18,7 +18,7 @@ from workspace.sign_in_models import SecondFactor as SecondFactor
 
 
 class Organisation(models.Model):
-    """A team whose UAVs and missions are its own; assets, zones and the graph are shared ground."""
+    """A team with its own UAVs and missions; assets, zones and the graph are shared by all organisations."""
 
     name = models.CharField(max_length=200, unique=True)
     requires_second_factor = models.BooleanField(default=False, db_default=False, help_text="of everybody, from the next sign-in on")
@@ -31,7 +31,7 @@ class Organisation(models.Model):
         return self.name
 
 
-DEFAULT_ORGANISATION_ID = 1  # made by the first migration: the organisation of whoever is not put into another one
+DEFAULT_ORGANISATION_ID = 1  # made by the first migration: the default for new users
 
 
 class Role(models.TextChoices):
@@ -59,7 +59,7 @@ class Language(models.TextChoices):
 
 
 class UserManager(DjangoUserManager["User"]):
-    """What Django calls staff and superuser follows from the role, so neither is stored or asked for."""
+    """Django's staff and superuser flags follow from the role, so they are neither stored nor requested."""
 
     def create_user(self, username: str, email: str | None = None, password: str | None = None, **fields: Any) -> "User":
         user = self.model(username=self.model.normalize_username(username), email=self.normalize_email(email), **fields)
@@ -72,7 +72,7 @@ class UserManager(DjangoUserManager["User"]):
 
 
 class User(AbstractUser):
-    """Somebody who signs in, or a program (`is_service`). The role says what they may do: see workspace/api/permissions.py."""
+    """A user, or a program (`is_service`). The role determines permissions: see workspace/api/permissions.py."""
 
     groups = None  # type: ignore[assignment]
     user_permissions = None  # type: ignore[assignment]
@@ -104,18 +104,18 @@ class User(AbstractUser):
         ]
 
     def _get_session_auth_hash(self, secret: str | None = None) -> str:
-        """Sessions end with a new password, as in Django, and with a new generation."""
+        """Return a hash that ends sessions after a new password, as in Django, and after a new generation."""
         text = f"{self.password}{self.session_generation or ''}"
         return salted_hmac("workspace.session", text, secret=secret, algorithm="sha256").hexdigest()
 
     @property
     def display_name(self) -> str:
-        """The full name, or the user name where there is none."""
+        """Return the full name, or the user name where there is none."""
         return self.get_full_name() or self.username
 
     @property
     def is_staff(self) -> bool:  # type: ignore[override]
-        """May enter the admin."""
+        """Whether the user may enter the admin."""
         return self.can_curate
 
     @property
@@ -124,7 +124,7 @@ class User(AbstractUser):
 
     @property
     def operates_installation(self) -> bool:
-        """Sees and changes the rows of all organisations in the admin. Given on the machine alone."""
+        """Whether the user sees and changes rows of all organisations in the admin. Granted only on the machine itself."""
         return self.is_installation_operator and self.role == Role.ADMINISTRATOR
 
     @property
@@ -137,7 +137,7 @@ class User(AbstractUser):
 
 
 class TokenScope(models.TextChoices):
-    """What a token may be used for, within what its owner's role allows."""
+    """What a token may be used for, within its owner's role."""
 
     READ = "read", _("Read")
     PLAN = "plan", _("Plan")
@@ -155,7 +155,7 @@ SCOPES_OF_ROLE: dict[str, tuple[TokenScope, ...]] = {
 
 
 class ApiToken(models.Model):
-    """A bearer token. Only its SHA-256 is kept; the token itself is shown once."""
+    """A bearer token. Only its SHA-256 is stored; the token itself is shown once."""
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="api_tokens")
     name = models.CharField(max_length=100, default="api")
@@ -176,7 +176,7 @@ class ApiToken(models.Model):
 
 
 class Invitation(models.Model):
-    """A link that lets one person make an account with a role. Only its SHA-256 is kept; the link itself is shown once."""
+    """A link with which one user makes an account with a role. Only its SHA-256 is stored; the link itself is shown once."""
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="invitations")
     email = models.EmailField(blank=True, help_text="where the link was sent; empty: handed over by other means")
@@ -206,7 +206,7 @@ class SignInOutcome(models.TextChoices):
 
 
 class SignInEntry(models.Model):
-    """One try to sign in, or a signing out. A name that nobody has is not kept: people type passwords there."""
+    """A login attempt or a logout. Unknown names are not stored: users type passwords there."""
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, null=True, blank=True, related_name="sign_ins")
     outcome = models.CharField(max_length=12, choices=SignInOutcome.choices)
@@ -239,10 +239,11 @@ OPEN_STATES = (JobState.QUEUED, JobState.RUNNING)
 
 
 class Job(models.Model):
-    """A promise to do something that takes longer than a request. The row is the truth; the queue is a hint.
+    """Work that takes longer than a request. The row is authoritative; the queue is a hint.
 
-    A worker holds a job by a lease; a job whose lease has run out, or that was never picked up, is queued again. The number of the
-    attempt is the lease's own: whatever an earlier attempt still writes meets no row.
+    A worker holds a job by a lease. A job with an expired lease, or that was never picked up, is queued again. The attempt number
+    identifies
+    the lease: writes of an earlier attempt match no row.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
@@ -284,7 +285,7 @@ class Job(models.Model):
 
     @property
     def is_held(self) -> bool:
-        """Whether a worker does it, whose lease has not run out."""
+        """Whether a worker with a valid lease runs it."""
         return self.state == JobState.RUNNING and not has_run_out(self.lease_expires_at)
 
 
@@ -310,7 +311,7 @@ class AuditEntry(models.Model):
 
 
 class IdempotencyKey(models.Model):
-    """What a POST with an `Idempotency-Key` was answered, so that the same request sent again creates nothing new."""
+    """The response to a POST with an `Idempotency-Key`, so that a repeated request creates nothing new."""
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="idempotency_keys")
     key = models.CharField(max_length=200)

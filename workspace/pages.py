@@ -1,4 +1,4 @@
-"""What every page has: who is there, for the page's script. Everything else on a page comes from the REST API."""
+"""Base of all pages: the user for the page's script. All other content comes from the REST API."""
 
 import json
 from functools import cache
@@ -17,7 +17,7 @@ from workspace.sessions.browser_sessions import seconds_left
 
 
 class SignedInPage(LoginRequiredMixin, TemplateView):
-    """An HTML shell for somebody who has signed in."""
+    """An HTML shell for an authenticated user."""
 
     request: SignedInPageRequest
 
@@ -31,12 +31,12 @@ class SignedInPage(LoginRequiredMixin, TemplateView):
         return super().get_context_data(**kwargs) | {"page": page}
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
-        """What the page's script must know before its first request."""
+        """Return what the page's script needs before its first request."""
         return {}
 
 
 def raster_maps() -> dict[str, Any]:
-    """Addresses of what may lie under the map; empty where there is none."""
+    """Return the addresses of raster maps under the map; empty where there are none."""
     return {
         "baseMap": {"tiles": settings.BASE_MAP_TILES, "attribution": settings.BASE_MAP_ATTRIBUTION},
         "satellite": {"tiles": settings.SATELLITE_TILES, "attribution": settings.SATELLITE_ATTRIBUTION},
@@ -47,13 +47,13 @@ SERVICE_WORKER = "js/offline/service_worker.js"
 
 
 def service_worker(_request: HttpRequest) -> HttpResponse:
-    """From the root, as a worker serves only what stands below its own address; with a version, so that a new one replaces it."""
+    """Return the service worker from the root, as its scope is the path below its URL; a version makes a new one replace it."""
     script = f"globalThis.VERSION = {json.dumps(_version())};\n{_source()}"
     return HttpResponse(script, content_type="text/javascript; charset=utf-8", headers={"Cache-Control": "no-cache"})
 
 
 def _version() -> str:
-    """Of the static files, which have names that change with them."""
+    """Return the version of the static files, whose names contain their hashes."""
     return str(getattr(staticfiles_storage, "manifest_hash", ""))
 
 
@@ -66,6 +66,6 @@ def _source() -> str:
 
 
 class OfflinePage(TemplateView):
-    """Nobody's page: it names what the browser has kept, which its script reads there."""
+    """A page without a user: its script reads and lists what the browser has stored."""
 
     template_name = "offline.html"

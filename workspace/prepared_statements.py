@@ -1,8 +1,8 @@
-"""Small reads and writes of the busiest paths: statements that the server has parsed and planned once per connection.
+"""Prepared statements for the small reads and writes of the busiest paths, parsed and planned once per connection.
 
-Django's own cursor sends each statement as text, to be parsed and planned again, and looks first whether the connection still lives.
-Here the statement itself is that look: a connection that turns out to be dead is replaced, and the statement sent once more. Outside of
-transactions it goes to the server with libpq's own call, which costs half of a cursor.
+Django's own cursor sends each statement as text, to be parsed and planned again, and first checks the connection. Here the statement
+itself is the check: a dead connection is replaced, and the statement sent once more. Outside of transactions it is sent with libpq's own
+call, which costs half as much as a cursor.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from workspace.jobs.planning_lock import without_planning_lock
 
 @dataclass(frozen=True, eq=False)
 class _Prepared:
-    """What one connection keeps: how its values are read and written, and the names of the statements its server has."""
+    """State of one connection: how its values are read and written, and the names of statements prepared on its server."""
 
     server: psycopg.Connection[Any]
     transformer: abc.Transformer
@@ -30,7 +30,7 @@ class _Prepared:
 
 
 def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
-    """The rows of a statement that may be sent twice; `%s` are its parameters, cast in SQL where their type is not plain.
+    """Return the rows of a statement that may be sent twice; `%s` are its parameters, cast in SQL where their type is not plain.
 
     Inside a transaction it is part of it. Raises what Django's own cursor raises.
     """
@@ -44,13 +44,13 @@ def prepared_rows(statement: str, parameters: Sequence[Any] = ()) -> list[tuple[
 
 
 def _rows(statement: str, parameters: Sequence[Any]) -> list[tuple[Any, ...]]:
-    own = connections[DEFAULT_DB_ALIAS]  # of this thread: each look through `connection` searches for it
+    own = connections[DEFAULT_DB_ALIAS]  # of this thread: each access through `connection` looks it up
     own.ensure_connection()
     server: psycopg.Connection[Any] = own.connection
     with own.wrap_database_errors:
         if server.autocommit and server.pgconn.transaction_status == pq.TransactionStatus.IDLE:
             return _rows_at_once(_prepared_of(own), statement, parameters)
-        with psycopg.Cursor(server) as cursor:  # which begins the transaction where it has not begun
+        with psycopg.Cursor(server) as cursor:  # begins the transaction if needed
             cursor.execute(statement, parameters, prepare=True)
             return cursor.fetchall() if cursor.pgresult and cursor.pgresult.nfields else []
 
@@ -71,7 +71,7 @@ def _rows_at_once(prepared: _Prepared, statement: str, parameters: Sequence[Any]
     if name in known:
         result = without_planning_lock(server.pgconn.exec_prepared, name, values)
         state = result.error_field(pq.DiagnosticField.SQLSTATE)
-        if state == _TYPES_CHANGED:  # a migration beside us
+        if state == _TYPES_CHANGED:  # after a concurrent migration
             _checked(server.pgconn.exec_(b"DEALLOCATE " + name), server)
         if state in (_NOT_PREPARED, _TYPES_CHANGED):
             result = None
@@ -84,18 +84,18 @@ def _rows_at_once(prepared: _Prepared, statement: str, parameters: Sequence[Any]
 
 
 _HELD = "spanwise_prepared"  # attribute of Django's connection
-_NOT_PREPARED = b"26000"  # invalid_sql_statement_name: somebody made the server forget: DEALLOCATE ALL
+_NOT_PREPARED = b"26000"  # invalid_sql_statement_name: the server forgot it, as after DEALLOCATE ALL
 _TYPES_CHANGED = b"0A000"  # feature_not_supported: "cached plan must not change result type"
 
 
 @lru_cache(maxsize=64)
 def _name(statement: str) -> bytes:
-    """The same for a statement in every process, and another one for every other statement."""
+    """Return the name of a statement: the same in every process, and unique to the statement."""
     return b"spanwise_" + sha256(statement.encode()).hexdigest()[:16].encode()
 
 
 def _numbered(statement: str) -> str:
-    """With libpq's $1, $2 for each `%s`."""
+    """Return the statement with libpq's $1, $2 for each `%s`."""
     first, *rest = statement.split("%s")
     return first + "".join(f"${number}{text}" for number, text in enumerate(rest, start=1))
 

@@ -1,4 +1,4 @@
-"""The sentence of each code that tells how a job ended."""
+"""Texts of the codes of how a job ended."""
 
 from operation.reasons import gettext_noop, register_sentences
 

@@ -12,5 +12,5 @@ def jobs_of_organisation(organisation: Organisation) -> QuerySet[Job]:
 
 
 def job_of_organisation(organisation: Organisation, job_id: UUID) -> Job:
-    """Raises Job.DoesNotExist also for another organisation's job."""
+    """Return a job. Raises Job.DoesNotExist also for another organisation's job."""
     return jobs_of_organisation(organisation).get(pk=job_id)

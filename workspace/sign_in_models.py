@@ -1,11 +1,11 @@
-"""What is kept of the door: second factors with their recovery codes, and the sessions that are open in browsers."""
+"""Models of the login: second factors with their recovery codes, and browser sessions."""
 
 from django.db import models
 from django.db.models.functions import Now
 
 
 class SecondFactor(models.Model):
-    """Somebody's authenticator app. The seed is sealed (workspace/field_encryption.py): the database alone makes no codes."""
+    """A user's authenticator app. The seed is encrypted (workspace/field_encryption.py): the database alone makes no codes."""
 
     user = models.OneToOneField("workspace.User", on_delete=models.CASCADE, related_name="second_factor")
     sealed_seed = models.CharField(max_length=200, editable=False)
@@ -19,7 +19,7 @@ class SecondFactor(models.Model):
 
 
 class RecoveryCode(models.Model):
-    """Lets its holder in once instead of a code of the app. Only its SHA-256 is kept; it is made of 118 random bits."""
+    """A code that replaces one of the app once. Only its SHA-256 is stored; it is made of 118 random bits."""
 
     second_factor = models.ForeignKey(SecondFactor, on_delete=models.CASCADE, related_name="recovery_codes")
     code_sha256 = models.CharField(max_length=64, editable=False)
@@ -33,9 +33,9 @@ class RecoveryCode(models.Model):
 
 
 class BrowserSession(models.Model):
-    """Whose session of Django's it is, and when it was used. One that an earlier version began has none until its next request.
+    """The user and the use of a Django session. A session from an earlier version has no row until its next request.
 
-    There is no constraint in the database: the version before deletes sessions without knowing of this table.
+    There is no database constraint: the previous version deletes sessions without this table.
     """
 
     session = models.OneToOneField(

@@ -1,4 +1,4 @@
-"""Doors to the queue: sending a job, and sending lost ones again."""
+"""Sending jobs to the queue, and sending lost ones again."""
 
 import logging
 from functools import partial
@@ -16,7 +16,7 @@ logger = logging.getLogger(__name__)
 
 
 def send_job(job: Job) -> None:
-    """Send the job to its queue. A queue that is away loses nothing: the row stays, and the sweep sends it again."""
+    """Send the job to its queue. An unavailable queue loses nothing: the row stays, and the sweep sends it again."""
     try:
         current_app.send_task(job.task, args=[str(job.pk)], retry=False)
     except (OperationalError, RedisError, OSError) as error:

@@ -1,1 +1,1 @@
-"""Pages of accounts: signing in, second factors, passwords and users."""
+"""Pages of accounts: login, second factors, passwords and users."""

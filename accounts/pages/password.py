@@ -1,4 +1,4 @@
-"""Pages of somebody's own account: a new password, by mail for whoever has lost it."""
+"""Password pages of an account: change it, or reset a lost one by mail."""
 
 import logging
 from threading import Thread
@@ -20,7 +20,7 @@ logger = logging.getLogger(__name__)
 
 
 class LostPasswordForm(PasswordResetForm):
-    """Django's form with a limit: a few mails to one account, and from one address, in a quarter of an hour."""
+    """Django's form with a limit: a few mails per account and client address in a quarter of an hour."""
 
     def __init__(self, *args: Any, address: str = "", **options: Any) -> None:
         super().__init__(*args, **options)
@@ -36,9 +36,9 @@ class LostPasswordForm(PasswordResetForm):
         return email
 
     def send_mail(self, *args: Any, **options: Any) -> None:
-        """Beside the answer: how long a mail server takes would tell who has an account. In the language of the page that asked.
+        """Send the mail in a thread, in the page's language: the response time must not reveal whether the account exists.
 
-        On the console the link would stand in a log, for whoever reads it to set the password: there nothing is sent.
+        On the console backend nothing is sent: the link would be in a log, whose readers could set the password.
         """
         if not mail_leaves_here():
             logger.warning("a link to a new password was asked for, and SPANWISE_EMAIL_URL names no way for mail")
@@ -48,7 +48,7 @@ class LostPasswordForm(PasswordResetForm):
 
 
 class LostPasswordPage(views.PasswordResetView):
-    """Sends a link if somebody has this address. The answer is the same if nobody has."""
+    """Sends a link if the address belongs to an account. The response is the same if it does not."""
 
     template_name = "account/lost_password.html"
     email_template_name = "account/lost_password_mail.txt"
@@ -67,15 +67,15 @@ class LostPasswordSentPage(views.PasswordResetDoneView):
 
 
 class NewPasswordPage(views.PasswordResetConfirmView):
-    """Behind the link of the mail, which works once and for an hour."""
+    """The page behind the mail's link, which works once and for an hour."""
 
     template_name = "account/new_password.html"
     success_url = reverse_lazy("new-password-set")
 
     def form_valid(self, form: SetPasswordForm) -> HttpResponse:
-        """Whoever reads the account's mail is its owner: limits that strangers cause do not hold them back in this browser."""
+        """Set the password and trust this browser: limits caused by others' attempts no longer affect its owner here."""
         response = super().form_valid(form)
-        revoke_tokens(user=form.user, actor=form.user)  # whoever knew the old password may have made some
+        revoke_tokens(user=form.user, actor=form.user)  # made by users of the old password, perhaps
         remember(self.request, response, form.user.get_username())
         return response
 
@@ -85,7 +85,7 @@ class NewPasswordSetPage(views.PasswordResetCompleteView):
 
 
 class ChangePasswordForm(PasswordChangeForm):
-    """Django's form with a limit: somebody at an open browser cannot guess on."""
+    """Django's form with a limit, against guessing in an unattended browser."""
 
     def clean_old_password(self) -> str:
         try:

@@ -1,4 +1,4 @@
-"""Pages of the second factor: the code at the door, setting it up there or later, other recovery codes, taking it away."""
+"""Second factor pages: entering the code at login, setup at login or later, new recovery codes, removal."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ from workspace.field_encryption import CannotDecrypt, decrypt, encrypt
 from workspace.models import SignInOutcome, User
 from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempts, count_attempt
 
-SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
+SEED = "workspace.new_seed"  # in the session, encrypted, until an app has produced a code
 MAX_CODE_LENGTH = 60
 
 
@@ -30,7 +30,7 @@ class CodeForm(forms.Form):
 
 
 class CodeAndPasswordForm(CodeForm):
-    """For what somebody at an open browser must not do."""
+    """Form for actions that an unattended browser must not allow."""
 
     password = forms.CharField(strip=False, max_length=4_096, error_messages={"required": gettext_lazy("Type your password.")})
 
@@ -50,7 +50,7 @@ class CodeAndPasswordForm(CodeForm):
 
 
 def words_of(error: Exception) -> str:
-    """Why a code was not taken."""
+    """Return the text why a code was refused."""
     if isinstance(error, TooManyCodes):
         return _("Too many wrong codes. Wait 15 min, then try again.")
     left = error.left if isinstance(error, WrongCode) else 0
@@ -64,7 +64,7 @@ def words_of(error: Exception) -> str:
 
 @method_decorator(never_cache, name="dispatch")
 class CodePage(FormView):
-    """After the password. Who has not shown one here is led to the door."""
+    """Asks for the code after the password. Without a password in this session it redirects to the login."""
 
     template_name = "account/sign_in_code.html"
     form_class = CodeForm
@@ -92,7 +92,7 @@ class CodePage(FormView):
 
 @method_decorator(never_cache, name="dispatch")
 class SetUpPage(AccessMixin, FormView):
-    """A QR code for an app, and a code of it to show that it was read. At the door for whoever has to, else from the account."""
+    """Shows a QR code for an app, and checks a code of it. Part of the login for users who must have one, else opened from the account."""
 
     template_name = "account/second_factor.html"
 
@@ -138,7 +138,7 @@ class SetUpPage(AccessMixin, FormView):
         return response
 
     def _seed(self) -> bytes:
-        """The same one for as long as the page is looked at: an app may have read it."""
+        """Return the seed, unchanged while the page is open: an app may have read it."""
         name = f"new second factor of {self.person.pk}"
         try:
             return decrypt(self.request.session[SEED], of=name)
@@ -149,7 +149,7 @@ class SetUpPage(AccessMixin, FormView):
 
 
 class _OwnCodePage(LoginRequiredMixin, FormView):
-    """Something that wants the password and a code of the app once more; not there for whoever has none."""
+    """Base of pages that ask for password and code again; 404 for users without a second factor."""
 
     request: SignedInPageRequest
     form_class = CodeAndPasswordForm
@@ -183,7 +183,7 @@ class _OwnCodePage(LoginRequiredMixin, FormView):
 
 @method_decorator(never_cache, name="dispatch")
 class NewCodesPage(_OwnCodePage):
-    """Other recovery codes; those of before count no more."""
+    """Makes new recovery codes and invalidates the old ones."""
 
     template_name = "account/second_factor_codes.html"
 
@@ -196,7 +196,7 @@ class NewCodesPage(_OwnCodePage):
 
 @method_decorator(never_cache, name="dispatch")
 class RemovePage(_OwnCodePage):
-    """Where the organisation asks for a second factor, the next sign-in asks to set up another one."""
+    """Removes the second factor. If the organisation requires one, the next login asks to set up another."""
 
     template_name = "account/second_factor_remove.html"
 
@@ -209,5 +209,5 @@ class RemovePage(_OwnCodePage):
 
 
 def show_codes(request: HttpRequest, codes: list[str], go_on: str) -> HttpResponse:
-    """Once; only their hashes are kept."""
+    """Show the recovery codes once; only their hashes are stored."""
     return render(request, "account/recovery_codes.html", {"codes": codes, "go_on": go_on})

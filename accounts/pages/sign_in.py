@@ -1,4 +1,4 @@
-"""The door: signing in within limits, and signing out."""
+"""Login with limits, and logout."""
 
 from typing import Any
 
@@ -15,9 +15,9 @@ from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, mar
 
 
 class SignInForm(AuthenticationForm):
-    """Django's form, with limits on wrong tries and one message that does not tell which half was wrong."""
+    """Django's form, with limits on wrong tries and one message that does not reveal which part was wrong."""
 
-    request: HttpRequest  # the page gives it always
+    request: HttpRequest  # always set by the page
 
     def clean(self) -> dict[str, Any]:
         name = self.cleaned_data.get("username", "")
@@ -70,7 +70,7 @@ class SignInPage(views.LoginView):
 
 
 class SignOutPage(views.LogoutView):
-    """Ends the session; a stranger who comes here is only led to the door."""
+    """Ends the session; anonymous users are redirected to the login."""
 
     def post(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponse:
         if isinstance(request.user, User):

@@ -1,4 +1,4 @@
-"""Pages of one's own account, of the administration of everybody's, and the one behind an invitation's link."""
+"""Pages of the own account, of user administration, and behind an invitation's link."""
 
 from typing import Any
 
@@ -36,7 +36,7 @@ class AccountPage(SignedInPage):
 
 
 class AdministrationPage(UserPassesTestMixin, SignedInPage):
-    """People, invitations and the sign-in log: for administrators."""
+    """Users, invitations and the sign-in log, for administrators."""
 
     template_name = "administration.html"
     extra_context = {"section": "administration"}
@@ -49,7 +49,7 @@ class AdministrationPage(UserPassesTestMixin, SignedInPage):
 
 
 class NewAccountForm(UserCreationForm):
-    """The role and the organisation are the invitation's."""
+    """Form of a new account; the invitation sets role and organisation."""
 
     class Meta(BaseUserCreationForm.Meta):
         model = User
@@ -58,7 +58,7 @@ class NewAccountForm(UserCreationForm):
 
 @method_decorator(never_cache, name="dispatch")
 class InvitationPage(FormView):
-    """Makes the account and signs in. A link that works no more says so, whatever the reason."""
+    """Makes the account and logs in. An invalid link is reported as such without the reason."""
 
     template_name = "account/invitation.html"
     form_class = NewAccountForm
@@ -76,7 +76,7 @@ class InvitationPage(FormView):
         return {"email": self.invitation.email}
 
     def get_form_kwargs(self) -> dict[str, Any]:
-        newcomer = User(organisation=self.invitation.organisation)  # whose name is no password
+        newcomer = User(organisation=self.invitation.organisation)  # whose name must not be the password
         return super().get_form_kwargs() | {"instance": newcomer}
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
@@ -88,7 +88,7 @@ class InvitationPage(FormView):
                 user = accept_invitation(token=self.kwargs["token"], user=form.save(commit=False))
         except InvitationGone:
             return self._gone()
-        except IntegrityError:  # of two that chose the same name at the same moment
+        except IntegrityError:  # two users chose the same name concurrently
             form.add_error("username", _("Somebody has this name already."))
             return self.form_invalid(form)
         return let_in(self.request, user, resolve_url("missions"))

@@ -1,1 +1,1 @@
-"""Endpoints of accounts: one's own, those of an organisation, service accounts and sessions."""
+"""Endpoints of accounts: the own one, those of an organisation, service accounts and sessions."""

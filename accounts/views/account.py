@@ -1,4 +1,4 @@
-"""The API's doors to one's own account."""
+"""API endpoints of the own account."""
 
 from django.contrib.auth import update_session_auth_hash
 from django.db.models import F
@@ -31,7 +31,7 @@ from workspace.sessions.sign_in_attempts import PASSWORD_CHANGES, TooManyAttempt
 
 
 def check_password(request: SignedInRequest, name: str, password: str) -> None:
-    """Of whoever is signed in. Raises ApiProblem: 400 where it is another one, 429 after too many tries."""
+    """Check the authenticated user's password. Raises ApiProblem: 400 where it is wrong, 429 after too many tries."""
     try:
         count_attempt(PASSWORD_CHANGES, str(request.user.pk))
     except TooManyAttempts as held:
@@ -87,7 +87,7 @@ class AccountPassword(APIView):
 
 
 class AccountTokens(APIView):
-    """A token is answered once and not kept, so that the same request sent again makes another one."""
+    """The response with a token is not stored, so a repeated request makes another token."""
 
     write_roles = EVERYBODY
     permission_classes = [InTheBrowserAlone]

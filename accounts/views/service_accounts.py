@@ -1,4 +1,4 @@
-"""The API's endpoints for administrators about service accounts and their tokens."""
+"""API endpoints for administrators: service accounts and their tokens."""
 
 from django.http import Http404
 from django.urls import reverse
@@ -107,7 +107,7 @@ class ServiceAccountDetail(APIView):
 
 
 class ServiceAccountTokens(APIView):
-    """A token is answered once and not kept, so that the same request sent again makes another one."""
+    """The response with a token is not stored, so a repeated request makes another token."""
 
     permission_classes = [AdministratorsInTheBrowser]
 

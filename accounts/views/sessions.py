@@ -1,4 +1,4 @@
-"""The API's doors to sessions in browsers: one's own, one by one, and until when the one that asks still lasts."""
+"""API endpoints of the own browser sessions, and of when the current one ends."""
 
 from django.contrib.auth import update_session_auth_hash
 from django.utils.translation import gettext as _
@@ -19,7 +19,7 @@ from workspace.sessions.browser_sessions import end_session, open_sessions, seco
 
 
 class ThisSession(APIView):
-    """Asking is no sign that somebody is there; saying so is."""
+    """GET does not count as presence; POST does."""
 
     write_roles = EVERYBODY
     permission_classes = [InTheBrowserAlone]

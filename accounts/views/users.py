@@ -1,4 +1,4 @@
-"""The API's doors for administrators: people of one's organisation, invitations, the log of sign-ins."""
+"""API endpoints for administrators: users of the organisation, invitations, the sign-in log."""
 
 from datetime import timedelta
 from typing import Any
@@ -57,7 +57,7 @@ def _user_of_id(request: SignedInRequest, user_id: int) -> User:
 
 
 def _named(text: str, before: str = "") -> Q:
-    """Each word somewhere in the name or the address."""
+    """Return a filter: each word must be in the name or the address."""
     wanted = Q()
     for word in text.split():
         names = ("username", "first_name", "last_name", "email")
@@ -217,7 +217,7 @@ class SecondFactorRule(APIView):
 
 
 class InvitationList(APIView):
-    """A link is answered once and not kept, so that the same request sent again makes another one."""
+    """The response with a link is not stored, so a repeated request makes another link."""
 
     permission_classes = [AdministratorsInTheBrowser]
 

@@ -1,1 +1,1 @@
-"""The compiled core of the planners: where it is kept, and how programs warm it up."""
+"""The compiled core of the planners: its location, and warm-up of programs."""

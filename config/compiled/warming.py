@@ -1,4 +1,4 @@
-"""The web program loads compiled code and the network while it serves already: it is not ready until that has ended."""
+"""Warm-up of the web program in the background: it already serves, but is not ready until compiled code and the network are loaded."""
 
 import logging
 import threading
@@ -11,14 +11,14 @@ _thread: threading.Thread | None = None
 
 
 def warm_up_beside(work: Callable[[], None]) -> None:
-    """Do it in a thread of its own. Where it fails, the first request that needs something loads it."""
+    """Run the warm-up in a thread. If it fails, the first request that needs something loads it."""
     global _thread
     _thread = threading.Thread(target=_do, args=[work], name="warm-up", daemon=True)
     _thread.start()
 
 
 def warming_faults() -> list[str]:
-    """Why this process is not ready yet."""
+    """Return why this process is not ready yet."""
     return [WARMING_UP] if _thread is not None and _thread.is_alive() else []
 
 

@@ -1,1 +1,1 @@
-"""How programs count and time what they do: requests, tasks, system metrics."""
+"""Metrics of requests, tasks and the whole system."""

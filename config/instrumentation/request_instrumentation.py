@@ -1,4 +1,4 @@
-"""The outermost middleware: whether the program lives and can work, the request's own id, and how long each answer took."""
+"""The outermost middleware: probes, the request id, and response times."""
 
 import logging
 from collections.abc import Callable
@@ -31,16 +31,16 @@ _timers: dict[tuple[str, str], Histogram] = {}
 @never_cache
 @require_safe
 def healthz(request: HttpRequest) -> JsonResponse:
-    """The process answers; it asks nobody else."""
+    """Report that the process responds, without checking anything else."""
     return JsonResponse({"alive": True})
 
 
 @never_cache
 @require_safe
 def readyz(request: HttpRequest) -> JsonResponse:
-    """200 when database, migrations and Redis are there and the process is warm, else 503 with the reasons.
+    """Return 200 when database, migrations and Redis are available and the process is warm, else 503 with the reasons.
 
-    `missing` is what keeps missions from being planned: people bring it, so it keeps nobody out.
+    `missing` is what prevents planning: users supply it, so it does not make the process unready.
     """
     reasons = [*database_faults(), *redis_faults(), *warming_faults()]
     answer: dict[str, Any] = {"ready": not reasons}
@@ -52,7 +52,7 @@ def readyz(request: HttpRequest) -> JsonResponse:
 
 
 def missing_ground() -> list[str]:
-    """Without which nothing can be planned."""
+    """Return the data without which nothing can be planned."""
     try:
         missing = []
         if not Asset.objects.filter(vanished_at=None).exists():
@@ -68,7 +68,7 @@ PROBES: dict[str, Callable[[HttpRequest], HttpResponse]] = {"/healthz": healthz,
 
 
 class ObservedRequests:
-    """Probes are answered before anything else: they come to an address that is no host name of this site, and without TLS."""
+    """Answers probes before anything else: they come without TLS and to an address that is no host name of this site."""
 
     def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
         self.get_response = get_response
@@ -91,23 +91,23 @@ class ObservedRequests:
 
 
 def facts_of(request: HttpRequest, request_id: str) -> Facts:
-    """What is known once the address has been understood, and who asks once they have been looked up."""
+    """Return the context of a request: the view's arguments once its URL is resolved, and the user once loaded."""
     match = request.resolver_match
     named = {} if match is None else {_KWARGS[name]: str(value) for name, value in match.kwargs.items() if name in _KWARGS}
     return {"request": request_id, **_who(request), **named}
 
 
 def _who(request: HttpRequest) -> Facts:
-    """By number. Nobody is looked up for a line of log."""
+    """Return the user's key, without loading the user for a log line."""
     user = getattr(request, "user", None)
     if isinstance(user, SimpleLazyObject):
-        user = getattr(request, "_cached_user", None)  # where the session's middleware keeps whom it has looked up
+        user = getattr(request, "_cached_user", None)  # where the session's middleware caches the user
     key = getattr(user, "pk", None)
     return {} if key is None else {"user": str(key)}
 
 
 def _count(request: HttpRequest, status: int, took_s: float) -> None:
-    """By the pattern of the address, never by the address: there are as many patterns as lines in urls.py."""
+    """Count by URL pattern instead of URL: there are as many patterns as lines in urls.py."""
     match = request.resolver_match
     route = NO_ROUTE if match is None else match.route
     method = request.method if request.method in METHODS else "OTHER"

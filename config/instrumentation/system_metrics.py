@@ -1,6 +1,6 @@
-"""What the whole installation has before it, as the database and Redis say: queues, jobs, commands to UAVs, the graph, alerts.
+"""Metrics of the whole installation from the database and Redis: queues, jobs, commands to UAVs, the graph, alerts.
 
-Every process would tell the same, so one does: the schedule (beat), which runs once.
+Every process would report the same, so only the schedule (beat), of which there is one, does.
 """
 
 import logging
@@ -47,7 +47,7 @@ DESCRIBED = (
 
 
 class InstallationState:
-    """Looks once in 5 s, however often it is asked. What cannot be reached is left out and said to be away."""
+    """Reads at most every 5 s, however often it is asked. Values that cannot be read are omitted and reported as unavailable."""
 
     def __init__(self, celery: Celery) -> None:
         self._celery = celery

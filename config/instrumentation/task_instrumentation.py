@@ -1,4 +1,4 @@
-"""Celery's programs as others see them: what a task is about goes with it, how long each takes is counted, and they tell how they do."""
+"""Instrumentation of Celery's programs: context passed with tasks, durations, and health."""
 
 import logging
 import logging.config
@@ -24,7 +24,7 @@ from operation.readiness import redis_faults
 logger = logging.getLogger(__name__)
 
 HEADER = "spanwise_about"
-JOB_ARGUMENT = "job_id"  # the first one, of tasks that do a job
+JOB_ARGUMENT = "job_id"  # the first argument of tasks that do a job
 CARRIED = ("request", "mission", "uav")
 OUTCOMES = {"SUCCESS": "done", "FAILURE": "failed", "RETRY": "retried", "REJECTED": "rejected", "IGNORED": "ignored", "REVOKED": "revoked"}
 HEARTBEAT_INTERVAL_S, BEAT_WITHIN_S = 10.0, 120.0
@@ -33,7 +33,7 @@ _under_way: dict[str, tuple[float, AbstractContextManager[None]]] = {}
 
 
 def watch_tasks() -> None:
-    """To be called once, by whoever makes the Celery application."""
+    """Connect the signals. Call once, when the Celery application is made."""
     signals.before_task_publish.connect(_send_along)
     signals.task_prerun.connect(_begin)
     signals.task_postrun.connect(_end)
@@ -44,7 +44,7 @@ def watch_tasks() -> None:
 
 
 class LoopPulse(StartStopStep):
-    """The worker's own loop says that it goes round."""
+    """Sends heartbeats of the worker's own loop."""
 
     requires = ("celery.worker.components:Timer",)
 
@@ -58,7 +58,7 @@ class LoopPulse(StartStopStep):
 
 
 class WatchedScheduler(PersistentScheduler):
-    """Celery's own, which says that it goes round."""
+    """Celery's scheduler with heartbeats."""
 
     def tick(self, *arguments: Any, **named: Any) -> Any:
         loop_heartbeats.send_heartbeat("the schedule", within_s=BEAT_WITHIN_S, excuse=_is_redis_away)
@@ -102,14 +102,14 @@ def _end(task_id: str, task: Task, state: str | None = None, **_: Any) -> None:
 
 
 def _set_up_logging(loglevel: int | str | None = None, **_: Any) -> None:
-    """Instead of Celery's own: one way to write lines in all programs."""
+    """Set up logging in place of Celery, for one format in all programs."""
     logging.config.dictConfig(settings.LOGGING)
     if loglevel is not None:
         logging.getLogger().setLevel(loglevel)
 
 
 def _before_processes(**_: Any) -> None:
-    """A worker's tasks run in processes of their own, which count into files; those of a worker before this one are over."""
+    """Remove the metric files of an earlier worker; a worker's tasks run in processes of their own, which count into files."""
     folder = os.environ.get(PROCESSES_FOLDER)
     if folder is None:
         if os.environ.get("SPANWISE_METRICS"):

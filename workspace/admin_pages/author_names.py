@@ -1,4 +1,4 @@
-"""What people read of those who changed common ground: names within their organisation, no names of others."""
+"""Author names of changes to shared map data: shown within the same organisation only."""
 
 from django.utils.translation import gettext as _
 
@@ -8,7 +8,7 @@ AUTHOR_HELP = 'a name, or "another organisation" in your language'
 
 
 def author_name(author: User | None, reader: User) -> str | None:
-    """Return the author's name as `reader` may know it: installation operators know all. None where there is no author."""
+    """Return the author's name as `reader` may know it: installation operators see all. None where there is no author."""
     if author is None:
         return None
     is_known = reader.operates_installation or author.organisation_id == reader.organisation_id

@@ -23,7 +23,7 @@ def label_of(words: str) -> str:
 
 
 def label(models: Iterable[type[Model]]) -> None:
-    """Give models and fields of an app their labels, which migrations know nothing of; a field that has words of its own keeps them."""
+    """Set the labels of an app's models and fields outside of migrations; a field with a verbose_name of its own keeps it."""
     for model in models:
         options = model._meta
         options.verbose_name, options.verbose_name_plural = label_of(str(options.verbose_name)), label_of(str(options.verbose_name_plural))

@@ -1,4 +1,4 @@
-"""The admin's history of a row: who changed what, before and after, from the entries that the services write."""
+"""The admin's history of a row: who changed what, before and after, from the entries that services write."""
 
 import json
 from collections.abc import Iterable
@@ -22,7 +22,7 @@ NOTHING = "–"
 
 
 def what_changed(entry: AuditEntry) -> list[tuple[str, str, str]]:
-    """Name, before and after of each fact that differs; of what was made or deleted, each fact that it had."""
+    """Return name, before and after of each changed fact; for a created or deleted row, of each fact that it had."""
     before, after = entry.before, entry.after
     if not isinstance(before, dict | None) or not isinstance(after, dict | None):
         return [("", _shown(before), _shown(after))]
@@ -46,7 +46,7 @@ def as_table(rows: Iterable[tuple[str, str, str]]) -> SafeString:
 
 
 class HistoryAdmin(OrganisationScopedAdmin):
-    """Shows the row's history under its own name instead of what was done in the admin alone."""
+    """Shows the row's own history instead of only the changes made in the admin."""
 
     history_subject = ""
     object_history_template = "admin/history_of_row.html"
@@ -54,7 +54,7 @@ class HistoryAdmin(OrganisationScopedAdmin):
     def history_view(self, request: HttpRequest, object_id: str, extra_context: dict[str, Any] | None = None) -> HttpResponse:
         row = self.get_object(request, object_id)
         if row is None:
-            return super().history_view(request, object_id, extra_context)  # Django's answer to what is not there
+            return super().history_view(request, object_id, extra_context)  # Django's response for a missing row
         if not self.has_view_or_change_permission(request, row):
             raise PermissionDenied
         entries = AuditEntry.objects.select_related("actor").filter(subject_type=self.history_subject, subject_id=str(row.pk))

@@ -1,4 +1,4 @@
-"""Whose rows the admin shows: those of the user's own organisation, to installation operators those of all."""
+"""Restriction of the admin to rows of the user's organisation; installation operators see all."""
 
 from typing import Any, ClassVar
 
@@ -15,7 +15,7 @@ ORGANISATION = "organisation"
 
 
 class OwnOrganisationForm(ModelForm):
-    """Names the organisation by itself, so that what has to be unique within it is checked."""
+    """Sets the organisation itself, so that uniqueness within it is validated."""
 
     organisation: ClassVar[Organisation]
 
@@ -30,7 +30,7 @@ class OwnOrganisationForm(ModelForm):
 
 
 class OwnRelatedFilter(RelatedFieldListFilter):
-    """Offers the rows alone that the admin of the related model shows to this user."""
+    """Offers only the rows that the related model's admin shows to this user."""
 
     def field_choices(self, field: Any, request: HttpRequest, model_admin: Any) -> Any:
         rows = rows_shown(model_admin.admin_site, field.remote_field.model, request)
@@ -38,9 +38,9 @@ class OwnRelatedFilter(RelatedFieldListFilter):
 
 
 class OrganisationScopedAdmin(admin.ModelAdmin):
-    """Filters rows, choices and filters by organisation. Every ModelAdmin here is one and says in `organisation_path` where it stands."""
+    """Filters rows, choices and filters by organisation. Every ModelAdmin inherits from it and sets `organisation_path`."""
 
-    organisation_path: str | None = ORGANISATION  # lookup of the organisation; None: common ground, which all organisations share
+    organisation_path: str | None = ORGANISATION  # lookup of the organisation; None: map data, which all organisations share
     is_for_operators_alone = False
 
     def get_queryset(self, request: HttpRequest) -> QuerySet[Any]:
@@ -96,5 +96,5 @@ class OrganisationScopedAdmin(admin.ModelAdmin):
 
 
 def rows_shown(site: admin.AdminSite, model: Any, request: HttpRequest) -> QuerySet[Any] | None:
-    """What this user sees of a model in the admin; None where it has no page there."""
+    """Return the rows of a model that this user sees in the admin; None where the model has no page."""
     return site.get_model_admin(model).get_queryset(request) if site.is_registered(model) else None

@@ -1,4 +1,4 @@
-"""The admin as a whole: one sign-in for all doors."""
+"""The admin site, which uses the program's own login."""
 
 from typing import Any
 
@@ -15,13 +15,15 @@ class SpanwiseAdminSite(AdminSite):
     index_title = "Administration"
 
     def login(self, request: HttpRequest, extra_context: dict[str, Any] | None = None) -> HttpResponse:
-        """Send strangers to the program's own sign-in, which limits wrong tries; tell the others that their role does not reach here."""
+        """Redirect anonymous users to the program's own login, which limits wrong tries; raise PermissionDenied for
+        users without the role.
+        """
         if request.user.is_authenticated and not self.has_permission(request):
             raise PermissionDenied
         return redirect_to_login(request.GET.get("next") or reverse("admin:index"))
 
-    def password_change(  # type: ignore[override] # Django's answers are pages alone by their types, not by what they are
+    def password_change(  # type: ignore[override] # Django annotates its responses as pages only
         self, request: HttpRequest, extra_context: dict[str, Any] | None = None
     ) -> HttpResponse:
-        """Lead to the account's own page, which limits wrong tries: there is no password form here."""
+        """Redirect to the account page, which limits wrong tries: there is no password form here."""
         return HttpResponseRedirect(reverse("account"))

@@ -1,7 +1,7 @@
-"""The OpenAPI document: made once per version of the program, kept in a file, and sent as it is kept.
+"""The OpenAPI document: made once per version of the program, stored in a file, and sent from there.
 
-Making it takes seconds of processor time. `manage.py make_api_document`, which `./run` and the image's build call, makes the files; a
-process that finds none of its version makes it once and keeps it.
+Making it takes seconds of processor time. `manage.py make_api_document`, which `./run` and the image's build call, writes the files; a
+process that finds none of its version makes and stores it.
 """
 
 import gzip
@@ -43,7 +43,7 @@ class Document:
 
 @require_safe
 def api_document(request: HttpRequest) -> HttpResponse:
-    """Answer in YAML, or in JSON where that is asked for, with an ETag; nobody has to be signed in."""
+    """Return the document in YAML, or in JSON on request, with an ETag; no login is needed."""
     media_type = request.get_preferred_type(list(FORM_OF)) or "application/vnd.oai.openapi"
     document = stored(FORM_OF[media_type])
     is_packed = "gzip" in request.headers.get("Accept-Encoding", "")
@@ -58,7 +58,7 @@ def api_document(request: HttpRequest) -> HttpResponse:
 
 
 def stored(form: str) -> Document:
-    """The document in this form, "yaml" or "json"; of several askers at once one makes it and the others wait."""
+    """Return the document in this form, "yaml" or "json"; of concurrent requests one makes it and the others wait."""
     with _making:
         return _stored(form)
 
@@ -77,7 +77,7 @@ def _stored(form: str) -> Document:
 
 
 def version_of_the_program() -> str:
-    """A digest of the program's own sources."""
+    """Return a digest of the program's own sources."""
     digest = hashlib.sha256()
     for app in APPS:
         for path in sorted((Path(settings.BASE_DIR) / app).rglob("*.py")):
@@ -93,7 +93,7 @@ def _made(form: str) -> bytes:
 
 
 def _keep(path: Path, packed: bytes) -> None:
-    """For the processes beside and after this one; where nothing can be written each makes its own."""
+    """Store the document for other processes; where nothing can be written, each process makes its own."""
     written = path.with_suffix(f".{os.getpid()}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""Who is asking: bearer tokens for programs, and what a role may do in the admin."""
+"""Authentication: bearer tokens for programs, and permissions of roles in the admin."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ MAX_TOKEN_LENGTH = 200
 
 
 class BearerTokenAuthentication(BaseAuthentication):
-    """`Authorization: Bearer spw_…`. The answer never tells whether a token is unknown, expired or revoked."""
+    """`Authorization: Bearer spw_…`. The response does not reveal whether a token is unknown, expired or revoked."""
 
     def authenticate(self, request: Request) -> tuple[User, ApiToken] | None:
         scheme, *rest = request.META.get("HTTP_AUTHORIZATION", "").encode("latin-1", "replace").strip().split(b" ", 1)
@@ -38,13 +38,13 @@ class BearerTokenAuthentication(BaseAuthentication):
 
 
 def bearer_token(scope: dict[str, Any]) -> bytes | None:
-    """What a websocket's `Authorization: Bearer` says; None where it sends none: then its session tells whose it is."""
+    """Return the token of a websocket's `Authorization: Bearer` header; None without one, in which case its session identifies the user."""
     authorization: bytes = dict(scope["headers"]).get(b"authorization", b"")
     return authorization[7:].strip() if authorization[:7].lower() == b"bearer " else None
 
 
 def reader_of_token(token: bytes) -> User | None:
-    """Whose token it is, if it is valid and may read."""
+    """Return the token's user, if the token is valid and may read."""
     found = _valid_token(token)
     may_read = found is not None and (found.scopes is None or TokenScope.READ in found.scopes)
     return found.user if found is not None and may_read else None
@@ -57,7 +57,7 @@ def _valid_token(token: bytes) -> ApiToken | None:
     return _token_of(rows[0]) if rows else None
 
 
-# What nearly every request of a program asks of these rows; whatever else is asked of them is fetched then.
+# The columns that nearly every request of a program reads; others are fetched on access.
 _LOADED: dict[type[Model], tuple[str, ...]] = {
     ApiToken: ("id", "user_id", "scopes", "last_used_at"),
     User: ("id", "username", "is_active", "organisation_id", "role", "is_installation_operator", "is_service", "language"),
@@ -70,7 +70,7 @@ def _columns(model: type[Model], table: str) -> str:
 
 
 def _token_of(row: tuple[Any, ...]) -> ApiToken:
-    """The token with its user and organisation, from the columns of all three."""
+    """Return the token with its user and organisation, from the columns of all three."""
     found: list[Any] = []
     for model, names in _LOADED.items():
         found.append(model.from_db(DEFAULT_DB_ALIAS, names, row[: len(names)]))
@@ -79,7 +79,7 @@ def _token_of(row: tuple[Any, ...]) -> ApiToken:
     return token
 
 
-# Each request of a program begins with this: it is prepared once per connection.
+# Every request of a program starts with this statement, so it is prepared once per connection.
 _VALID_TOKEN = f"""
     SELECT {_columns(ApiToken, "token")}, {_columns(User, "holder")}, {_columns(Organisation, "organisation")}
     FROM workspace_apitoken AS token
@@ -100,14 +100,14 @@ class BearerTokenScheme(OpenApiAuthenticationExtension):
 
 
 class RoleBackend(ModelBackend):
-    """Signs in by name and password; permissions in the admin follow from the role and from nothing else."""
+    """Authenticates by name and password; permissions in the admin follow from the role alone."""
 
     def user_can_authenticate(self, user: Any) -> bool:
-        """Whether somebody may sign in as this user, and keep a session: nobody as a service account."""
+        """Whether this account may log in and keep a session. Service accounts may not."""
         return not user.is_service and super().user_can_authenticate(user)
 
     def get_user(self, user_id: int) -> User | None:
-        """Whose session it is, with their organisation, which nearly every answer asks for."""
+        """Return the session's user with the organisation, which nearly every response needs."""
         user = User.objects.select_related("organisation").filter(pk=user_id).first()
         return user if user is not None and self.user_can_authenticate(user) else None
 

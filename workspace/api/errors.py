@@ -1,6 +1,6 @@
-"""One shape for every error of the API: {"error": {"code", "message", "details"}}, with the members of RFC 9457 beside it.
+"""The shape of every error of the API: {"error": {"code", "message", "details"}}, plus the members of RFC 9457.
 
-The content type is `application/problem+json` for whoever names it in Accept, and `application/json` else.
+The content type is `application/problem+json` for clients that name it in Accept, else `application/json`.
 """
 
 import logging
@@ -21,14 +21,14 @@ from workspace.api.throttling import rate_limit_headers
 
 logger = logging.getLogger(__name__)
 
-DATABASE_UNAVAILABLE = (OperationalError, InterfaceError)  # also a statement that was cancelled or lost a deadlock: worth another try
+DATABASE_UNAVAILABLE = (OperationalError, InterfaceError)  # also a cancelled statement or a deadlock: worth a retry
 RETRY_AFTER_S = 2
-PROBLEM_TYPE = "urn:problem-type:spanwise:"  # and the error's code
+PROBLEM_TYPE = "urn:problem-type:spanwise:"  # followed by the error's code
 PROBLEM_JSON = "application/problem+json"
 
 
 class ApiProblem(exceptions.APIException):
-    """An answer that says what went wrong: raised by views, which turn the errors of services into it."""
+    """An error response, raised by views, which translate the errors of services into it."""
 
     def __init__(self, status: int, code: str, message: str, *, details: Any = None, retry_after_s: int | None = None) -> None:
         super().__init__(message, code)
@@ -40,7 +40,7 @@ class ApiProblem(exceptions.APIException):
 
 
 def error_body(status: int, code: str, message: str, details: Any = None, *, instance: str | None = None) -> dict[str, Any]:
-    """Return the body of an error. `instance` is the path of the request, where it is known (RFC 9457, section 3.1.5)."""
+    """Return the body of an error. `instance` is the path of the request, if known (RFC 9457, section 3.1.5)."""
     problem = {"type": PROBLEM_TYPE + code, "title": HTTPStatus(status).phrase, "status": status, "detail": message}
     return {"error": {"code": code, "message": message, "details": details}, **problem} | ({"instance": instance} if instance else {})
 
@@ -57,7 +57,7 @@ def database_away_problem() -> ApiProblem:
 
 
 def error_response(error: Exception, context: dict[str, Any]) -> Response | None:
-    """REST framework's exception handler. Errors that are nobody's fault but ours stay unhandled and reach handler500."""
+    """Handle exceptions for REST framework. Internal errors stay unhandled and reach handler500."""
     error = _as_api_exception(error)
     if not isinstance(error, exceptions.APIException):
         return None

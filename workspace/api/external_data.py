@@ -1,4 +1,4 @@
-"""Ids and attributes that other systems give to rows: what they may hold, as fields of serializers."""
+"""Serializer fields for ids and attributes that other systems give to rows, with their limits."""
 
 import json
 import re
@@ -14,7 +14,7 @@ from workspace.api.errors import ApiProblem
 MAX_EXTERNAL_ID_LENGTH = 200
 MAX_ATTRIBUTES = 50
 MAX_ATTRIBUTES_BYTES = 8_000
-# Control characters, lines and tabs among them, and those that turn the direction of writing.
+# Control characters, including newlines and tabs, and characters that change the direction of writing.
 _REFUSED = re.compile("[\0-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 ATTRIBUTES_SCHEMA = {
@@ -28,7 +28,7 @@ EXTERNAL_ID = OpenApiParameter("external_id", str, description="only what has th
 
 
 def asked_external_id(request: Request, name: str = "external_id") -> str:
-    """Return the id of a query parameter; empty without one. Raises ApiProblem 400 for what no id can be."""
+    """Return the id of a query parameter; empty without one. Raises ApiProblem 400 for an invalid id."""
     text = request.query_params.get(name, "").strip()
     if len(text) > MAX_EXTERNAL_ID_LENGTH or _REFUSED.search(text):
         fault = _("At most %(limit)s characters, and no control characters.") % {"limit": MAX_EXTERNAL_ID_LENGTH}
@@ -55,7 +55,7 @@ class ExternalIdField(serializers.CharField):
 
 @extend_schema_field(ATTRIBUTES_SCHEMA)
 class AttributesField(serializers.Field):
-    """What other systems keep with a row: at most 50 names with a text, a number or a boolean each, 8 kB of JSON together."""
+    """Attributes that other systems store with a row: at most 50 names, each with a text, number or boolean, 8 kB of JSON in total."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**{"required": False} | options)

@@ -1,4 +1,4 @@
-"""Fields of every app's API: finite numbers."""
+"""Serializer fields for finite numbers."""
 
 import math
 from typing import Any

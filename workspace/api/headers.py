@@ -1,4 +1,4 @@
-"""The headers of answers that the OpenAPI document names; read by settings, so it imports nothing of Django."""
+"""Response headers that the OpenAPI document names. Settings import this module, so it imports nothing of Django."""
 
 from typing import Any
 

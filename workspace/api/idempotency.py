@@ -1,7 +1,7 @@
-"""`Idempotency-Key` for a POST that creates: put `@idempotent` on the view's `post`; nothing else is needed.
+"""`Idempotency-Key` for a POST that creates: decorate the view's `post` with `@idempotent`; nothing else is needed.
 
-The key, the answer and whatever the view writes are committed together: a request that was answered is never done again, one
-that failed leaves no trace, and of two at the same moment the second waits and gets the first one's answer.
+The key, the response and all writes of the view are committed together. A successful request is never repeated, a failed one leaves no
+trace, and of two concurrent ones the second waits and gets the first one's response.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ Handler = Callable[..., Response]
 
 
 def idempotent(handler: Handler) -> Handler:
-    """Decorate a view's method; it must answer with a `Response` and do its work after the commit by `transaction.on_commit`."""
+    """Decorate a view's method; it must return a `Response` and do work after the commit by `transaction.on_commit`."""
 
     @wraps(handler)
     def answer_once(view: Any, request: SignedInRequest, *args: Any, **kwargs: Any) -> Response:
@@ -63,7 +63,7 @@ def _digest(request: Request) -> str:
 
 
 def _keep(kept: IdempotencyKey, response: Response, view: Any) -> None:
-    if response.status_code >= 400:  # an error that was returned, not raised: nothing of it stays
+    if response.status_code >= 400:  # an error that was returned instead of raised: roll back everything
         transaction.set_rollback(True)
         return
     kept.status = response.status_code

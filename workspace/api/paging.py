@@ -1,4 +1,4 @@
-"""Cursor paging: a page continues after its last row, so that rows that come and go in between repeat or hide nothing."""
+"""Cursor paging: a page continues after the last row of the previous one, so that inserted or deleted rows cause no repeats or gaps."""
 
 import base64
 import binascii
@@ -20,7 +20,7 @@ from workspace.api.whole_numbers import WholeNumber
 
 Row = TypeVar("Row", bound=Model)
 Item = TypeVar("Item")
-EARLIEST = datetime(2, 1, 1, tzinfo=UTC)  # before it nothing was changed, and less than a year is taken from a time
+EARLIEST = datetime(2, 1, 1, tzinfo=UTC)  # older than any change, with room to subtract a year
 LIMIT = WholeNumber("limit", "rows a page; 100 unless told, 1,000 at most")
 
 
@@ -33,7 +33,7 @@ class Page(Generic[Row]):
 def page_of(
     request: Request, queryset: QuerySet[Any, Row], *, order: tuple[str, ...] = ("pk",), default_limit: int = 100, max_limit: int = 1000
 ) -> Page[Row]:
-    """The page that `?limit=` and `?cursor=` ask for.
+    """Return the page of `?limit=` and `?cursor=`.
 
     `order` names model fields or annotations ("-" for descending); the last one must be unique.
     """
@@ -58,9 +58,9 @@ class Slice(Generic[Item]):
 def slice_of(
     request: Request, read: Callable[[tuple[datetime, str] | None, int], list[Item]], place: Callable[[Item], tuple[datetime, str]]
 ) -> Slice[Item]:
-    """The page that `?limit=` and `?cursor=` ask for, of what is no queryset: `read` returns so many items that come after a place.
+    """Return the page of `?limit=` and `?cursor=` for items outside of a queryset: `read` returns a number of items after a place.
 
-    A place is the time and the key of an item; no two are the same. Raises ApiProblem 400.
+    A place is the time and the key of an item, and is unique. Raises ApiProblem 400.
     """
     limit = _limit(request, 100, 1000)
     items = read(_place_of(request.query_params.get("cursor", "")), limit + 1)
@@ -87,9 +87,9 @@ def _place_of(cursor: str) -> tuple[datetime, str] | None:
 
 
 def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[Any, Row]:
-    """Return the rows with an `updated_at` not before `?changed_since=`, and those of a transaction that may have ended only since.
+    """Return the rows with an `updated_at` not before `?changed_since=`, and those whose transaction may have ended after it.
 
-    A row's `updated_at` is the beginning of its transaction, and imports have long ones: rows come twice rather than never. Raises
+    A row's `updated_at` is the start of its transaction, and imports have long ones: rows may come twice, but never get lost. Raises
     ApiProblem 400.
     """
     since = asked_instant(request, "changed_since")
@@ -100,7 +100,7 @@ def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[An
 
 
 def asked_instant(request: Request, name: str) -> datetime | None:
-    """Return the moment of a query parameter; None without one. A date is its first moment, and what has no offset is in UTC."""
+    """Return the moment of a query parameter; None without one. A date means its first moment; without an offset it is UTC."""
     text = request.query_params.get(name, "")
     if not text:
         return None
@@ -116,13 +116,13 @@ def asked_instant(request: Request, name: str) -> datetime | None:
 
 
 def asked_flag(request: Request, name: str) -> bool | None:
-    """Whether a query parameter is true; None without one. Raises ApiProblem 400 for what is neither true nor false."""
+    """Return a boolean query parameter; None without one. Raises ApiProblem 400 for other values."""
     text = asked_choice(request, name, ("true", "false"))
     return text == "true" if text else None
 
 
 def asked_choice(request: Request, name: str, known: Collection[str]) -> str:
-    """Return the word of a query parameter; empty without one. Raises ApiProblem 400 for what is not known."""
+    """Return the value of a query parameter; empty without one. Raises ApiProblem 400 for an unknown value."""
     text = request.query_params.get(name, "")
     if text and text not in known:
         fault = _("Known are {names}.").format(names=", ".join(known))
@@ -154,7 +154,7 @@ def _encoded(values: list[str]) -> str:
 
 
 def _decoded(cursor: str) -> Any:
-    """Raises ValueError, binascii.Error among them, or RecursionError; also for half of a surrogate pair, which is no text."""
+    """Decode a cursor. Raises ValueError (including binascii.Error) or RecursionError; also for an unpaired surrogate."""
     found = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
     json.dumps(found, ensure_ascii=False).encode()
     return found
@@ -165,7 +165,7 @@ def _wrong_cursor() -> ApiProblem:
 
 
 def _rows_after(queryset: QuerySet[Any], order: tuple[str, ...], cursor: str) -> Q:
-    """(a, b) > (x, y) written as a > x or (a = x and b > y), each column in its own direction."""
+    """Return (a, b) > (x, y) written as a > x or (a = x and b > y), each column in its own direction."""
     try:
         texts = _decoded(cursor)
         values = [_field(queryset, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]

@@ -1,4 +1,4 @@
-"""Reading request bodies: JSON as the standard has it, and no more than a request needs."""
+"""Parsers of request bodies: strict JSON within limits."""
 
 import json
 import math
@@ -15,7 +15,7 @@ from workspace.api.errors import ApiProblem
 
 MAX_NESTING_DEPTH = 32
 _UNSTORABLE = re.compile("[\0\ud800-\udfff]")
-# People put in lines and tabs. Other control characters, and those that turn the direction of writing, make one name look like another.
+# Users type newlines and tabs. Other control characters, and those that change the direction of writing, make one name look like another.
 _REFUSED = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
@@ -35,19 +35,19 @@ class StrictJSONParser(BaseParser):
 
 
 class UavJSONParser(StrictJSONParser):
-    """Lets control characters pass: what a UAV says of a command counts, however garbled its reason is."""
+    """Accepts control characters: a UAV's report on a command counts even with a garbled reason."""
 
     takes_control_characters = True
 
 
 class MeasuredJSONParser(UavJSONParser):
-    """Lets NaN and infinities pass as well, for views that name the record that holds them and take the others of the body."""
+    """Accepts NaN and infinities too, for views that name the invalid record and accept the others."""
 
     finite_only = False
 
 
 def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters: bool = False) -> Any:
-    """What a body says. Raises ParseError."""
+    """Return the value of a JSON body. Raises ParseError."""
     rules: dict[str, Any] = {"parse_constant": _refuse_constant, "parse_float": _finite_float} if finite_only else {}
     try:
         text = body.decode()
@@ -68,7 +68,7 @@ def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters
 
 
 class OctetParser(BaseParser):
-    """The raw bytes of a part of a file, never more than one request may have."""
+    """The raw bytes of a part of a file, within the limit of one request."""
 
     media_type = "application/octet-stream"
 
@@ -92,7 +92,7 @@ def _finite_float(text: str) -> float:
 
 
 def _check(root: Any, refused: re.Pattern[str]) -> None:
-    """Walk level by level, so that depth costs no stack."""
+    """Check the values level by level, so that depth uses no stack."""
     level = [root]
     for _depth in range(MAX_NESTING_DEPTH + 1):
         holders = []

@@ -1,4 +1,4 @@
-"""What a role may do in the API."""
+"""Permissions of roles in the API."""
 
 from collections.abc import Collection
 from typing import Any
@@ -33,9 +33,9 @@ ONE = {
 
 
 class RolePermission(BasePermission):
-    """Whoever is signed in may read; a view says with `write_roles` who may change things (operators if it says nothing).
+    """Every authenticated user may read; a view's `write_roles` may write (default: operators).
 
-    A token needs one of the scopes in `write_scopes` for that, else those that belong to these roles.
+    A token needs one of the scopes in `write_scopes` to write, by default those that belong to these roles.
     """
 
     def has_permission(self, request: Request, view: Any) -> bool:
@@ -54,7 +54,7 @@ class RolePermission(BasePermission):
         return False
 
     def token_reaches(self, request: Request, scopes: Collection[str]) -> bool:
-        """Whether a session asks, or a token with one of these scopes."""
+        """Whether the request has a session, or a token with one of these scopes."""
         token = request.auth
         if not isinstance(token, ApiToken) or token.scopes is None or not set(scopes).isdisjoint(token.scopes):
             return True
@@ -63,7 +63,7 @@ class RolePermission(BasePermission):
 
 
 def _scopes_for(roles: Collection[Role]) -> Collection[str]:
-    """What a token needs where these roles may write; what viewers may ask, too, changes nothing."""
+    """Return the scopes that a token needs where these roles may write; a request that viewers may make changes nothing."""
     if Role.VIEWER in roles:
         return READING
     found = {scope for role, scope in ((Role.OPERATOR, TokenScope.PLAN), (Role.CURATOR, TokenScope.CURATE)) if role in roles}
@@ -71,7 +71,7 @@ def _scopes_for(roles: Collection[Role]) -> Collection[str]:
 
 
 class AdministratorsAlone(RolePermission):
-    """Who works here, and who came to the door, is for administrators to see, too."""
+    """Only administrators may read or write: the users of an organisation, and the sign-in log."""
 
     def has_permission(self, request: Request, view: Any) -> bool:
         self.message = _("Only administrators see and change who works here.")
@@ -81,7 +81,7 @@ class AdministratorsAlone(RolePermission):
 
 
 class InTheBrowserAlone(RolePermission):
-    """What could outlive a lost token: no token makes another one, changes a password or ends sessions."""
+    """Refuses tokens for what could outlive a lost one: making tokens, changing a password, ending sessions."""
 
     def has_permission(self, request: Request, view: Any) -> bool:
         if request.auth is not None and request.method not in SAFE_METHODS:
@@ -91,9 +91,9 @@ class InTheBrowserAlone(RolePermission):
 
 
 class AdministratorsInTheBrowser(InTheBrowserAlone, AdministratorsAlone):
-    """Who gives somebody a role could make an account that outlives a lost token: reading is for tokens, too, giving is not."""
+    """Administrators: tokens may read, but not change roles, as that could make an account that outlives a lost token."""
 
 
 def may_change(actor: User, user: User) -> bool:
-    """Whether the actor may change this account: that of an installation operator is for operators and its owner."""
+    """Whether the actor may change this account: only operators and the owner may change that of an installation operator."""
     return actor.operates_installation or actor.pk == user.pk or not user.operates_installation

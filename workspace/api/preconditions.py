@@ -1,4 +1,4 @@
-"""`If-Match` on what several people edit: nobody overwrites what they have not seen."""
+"""`If-Match` on rows that several users edit, so that no user overwrites a change they have not seen."""
 
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse
@@ -20,13 +20,13 @@ def etag_of(revision: int) -> dict[str, str]:
 
 
 def need_if_match(request: Request) -> None:
-    """Raises ApiProblem 428 without the header."""
+    """Raise ApiProblem 428 without the header."""
     if "If-Match" not in request.headers:
         raise ApiProblem(428, "if_match_missing", _("Say with If-Match which revision you have seen: its ETag, or * for any."))
 
 
 def expected_revision(request: Request) -> int | None:
-    """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header, 412 for what is no ETag of ours."""
+    """Return the revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header, 412 for a foreign ETag."""
     need_if_match(request)
     text = request.headers["If-Match"].strip().removeprefix("W/").strip('"')
     if text == "*":

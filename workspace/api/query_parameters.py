@@ -1,6 +1,6 @@
-"""Middleware: query parameters that the OpenAPI document does not name for an operation are answered 400.
+"""Middleware: query parameters that the OpenAPI document does not name for an operation get a 400.
 
-A misspelt filter would list everything. What is checked is the declaration (`extend_schema`) of which the document is made.
+A mistyped filter would otherwise list everything. The check reads the declaration (`extend_schema`) behind the document.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ from workspace.api.errors import error_body, error_content_type
 
 API = "/api/v1/"
 CODE = "unknown_parameter"
-MAX_NAMED, MAX_NAME_LENGTH = 10, 100  # nobody makes the search for near names long
+MAX_NAMED, MAX_NAME_LENGTH = 10, 100  # limits the search for similar names
 HANDLERS = {"GET": "get", "HEAD": "get", "POST": "post", "PUT": "put", "PATCH": "patch", "DELETE": "delete"}
 
 
@@ -54,7 +54,7 @@ def query_parameters_of(view_class: type[APIView], method: str) -> frozenset[str
     if declaration is None:
         return frozenset()
     schema, view = declaration(), cast(Any, view_class())
-    view.request, view.kwargs = None, {}  # what drf-spectacular asks the view for
+    view.request, view.kwargs = None, {}  # drf-spectacular reads them from the view
     schema.view, schema.method, schema.path = view, method.upper(), ""
     return frozenset(name for parameter in schema.get_override_parameters() for name in _names_of(parameter))
 

@@ -1,4 +1,4 @@
-"""Reasons in answers of the API."""
+"""Reasons in responses of the API."""
 
 from workspace.api import strict_serializers as serializers
 

@@ -1,4 +1,4 @@
-"""Writing answers, and which form an answer has."""
+"""Renderers, and the choice of a response's format."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -12,10 +12,12 @@ from workspace.api.errors import PROBLEM_JSON
 
 
 class ProblemNegotiation(DefaultContentNegotiation):
-    """Accept's `application/problem+json` is for errors alone (workspace/api/errors.py): a client that names only it takes any answer."""
+    """Treats `application/problem+json` in Accept as for errors only (workspace/api/errors.py): a client that names
+    just it gets any format.
+    """
 
     def select_renderer(self, request: Request, renderers: Any, format_suffix: str | None = None) -> Any:
-        """The first one at once for whoever takes anything, or names just it."""
+        """Return the first renderer at once for a client that accepts anything, or names only it."""
         first = renderers[0]
         if format_suffix is None and request.META.get("HTTP_ACCEPT", "*/*") in ("*/*", first.media_type):
             return first, first.media_type
@@ -27,7 +29,7 @@ class ProblemNegotiation(DefaultContentNegotiation):
 
 
 class OneAnswer(BaseContentNegotiation):
-    """A file is that file and errors are JSON, whatever the client says that it prefers."""
+    """Always returns the file, and errors as JSON, whatever the client prefers."""
 
     def select_parser(self, request: Request, parsers: Any) -> Any:
         return parsers[0]
@@ -37,7 +39,9 @@ class OneAnswer(BaseContentNegotiation):
 
 
 class FastJSONRenderer(BaseRenderer):
-    """JSON for large answers of plain values: a plan of some hundred waypoints is written ten times faster than by the standard library."""
+    """JSON for large responses of plain values: a plan of some hundred waypoints renders ten times faster than with
+    the standard library.
+    """
 
     media_type = "application/json"
     format = "json"

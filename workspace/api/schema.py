@@ -1,4 +1,4 @@
-"""What the OpenAPI document says about every address: paging, headers, and the errors that any of them can answer."""
+"""Additions to the OpenAPI document for all endpoints: paging, headers, and common errors."""
 
 import re
 from collections.abc import Iterable
@@ -20,7 +20,7 @@ PRINTABLE_ASCII = "^[ -~]+$"
 
 
 def several_of(values: Iterable[str]) -> dict[str, Any]:
-    """The shape of a query parameter that takes some of these words with commas."""
+    """Return the schema of a query parameter with a comma-separated list of these values."""
     one = "|".join(map(re.escape, values))
     return {"type": "string", "pattern": f"^({one})?(,({one})?)*$"}
 
@@ -46,7 +46,7 @@ ERRORS = {
 }
 ONLY_WITH_BODY = {413, 415}
 CONDITIONS = {"If-Match", "If-None-Match"}
-OTHERS_WITH_ETAG = {"get_mission_approval", "get_scene", "get_tile", "undo_change"}  # which name no such header, or answer no revision
+OTHERS_WITH_ETAG = {"get_mission_approval", "get_scene", "get_tile", "undo_change"}  # these declare no such header, or return no revision
 KEY_CONFLICT = "The Idempotency-Key was used for another request."
 
 IDEMPOTENCY_KEY: dict[str, Any] = {
@@ -58,7 +58,7 @@ IDEMPOTENCY_KEY: dict[str, Any] = {
 
 
 class SpanwiseSchema(AutoSchema):
-    """Adds the errors that every operation shares, so that views name only what is their own."""
+    """Adds the errors that every operation shares, so that views declare only their own."""
 
     def get_operation(self, *args: Any, **kwargs: Any) -> dict[str, Any] | None:
         operation = super().get_operation(*args, **kwargs)
@@ -81,19 +81,19 @@ class SpanwiseSchema(AutoSchema):
         return operation
 
     def _get_request_for_media_type(self, serializer: Any, direction: Any = "request") -> Any:
-        """A body of one of several shapes may not be missing where something is made; drf-spectacular says so of single shapes alone."""
+        """Require a body of several shapes for POST; drf-spectacular does so only for single shapes."""
         schema, is_required = super()._get_request_for_media_type(serializer, direction)
         return schema, is_required or (self.method == "POST" and isinstance(serializer, PolymorphicProxySerializer))
 
     def _map_basic_serializer(self, serializer: Any, direction: Any) -> dict[str, Any]:
-        """A body whose serializer refuses other fields has no others."""
+        """Forbid other fields in a body whose serializer refuses them."""
         schema: dict[str, Any] = super()._map_basic_serializer(serializer, direction)
         if direction == "request" and getattr(serializer, "refuses_other_fields", False):
             schema["additionalProperties"] = False
         return schema
 
     def _map_serializer_field(self, field: Any, direction: Any, bypass_extensions: bool = False) -> Any:
-        """Lists say how short they may be, which drf-spectacular passes over where their items are objects or may not be missing."""
+        """Add the minimum length of lists, which drf-spectacular omits where items are objects or required."""
         schema = super()._map_serializer_field(field, direction, bypass_extensions)
         least = max(int(getattr(field, "allow_empty", True) is False), getattr(field, "min_length", None) or 0)
         if direction == "request" and least and schema and schema.get("type") == "array":
@@ -101,7 +101,7 @@ class SpanwiseSchema(AutoSchema):
         return schema
 
     def _insert_field_validators(self, field: Any, schema: dict[str, Any]) -> None:
-        """Keep a blank default beside the choice of drf-spectacular: inside its first branch, a blank would have to be an email address."""
+        """Put a blank default beside drf-spectacular's choice: in its first branch, a blank would have to be an email address."""
         super()._insert_field_validators(field, schema)
         if (above := getattr(field, "above", None)) is not None:
             schema |= {"minimum": above, "exclusiveMinimum": True}
@@ -110,7 +110,7 @@ class SpanwiseSchema(AutoSchema):
                 schema["default"] = branch.pop("default")
 
     def _takes_key(self) -> bool:
-        """Whether the handler, or a private method that does its work, is `@idempotent`."""
+        """Whether the handler, or a private method that it delegates to, is `@idempotent`."""
         handlers = [getattr(self.view, self.method.lower(), None)]
         if self.method == "POST":
             handlers += [member for name, member in vars(type(self.view)).items() if name.startswith("_")]
@@ -125,7 +125,7 @@ class SpanwiseSchema(AutoSchema):
 
 
 def name_etags(result: dict[str, Any], **_: Any) -> dict[str, Any]:
-    """Hook of drf-spectacular: add ETag to the answers of what is asked for or changed by its ETag, wherever the same shape is answered."""
+    """Add ETag to the responses of operations with conditional requests, and to others of the same shape. Hook of drf-spectacular."""
     operations = [each for methods in result["paths"].values() for each in methods.values()]
     shapes: set[str] = set()
     for operation in operations:
@@ -153,6 +153,6 @@ def _successes(operation: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _shape_of(response: dict[str, Any]) -> str:
-    """Return the reference to the shape of a JSON answer, or nothing."""
+    """Return the reference to the shape of a JSON response, or an empty text."""
     schema: dict[str, str] = response.get("content", {}).get("application/json", {}).get("schema", {})
     return schema.get("$ref", "")

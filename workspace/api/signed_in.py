@@ -1,4 +1,4 @@
-"""Requests whose user has signed in: what a view that anonymous users cannot reach knows of its request."""
+"""Types of requests whose user is authenticated."""
 
 from django.core.exceptions import PermissionDenied
 from django.http import HttpRequest
@@ -8,21 +8,21 @@ from workspace.models import User
 
 
 class SignedInRequest(Request):
-    """A request to the API whose view refuses anonymous users. A name for type checks: no object is made of it."""
+    """A request to the API whose view refuses anonymous users. For type checks only; never instantiated."""
 
     user: User
 
 
 class SignedInPageRequest(HttpRequest):
-    """A request of a page behind `LoginRequiredMixin`. A name for type checks: no object is made of it."""
+    """A request of a page behind `LoginRequiredMixin`. For type checks only; never instantiated."""
 
     user: User
 
 
 def user_of(request: HttpRequest) -> User:
-    """Return the user who has signed in, where the type of the request cannot say so: in the admin.
+    """Return the authenticated user where the request's type cannot express it: in the admin.
 
-    Raises PermissionDenied if nobody has signed in.
+    Raises PermissionDenied for an anonymous user.
     """
     if not isinstance(request.user, User):
         raise PermissionDenied

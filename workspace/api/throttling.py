@@ -1,4 +1,4 @@
-"""How often a user may ask. Redis counts over all processes; without Redis nobody is refused."""
+"""Rate limits per user. Redis counts over all processes; without Redis no request is refused."""
 
 import logging
 import time
@@ -15,7 +15,7 @@ from rest_framework.throttling import ScopedRateThrottle
 logger = logging.getLogger(__name__)
 
 LOG_INTERVAL_S = 60.0
-GENEROUS = 20  # of so many requests the first one that a process sees in a window is not worth a question to Redis
+GENEROUS = 20  # at limits from here on, a user's first request in a window and process is not counted in Redis
 
 
 @cache
@@ -25,13 +25,13 @@ def _counters() -> Redis:
 
 @cache
 def _rate(written: str | None) -> tuple[int | None, int | None]:
-    """Requests and seconds of "40/second"; none without a limit."""
+    """Return requests and seconds of "40/second"; None without a limit."""
     parsed: tuple[int | None, int | None] = ScopedRateThrottle().parse_rate(written)
     return parsed
 
 
 def rate_limit_headers(scope: str, resets_in_s: float) -> dict[str, str]:
-    """Return RateLimit and RateLimit-Policy of a refused request, as draft-ietf-httpapi-ratelimit-headers-10 writes them."""
+    """Return RateLimit and RateLimit-Policy of a refused request, as in draft-ietf-httpapi-ratelimit-headers-10."""
     requests, duration_s = _rate(ScopedRate.THROTTLE_RATES[scope])
     if requests is None or duration_s is None:
         return {}
@@ -39,7 +39,7 @@ def rate_limit_headers(scope: str, resets_in_s: float) -> dict[str, str]:
 
 
 def _count(key: str, kept_s: int) -> int:
-    """Count one more under this key, in one round trip."""
+    """Increment the count under this key, in one round trip."""
     pipeline = _counters().pipeline(transaction=False)
     pipeline.incr(key)
     pipeline.expire(key, kept_s)
@@ -50,12 +50,13 @@ def _count(key: str, kept_s: int) -> int:
 class ScopedRate(ScopedRateThrottle):
     """Limits views that name a `throttle_scope`, per user, in fixed windows counted atomically over all processes.
 
-    Most users ask once in a while. Where the limit is generous, the first request of a user that a process sees in a window is let
-    through uncounted, so that over all processes one more each may pass.
+    Most users send requests rarely. At a generous limit the first request of a user in a window and process passes uncounted, so each
+    process
+    may let one more pass.
     """
 
-    quiet_until_s = 0.0  # of this process: the log is told once in a while, not at each request
-    seen: ClassVar[dict[str, tuple[int, set[str]]]] = {}  # by scope: the window, and who has asked this process in it
+    quiet_until_s = 0.0  # of this process: limits how often the failure is logged
+    seen: ClassVar[dict[str, tuple[int, set[str]]]] = {}  # by scope: the window, and users seen in it by this process
 
     def allow_request(self, request: Request, view: Any) -> bool:
         self.scope = getattr(view, self.scope_attr, None)

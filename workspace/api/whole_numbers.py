@@ -1,4 +1,4 @@
-"""Whole numbers in the query: each is described in the OpenAPI document and read by the same bounds."""
+"""Whole numbers in the query, described in the OpenAPI document and validated by the same bounds."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +14,7 @@ MAX_NUMBER = 999_999_999
 
 @dataclass(frozen=True)
 class WholeNumber:
-    """A query parameter, by default an id. With `max_values` it may be repeated so often."""
+    """A query parameter, by default an id. With `max_values` it may be repeated up to that number."""
 
     name: str
     description: str = ""

@@ -1,4 +1,4 @@
-"""Websockets of the workspace: how far a job is."""
+"""Websocket of a job's progress."""
 
 import asyncio
 from contextlib import suppress
@@ -20,18 +20,18 @@ from workspace.live.timed_waits import wait_for_event
 from workspace.locale_negotiation import language_of_socket
 from workspace.models import Job, User
 
-POLL_INTERVAL_S = 1.0  # at the row, whether a word has come or not
-MESSAGE_INTERVAL_S = 0.1  # words that come close together are one look
+POLL_INTERVAL_S = 1.0  # of the row, with or without notifications
+MESSAGE_INTERVAL_S = 0.1  # notifications within this time cause one poll
 REDIS_PAUSE_S = 1.0
 
 _encode = DjangoJSONEncoder(separators=(",", ":")).encode
 
 
 class JobConsumer(SignedInSocket):
-    """`/ws/jobs/{id}`: the job as `GET /api/v1/jobs/{id}` shows it, at once and after every change, until it has ended.
+    """`/ws/jobs/{id}`: the job as `GET /api/v1/jobs/{id}` returns it, at once and after every change, until it has ended.
 
-    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "keepalive"}`; nothing is to be sent here. Closed
-    with 4401 soon after whoever listens may not any more, and at once with 4429 where they have too many websockets open.
+    Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "keepalive"}`; clients send nothing. Closed with 4401 soon after
+    the user loses access, and at once with 4429 if the user has too many websockets open.
     """
 
     def kind(self) -> str:
@@ -58,7 +58,7 @@ class JobConsumer(SignedInSocket):
         seen: Any = None
         answered_s = checked_s = loop.time()
         while True:
-            with suppress(DatabaseError):  # away for a moment: the next look tells
+            with suppress(DatabaseError):  # unavailable for a moment: the next poll reads it
                 if loop.time() - checked_s >= CHECK_PERSON_INTERVAL_S:
                     checked_s = loop.time()
                     now = await self._same_user(user)
@@ -85,7 +85,7 @@ class JobConsumer(SignedInSocket):
             self._has_message.clear()
 
     async def _listen(self) -> None:
-        """Word from the worker that the row has changed; without Redis there is none, and the row is looked at all the same."""
+        """Receive notifications from the worker that the row has changed; without Redis there are none, and the row is only polled."""
         while True:
             try:
                 layer = get_channel_layer()
@@ -99,7 +99,7 @@ class JobConsumer(SignedInSocket):
 
     @database_sync_to_async
     def _version(self, user: User) -> tuple[Any, ...] | None:
-        """Another one after every change of the row; None for a job that is not there, or another organisation's."""
+        """Return a value that differs after every change of the row; None for a missing job, or another organisation's."""
         jobs = selectors.jobs_of_organisation(user.organisation).filter(pk=self._job_id)
         return jobs.values_list("state", "attempts", "progress", "message", "lease_expires_at", "cancel_requested_at").first()
 

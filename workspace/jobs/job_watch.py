@@ -1,8 +1,7 @@
-"""Carries a job's progress out of a long transaction, renews its lease, and brings the wish to stop back in.
+"""Reports a job's progress from within a long transaction, renews its lease, and receives the request to cancel.
 
-Inside a transaction nothing of a job's row may be written: nobody would see it before the end, and whoever wants to cancel would wait
-for it. So a thread of its own, with its own connection, does that once a second; also while the database works on one long statement,
-or the processor on one long search.
+A job's row may not be written inside the transaction: the change would be invisible until its end, and would block a cancellation. A
+separate thread with its own connection writes it once a second, also during a long statement of the database or a long search.
 """
 
 import logging
@@ -26,9 +25,9 @@ Draw = Callable[[], Any]
 
 
 class JobWatch:
-    """`with JobWatch(job) as watch: work(progress=watch.progress)`. progress raises JobCancelled once somebody has asked to stop.
+    """`with JobWatch(job) as watch: work(progress=watch.progress)`. progress raises JobCancelled once a user has cancelled the job.
 
-    Work that wants to keep what it has found uses `note` and `stop` instead, which raise nothing.
+    Work that keeps what it has found uses `note` and `stop` instead, which raise nothing.
     """
 
     def __init__(self, job: Job, *, interval_s: float = INTERVAL_S) -> None:
@@ -57,7 +56,7 @@ class JobWatch:
             self._release()
 
     def _release(self) -> None:
-        """The worker ends before the work does. Without a database the lease runs out by itself."""
+        """Release the job as the worker ends before the work. Without a database the lease runs out."""
         try:
             release_job(job=self.job)
         except DatabaseError as error:
@@ -76,14 +75,14 @@ class JobWatch:
             raise JobCancelled
 
     def note(self, share: float, message: Why, draw: Draw | None = None) -> None:
-        """How far it is, and how to draw the best found so far: drawn once a report, however often there is a better one."""
+        """Store the progress, and how to draw the best result so far: drawn once per report, however often it improves."""
         self._share, self._message = share, message
         if draw is not None:
             self._draw = draw
         self._report_inline()
 
     def stop(self) -> bool:
-        """Whether somebody has asked to stop, or another worker has the job by now. Never raises: searches call it from C++."""
+        """Whether a user has cancelled the job, or another worker holds it. Never raises: searches call it from C++."""
         self._report_inline()
         return self.is_cancelled
 
@@ -102,7 +101,7 @@ class JobWatch:
     def _report(self) -> None:
         best = self._drawn()
         if not self._reported(best) and best is not None:
-            self._reported(None)  # the lease is renewed, whatever the best was
+            self._reported(None)  # renews the lease even if the result cannot be drawn
 
     def _reported(self, best: Any) -> bool:
         try:
@@ -111,7 +110,7 @@ class JobWatch:
             self._is_cancelled.set()
             self._stopped.set()
         except JobCancelled:
-            self._is_cancelled.set()  # the lease is renewed until the end: the best until now is still being written up
+            self._is_cancelled.set()  # keep renewing the lease: the best result is still being stored
         except Exception as error:
             logger.warning("progress of job %s is not stored: %r", self.job.pk, error)
             connection.close_if_unusable_or_obsolete()
@@ -119,7 +118,7 @@ class JobWatch:
         return True
 
     def _drawn(self) -> Any:
-        """The best so far; None where there is nothing new, or it cannot be drawn."""
+        """Return the best result so far; None where there is nothing new, or it cannot be drawn."""
         draw, self._draw = self._draw, None
         try:
             return draw() if draw else None

@@ -1,7 +1,7 @@
-"""Threads of one process make their small plans one after another; while one waits for the database, another goes on.
+"""The planning lock: threads of one process make small plans one at a time; while one waits for the database, another continues.
 
-They share one interpreter, and compiled parts let go of it for microseconds at a time. Threads that plan at once take it from each other
-each time: a plan then costs half as much again as alone, just when there is most to do.
+They share one interpreter, and compiled parts release it for microseconds at a time. Concurrent planning threads take it from each other
+each time, which makes a plan half as expensive again under load.
 """
 
 from collections.abc import Callable, Iterator
@@ -9,15 +9,15 @@ from contextlib import contextmanager
 from threading import Lock, local
 from typing import TypeVar
 
-TIMEOUT_S = 0.25  # a turn is a courtesy: who waits longer, as behind a plan of many targets, goes on without
+TIMEOUT_S = 0.25  # fairness only: a thread that waits longer, as behind a large plan, continues without the lock
 _Found = TypeVar("_Found")
 _lock = Lock()
-_mine = local()  # of each thread: `is_held`
+_mine = local()  # per thread: `is_held`
 
 
 @contextmanager
 def hold_planning_lock() -> Iterator[bool]:
-    """Whether the turn was had when it began; nested ones are the same turn."""
+    """Yield whether the lock was acquired; a nested block shares the outer lock."""
     if _is_held():
         yield True
         return
@@ -29,7 +29,7 @@ def hold_planning_lock() -> Iterator[bool]:
 
 
 def without_planning_lock(ask: Callable[..., _Found], *asked: object) -> _Found:
-    """What `ask` finds; this thread's turn, if it has one, is meanwhile another's."""
+    """Return the result of `ask`; this thread's lock, if held, is free for others meanwhile."""
     if not _is_held():
         return ask(*asked)
     release_planning_lock()
@@ -40,7 +40,7 @@ def without_planning_lock(ask: Callable[..., _Found], *asked: object) -> _Found:
 
 
 def release_planning_lock() -> None:
-    """Give this thread's turn up, if it has one, before its block is over: whatever comes next waits for nobody."""
+    """Release this thread's lock, if held, before its block ends, so that later work blocks no other thread."""
     if _is_held():
         _mine.is_held = False
         _lock.release()

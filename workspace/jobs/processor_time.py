@@ -1,4 +1,4 @@
-"""A bound for the processor time of a piece of work: what a small file can make a parser do must not hold a worker for long."""
+"""A limit for the processor time of a piece of work: a small file must not occupy a parser and its worker for long."""
 
 import signal
 import threading
@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-AGAIN_S = 5.0  # after which it is raised again, where a library has swallowed it
+AGAIN_S = 5.0  # repeat interval, in case a library swallows the exception
 
 
 class ProcessorTimeExceeded(Exception):
-    """The work has used up the processor time that it was given."""
+    """Raised when the work has used up its processor time."""
 
 
 @contextmanager
 def processor_limit(seconds: float) -> Iterator[None]:
-    """Raise ProcessorTimeExceeded in the body once this process has used so much in it, user and system time of all threads.
+    """Raise ProcessorTimeExceeded in the body once this process has used this much, user and system time of all threads.
 
-    Signals reach the main thread alone, where a worker does its tasks; elsewhere there is no bound.
+    Signals reach only the main thread, where a worker runs its tasks; in other threads there is no limit.
     """
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -8,7 +8,7 @@ _functions: dict[str, str] = {}
 
 
 def register_result_texts(task: str, function: str) -> None:
-    """The dotted name of a function that returns a result of this task with its texts in the language that is active."""
+    """Register a function by its dotted name. It returns a result of this task with its texts in the active language."""
     _functions[task] = function
 
 

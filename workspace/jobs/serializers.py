@@ -10,8 +10,8 @@ from workspace.jobs.result_texts import result_with_texts
 from workspace.models import Job, JobState
 from workspace.reason_texts import column_text, reasons_of_column, with_message
 
-# A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared
-# fields out of the class, so neither overrides anything.
+# These declared fields are named like attributes of serializers, such as `label`, or set to None to omit an inherited one. DRF removes
+# declared fields from the class, so neither overrides anything.
 Declared: TypeAlias = Any
 
 
@@ -22,7 +22,7 @@ class ErrorDetailSerializer(serializers.Serializer):
 
 
 class ErrorSerializer(serializers.Serializer):
-    """Every error of the API has this shape: `error`, and beside it a problem of RFC 9457."""
+    """The shape of every error of the API: `error`, and beside it a problem of RFC 9457."""
 
     error = ErrorDetailSerializer()
     type = serializers.CharField(help_text="`urn:problem-type:spanwise:` and the error's code")
@@ -40,14 +40,14 @@ class JobErrorSerializer(serializers.Serializer):
 
 @extend_schema_field(JobErrorSerializer(allow_null=True))
 class JobErrorField(serializers.JSONField):
-    """Why a job failed, as it is stored."""
+    """Why a job failed, as stored."""
 
 
 class JobSerializer(serializers.ModelSerializer):
-    """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`.
+    """Work that takes longer than a request. `result` is set once the state is `done`, `error` once it is `failed`.
 
-    While a plan is being searched for, `best` is the best until now, at most once a second: `value` and the lower `bound` in `unit`
-    (metres, or seconds where the longest route counts), how many targets are left out, and the `routes` as lines.
+    During the search for a plan, `best` is the best one so far, updated at most once a second: `value` and the lower `bound` in `unit`
+    (metres, or seconds where the longest route counts), the number of unassigned targets, and the `routes` as lines.
     """
 
     state = serializers.ChoiceField(choices=JobState.choices)
@@ -74,7 +74,7 @@ class JobSerializer(serializers.ModelSerializer):
 
 
 class ListedJobSerializer(JobSerializer):
-    """A job in a list: without what may be large."""
+    """A job in a list, without large fields."""
 
     class Meta(JobSerializer.Meta):
         fields = [name for name in JobSerializer.Meta.fields if name not in {"best", "result"}]

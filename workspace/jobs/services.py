@@ -1,4 +1,4 @@
-"""Jobs from request to result: claimed with a lease, reported, ended, cancelled, and sent again where a worker was lost."""
+"""Jobs from request to result: claimed with a lease, reported, ended, cancelled, and requeued where a worker was lost."""
 
 from datetime import timedelta
 from functools import partial
@@ -26,23 +26,23 @@ from workspace.models import (
 )
 from workspace.reason_texts import message_json, text_and_column, why_of_column
 
-LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
-QUEUE_TIMEOUT_S = 30  # a queued job that nobody took for so long is sent again
+LEASE_S = 15  # without a renewal for this long a worker counts as dead; it renews once a second
+QUEUE_TIMEOUT_S = 30  # a queued job that no worker took for this long is sent again
 MAX_ATTEMPTS = 5
-_ATTEMPTS_BEFORE = "attempts_before_pause"  # in a job's parameters
+_ATTEMPTS_BEFORE = "attempts_before_pause"  # key in a job's parameters
 IDEMPOTENCY_KEPT = timedelta(hours=48)
 
 
 class JobCancelled(Exception):
-    """A user has asked the job to stop."""
+    """Raised when a user has cancelled the job."""
 
 
 class JobLost(JobCancelled):
-    """Another worker holds the job by now, or it has ended: whatever this one still finds is of no use."""
+    """Raised when another worker holds the job, or it has ended: this worker's results are discarded."""
 
 
 class TooManyJobs(Exception):
-    """The user has as many jobs waiting and running as one may have."""
+    """Raised when the user has the maximum number of jobs waiting and running."""
 
     def __init__(self, limit: int) -> None:
         super().__init__(_("%(limit)s of your jobs are waiting or running already. Wait for one, or stop it.") % {"limit": limit})
@@ -57,7 +57,9 @@ def create_job(*, organisation: Organisation, created_by: User | None, task: str
 def create_job_within(
     limit: int, *, organisation: Organisation, created_by: User, task: str, parameters: dict[str, Any], message: Why = ""
 ) -> Job:
-    """As create_job, for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs; of two at once the second waits."""
+    """Create a job as create_job does, for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs;
+    concurrent calls wait.
+    """
     with transaction.atomic():
         User.objects.select_for_update(no_key=True).filter(pk=created_by.pk).values_list("pk").first()
         refuse_jobs_beyond(limit, user=created_by, task=task)
@@ -65,14 +67,14 @@ def create_job_within(
 
 
 def refuse_jobs_beyond(limit: int, *, user: User, task: str) -> None:
-    """Raises TooManyJobs when the user has `limit` open jobs, or more, of the app that the task is of."""
+    """Raise TooManyJobs when the user has at least `limit` open jobs of the task's app."""
     app = task.partition(".")[0]
     if Job.objects.filter(created_by=user, state__in=OPEN_STATES, task__startswith=f"{app}.").count() >= limit:
         raise TooManyJobs(limit)
 
 
 def start_job(*, job_id: UUID | str) -> Job | None:
-    """Take the job for this worker, or return None if it is finished, cancelled or held by another worker."""
+    """Claim the job for this worker, or return None if it is finished, cancelled or held by another worker."""
     with transaction.atomic():
         job = Job.objects.select_for_update().filter(pk=job_id).first()
         if job is None or not job.is_open:
@@ -93,10 +95,11 @@ def start_job(*, job_id: UUID | str) -> Job | None:
 
 
 def report_progress(*, job: Job, progress: float, message: Why = "", best: Any = None) -> None:
-    """Store how far the job is, the best found so far if there is something new, and renew its lease.
+    """Store the progress and the best result so far if there is a new one, and renew the lease.
 
-    Raises JobCancelled when the user has asked to stop (the lease is renewed all the same: what was found is still to be kept), and
-    JobLost when this worker does not hold the job any more.
+    Raises JobCancelled when the user has cancelled the job (the lease is renewed, so that results can still be stored), and JobLost when
+    this
+    worker no longer holds the job.
     """
     held = _held(job)
     values: dict[str, Any] = {"lease_expires_at": from_now(LEASE_S)}
@@ -107,14 +110,14 @@ def report_progress(*, job: Job, progress: float, message: Why = "", best: Any =
 
 
 def release_job(*, job: Job) -> bool:
-    """The worker is told to stop: whoever gets the job's message next goes on with it at once, without waiting for the lease to run out."""
+    """Release the job of a stopping worker: the next receiver of its message continues it without waiting for the lease."""
     return bool(release(_held(job), after_s=LEASE_S, state=JobState.QUEUED))
 
 
 def pause_job(*, job: Job, progress: float, message: Why, pause_s: float) -> None:
-    """Leave the worker to others, as the job waits for something: after `pause_s` the sweep sends it again.
+    """Requeue a job that waits for something; the sweep sends it again after `pause_s`.
 
-    Attempts until now count no longer as lost. A job that is to be cancelled ends. Nothing happens if another worker has taken it over.
+    Attempts until now no longer count as lost. A cancelled job ends. Nothing happens if another worker has taken it over.
     """
     parameters = job.parameters | {_ATTEMPTS_BEFORE: job.attempts}
     reported = {"progress": progress, **message_columns(message), "parameters": parameters}
@@ -125,7 +128,7 @@ def pause_job(*, job: Job, progress: float, message: Why, pause_s: float) -> Non
 
 
 def _attempts_lost(job: Job) -> int:
-    """Since it was paused last, or in all."""
+    """Return the number of lost attempts since the last pause, or in total."""
     return job.attempts - int(job.parameters.get(_ATTEMPTS_BEFORE, 0))
 
 
@@ -134,7 +137,7 @@ def cancel_is_requested(*, job: Job) -> bool:
 
 
 def finish_job(*, job: Job, result: Any = None, message: Why = "") -> bool:
-    """Store the result once. False if another worker finished the job, or the user cancelled it, in the meantime."""
+    """Store the result once. Returns False if another worker finished the job, or the user cancelled it, in the meantime."""
     return _end(job, state=JobState.DONE, progress=1.0, result=result, **message_columns(message))
 
 
@@ -143,7 +146,7 @@ def fail_job(*, job: Job, code: str, message: Why) -> None:
 
 
 def message_of(job: Job) -> Why:
-    """What a job says last, to be stored elsewhere."""
+    """Return the job's last message, to be stored elsewhere."""
     return why_of_column(job.message_why, job.message)
 
 
@@ -153,7 +156,7 @@ def message_columns(message: Why) -> dict[str, Any]:
 
 
 def _end(job: Job, **values: Any) -> bool:
-    """End the job if this attempt still holds it. An attempt whose lease another one has taken ends nothing."""
+    """End the job if this attempt still holds it; an attempt that lost its lease changes nothing."""
     ended = bool(release(_held(job), **values, best=None, finished_at=timezone.now()))
     if ended:
         transaction.on_commit(partial(publish_job, job.pk))
@@ -161,12 +164,12 @@ def _end(job: Job, **values: Any) -> bool:
 
 
 def _held(job: Job) -> QuerySet[Job]:
-    """The job's row while this attempt holds it: what stands for the holder's name in other leases."""
+    """Return the job's row while this attempt holds it; the attempt takes the place of the holder's name in other leases."""
     return Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
 
 
 def _has_used_its_time(job: Job) -> bool:
-    """Whether its worker was stopped at the time limit: the same again would end the same way, and hold a worker as long."""
+    """Whether its worker was stopped at the time limit: a retry would end the same way, and occupy a worker as long."""
     if job.started_at is None or job.lease_expires_at is None:
         return False
     last_message_s = (job.lease_expires_at - job.started_at).total_seconds() - LEASE_S
@@ -182,12 +185,12 @@ def _give_up(job: Job) -> None:
 
 
 def confirm_cancelled(*, job: Job) -> None:
-    """A worker has seen the request to stop and has stopped. Nothing happens if another worker has taken the job over since."""
+    """Record that a worker has stopped on request. Nothing happens if another worker has taken the job over since."""
     _end(job, state=JobState.CANCELLED, **message_columns(Reason("job_cancelled")))
 
 
 def cancel_job(*, job: Job) -> Job:
-    """Ask the job to stop: at once if nobody works on it yet, else at the worker's next look. A finished job stays as it is."""
+    """Cancel a job: at once if it is queued, else at the worker's next report. A finished job is unchanged."""
     now = timezone.now()
     with transaction.atomic():
         locked = Job.objects.select_for_update().get(pk=job.pk)
@@ -204,9 +207,9 @@ def cancel_job(*, job: Job) -> Job:
 
 
 def requeue_lost_jobs() -> list[Job]:
-    """Put back what a dead worker held and find what nobody picked up; the caller sends these to the queue again.
+    """Requeue jobs of dead workers and find those that no worker picked up; the caller sends them to the queue again.
 
-    The lease of a queued job is the time until which a message for it is believed to be on its way.
+    The lease of a queued job is the time until which its message is assumed to be on its way.
     """
     lost = []
     with transaction.atomic():
@@ -230,14 +233,14 @@ def forget_old_idempotency_keys() -> int:
 
 
 FAIR_QUEUE_LOCK = 0x05A7_0030  # advisory lock: one worker at a time chooses
-REMEMBERED = timedelta(hours=1)  # for which it counts who was served
+REMEMBERED = timedelta(hours=1)  # how long past jobs of an organisation count
 
 
 def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
-    """Take the job that the message is about, or one of the same task whose organisation waits for its turn in its place.
+    """Claim the message's job, or instead one of the same task whose organisation is next in turn.
 
-    None where none waits, and where each organisation that waits has `max_running` running jobs of the app: these wait until one of them
-    ends. A job whose worker was lost goes on before any other.
+    Returns None where none waits, and where each waiting organisation has `max_running` running jobs of the app: these wait until one ends.
+    A job whose worker was lost takes precedence.
     """
     with transaction.atomic():
         lock_until_end(FAIR_QUEUE_LOCK)
@@ -249,7 +252,7 @@ def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
 
 
 def next_waiting(*, task: str) -> Job | None:
-    """The oldest job of the task's app that waits; its message is to be sent again where one has just ended."""
+    """Return the oldest waiting job of the task's app; its message is sent again after a job has ended."""
     return Job.objects.filter(state=JobState.QUEUED, task__startswith=_app(task)).order_by("created_at").first()
 
 

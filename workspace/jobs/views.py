@@ -1,4 +1,4 @@
-"""The API's doors to jobs."""
+"""API endpoints of jobs."""
 
 from uuid import UUID
 

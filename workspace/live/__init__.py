@@ -1,1 +1,1 @@
-"""What the websockets of all apps share: who is there, limits, changes and graceful shutdown."""
+"""What the websockets of all apps share: authentication, limits, change notifications and graceful shutdown."""

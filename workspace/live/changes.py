@@ -1,4 +1,4 @@
-"""Word to open pages that rows have changed. A word that is lost costs nothing: whoever listens looks at the rows by itself, too."""
+"""Notifications to open pages that rows have changed. A lost one does no harm: listeners also poll the rows."""
 
 import asyncio
 import logging
@@ -18,9 +18,9 @@ from redis.retry import Retry
 logger = logging.getLogger(__name__)
 
 LOG_INTERVAL_S = 60.0
-DEADLINE_S = 1.0  # whoever has the word to say renews the job's lease, or answers a person
-LIVE_DEADLINE_S = 0.2  # that of telemetry, which is said many times a second
-LIVE_PAUSE_S = 2.0  # nothing is said for so long once Redis was away
+DEADLINE_S = 1.0  # the sender also renews the job's lease, or responds to a user
+LIVE_DEADLINE_S = 0.2  # for telemetry, which sends many times a second
+LIVE_PAUSE_S = 2.0  # nothing is sent for this long after Redis was unavailable
 _quiet_until_s = 0.0
 _live_quiet_until_s = 0.0
 
@@ -30,17 +30,19 @@ def job_group(job_id: UUID | str) -> str:
 
 
 def live_channel(organisation_id: int | str) -> str:
-    """Redis' own channel: one a process listens to all of them, where a group of Channels would be one a socket. "*" stands for any."""
+    """Return a plain Redis channel: a process listens to all of them at once, where Channels needs a group per
+    socket. "*" is a wildcard.
+    """
     return f"spanwise-live.organisation.{organisation_id}"
 
 
 def publish_job(job_id: UUID | str) -> None:
-    """Tell whoever follows the job that its row has changed. Without Redis nobody is told, and nothing fails."""
+    """Notify followers of the job that its row has changed. Without Redis it does nothing and never fails."""
     _unless_redis_is_away(lambda: async_to_sync(_send)(job_group(job_id)))
 
 
 def publish_live(organisation_id: int) -> None:
-    """Tell the organisation's live pages that something has changed: after the commit. Never fails, and waits for no Redis for long."""
+    """Notify the organisation's live pages of a change, after the commit. It never fails, and waits for Redis only briefly."""
     global _live_quiet_until_s
     if time.monotonic() < _live_quiet_until_s:
         return

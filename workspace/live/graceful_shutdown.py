@@ -1,7 +1,6 @@
-"""A program of websockets that is told to stop (SIGTERM) says goodbye to its pages: one by one, so that they do not all come back at once.
+"""Graceful shutdown of a websocket program on SIGTERM: its sockets are closed one by one, so that pages do not reconnect at once.
 
-Whoever serves the sockets would drop them without a word. So it hears of the signal only once they are closed: as SIGINT, which says
-the same to it.
+The server would drop them without a close code. So it gets its signal only once they are closed: as SIGINT, which also stops it.
 """
 
 import asyncio
@@ -11,9 +10,9 @@ import signal
 from typing import Protocol
 from weakref import WeakKeyDictionary
 
-RESTARTS = 1012  # "service restart": the page comes back at once, and finds another program
+RESTARTS = 1012  # "service restart": the page reconnects at once, to another program
 SPREAD_S = 4.0
-MAX_DURATION_S = 6.0  # also where a page does not answer
+MAX_DURATION_S = 6.0  # even if a page does not respond
 
 
 class Socket(Protocol):
@@ -21,7 +20,7 @@ class Socket(Protocol):
 
 
 class GracefulShutdown:
-    """Of one event loop."""
+    """The shutdown of one event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, *, spread_s: float = SPREAD_S) -> None:
         self._loop = loop
@@ -30,7 +29,7 @@ class GracefulShutdown:
         self.has_begun = False
 
     def receive_signal(self) -> None:
-        """Instead of whoever serves the sockets. In the main thread only, where signals are heard."""
+        """Handle SIGTERM in place of the server. Call it in the main thread, the only one that receives signals."""
         self._loop.add_signal_handler(signal.SIGTERM, self.begin)
 
     def begin(self) -> None:
@@ -42,7 +41,7 @@ class GracefulShutdown:
         self._loop.call_later(MAX_DURATION_S if self._sockets else 0.0, self._leave)
 
     def expect(self, socket: Socket) -> None:
-        """It is told once it is time, until it is forgotten."""
+        """Register a socket to be closed at shutdown, until it is forgotten."""
         self._sockets.add(socket)
         if self.has_begun:
             self._send_later(socket)
@@ -63,7 +62,7 @@ _shutdowns: WeakKeyDictionary[asyncio.AbstractEventLoop, GracefulShutdown] = Wea
 
 
 def shutdown_here() -> GracefulShutdown:
-    """That of the running event loop."""
+    """Return the shutdown of the running event loop."""
     loop = asyncio.get_running_loop()
     if loop not in _shutdowns:
         _shutdowns[loop] = GracefulShutdown(loop)

@@ -1,4 +1,4 @@
-"""What every websocket of a signed-in person has in common: who is there, for how long they may be, and how it is hung up."""
+"""Base of websockets of authenticated users: authentication, its recheck, limits, and closing."""
 
 import asyncio
 import logging
@@ -35,8 +35,8 @@ LIFETIME_S = 15
 REDIS_TIMEOUT_S = 1.0
 REDIS_ERRORS = (RedisError, OSError)  # TimeoutError is an OSError
 
-# KEYS: one sorted set per place. ARGV: the member, its lifetime [s], then the limit of each place. Redis' own clock, so that those of
-# the machines need not agree.
+# KEYS: one sorted set per place. ARGV: the member, its lifetime [s], then the limit of each place. Uses Redis' own clock, so that machine
+# clocks need not agree.
 _TAKE = """
 local now = tonumber(redis.call('TIME')[1])
 for i, key in ipairs(KEYS) do
@@ -50,7 +50,7 @@ for _, key in ipairs(KEYS) do
 end
 return 1
 """
-# KEYS: one place. ARGV: the lifetime [s], then the members. Adds them again after Redis has lost them.
+# KEYS: one place. ARGV: the lifetime [s], then the members. Adds them again after Redis lost them.
 _RENEW = """
 local until_s = tonumber(redis.call('TIME')[1]) + ARGV[1]
 for i = 2, #ARGV do redis.call('ZADD', KEYS[1], until_s, ARGV[i]) end
@@ -62,7 +62,7 @@ class SocketPlaces:
     """The places of this process's websockets. All methods run in one event loop."""
 
     def __init__(self) -> None:
-        self._open: Counter[str] = Counter()  # of this process, by place
+        self._open: Counter[str] = Counter()  # in this process, by place
         self._members: dict[str, tuple[str, ...]] = {}  # the places of each open websocket
         self._renewing: asyncio.Task[None] | None = None
         self._redis = Redis.from_url(settings.REDIS_URL, socket_connect_timeout=REDIS_TIMEOUT_S, socket_timeout=REDIS_TIMEOUT_S)
@@ -72,7 +72,7 @@ class SocketPlaces:
         if any(limit and self._open[place] >= limit for place, limit in limits.items()):
             return None
         member = uuid4().hex
-        self._open.update(limits.keys())  # before the question to Redis: others of this process ask meanwhile
+        self._open.update(limits.keys())  # before the query to Redis, for concurrent calls in this process
         self._members[member] = tuple(limits)
         is_taken = 1
         try:
@@ -91,7 +91,7 @@ class SocketPlaces:
 
     async def release(self, member: str) -> None:
         places = self._forget(member)
-        with suppress(*REDIS_ERRORS):  # it ends by itself
+        with suppress(*REDIS_ERRORS):  # the entry expires
             pipeline = self._redis.pipeline(transaction=False)
             for place in places:
                 pipeline.zrem(_key(place), member)
@@ -124,7 +124,7 @@ _places: WeakKeyDictionary[asyncio.AbstractEventLoop, SocketPlaces] = WeakKeyDic
 
 
 def socket_places_here() -> SocketPlaces:
-    """Return those of the running event loop."""
+    """Return the places of the running event loop."""
     loop = asyncio.get_running_loop()
     if loop not in _places:
         _places[loop] = SocketPlaces()
@@ -136,24 +136,24 @@ def _key(place: str) -> str:
 
 
 CHECK_PERSON_INTERVAL_S = 4.0
-KEEPALIVE_INTERVAL_S = 20.0  # a proxy between here and the page closes what is silent
+KEEPALIVE_INTERVAL_S = 20.0  # a proxy in between closes silent connections
 
 RETRY_AFTER = b"2"  # seconds
 ENDED, FAILED, SIGNED_OUT, NO_MESSAGE, TOO_MANY = 1000, 1011, 4401, 4400, 4429
 
 
 class SignedInSocket(AsyncWebsocketConsumer):
-    """For browsers by their session, for programs by `Authorization: Bearer`."""
+    """Authenticates browsers by their session, programs by `Authorization: Bearer`."""
 
-    channel_layer_alias = "none"  # it listens by itself: a socket lives on while Redis is away
-    _counted_as: str | None = None  # once it is accepted
+    channel_layer_alias = "none"  # none of Channels': a socket stays open while Redis is unavailable
+    _counted_as: str | None = None  # set once it is accepted
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
+        """Close only while no task waits for the browser's messages; before that the server sends it nothing."""
         self._tasks: list[asyncio.Task[None]] = []
         self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self._place: str | None = None  # among the open websockets of its user and its network
-        with about(**_facts_of(scope)):  # whatever is begun here knows it, too
+        with about(**_facts_of(scope)):  # tasks started here inherit it
             answering = asyncio.ensure_future(super().__call__(scope, receive, send))
         try:
             await asyncio.wait({answering, self._hung_up}, return_when=asyncio.FIRST_COMPLETED)
@@ -173,11 +173,11 @@ class SignedInSocket(AsyncWebsocketConsumer):
                 await socket_places_here().release(self._place)
 
     def kind(self) -> str:
-        """What its page follows, one of a few words."""
+        """Return what its page follows, as one of a few words."""
         raise NotImplementedError
 
     async def websocket_connect(self, message: Any) -> None:
-        """Without the database nobody knows who comes: they are told to try again, which pages do by themselves."""
+        """Refuse with 503 and Retry-After while the database is unavailable, so that pages retry."""
         try:
             await super().websocket_connect(message)
         except DatabaseError as error:
@@ -194,12 +194,12 @@ class SignedInSocket(AsyncWebsocketConsumer):
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
 
     async def is_one_too_many(self, user: User) -> bool:
-        """Take a place among the open websockets of this user and this network, or tell the page by a close code that none is left."""
+        """Take a place among the open websockets of this user and this network, or close with a code if none is left."""
         network = network_of(_address_of(self.scope))
         wanted = {f"user {user.pk}": settings.SOCKETS_PER_USER, f"network {network}": settings.SOCKETS_PER_ADDRESS}
         self._place = await socket_places_here().take(wanted)
         if self._place is None:
-            await AsyncWebsocketConsumer.accept(self)  # a refused handshake shows a page no reason
+            await AsyncWebsocketConsumer.accept(self)  # a refused handshake gives a page no reason
             await self.close(TOO_MANY)
         return self._place is None
 
@@ -208,12 +208,12 @@ class SignedInSocket(AsyncWebsocketConsumer):
         self._messages.inc()
 
     def hang_up(self, code: int) -> None:
-        """Once nobody waits any more for what the browser says. The first code counts."""
+        """Close once no task waits for the browser's messages. The first code counts."""
         if not self._hung_up.done():
             self._hung_up.set_result(code)
 
     def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        """Beside the socket, and no longer than it. Work that fails takes the socket with it: nobody stays in unwatched."""
+        """Run a task as long as the socket. If it fails, the socket is closed, so that no user stays unchecked."""
         task = asyncio.create_task(work)
         self._tasks.append(task)
         task.add_done_callback(self._look_how_it_ended)
@@ -224,7 +224,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             self.hang_up(FAILED)
 
     async def _user(self) -> User | None:
-        """Whoever listens, if they still may."""
+        """Return the current user, if they still have access."""
         token = bearer_token(self.scope)
         if token is not None:
             return await database_sync_to_async(reader_of_token)(token)
@@ -232,31 +232,31 @@ class SignedInSocket(AsyncWebsocketConsumer):
         if key is None:
             return None
         store = import_module(settings.SESSION_ENGINE).SessionStore
-        session = store(session_key=key)  # of its own: the first one keeps what it has read
+        session = store(session_key=key)  # a new one: the first caches what it has read
         user = await get_user({"session": session})
         if not (isinstance(user, User) and user.is_active):
             return None
-        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page is somebody's presence
+        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page counts as presence
         return user
 
     async def _same_user(self, before: User) -> User | None:
-        """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""
+        """Return the same user as they are now; None once they have lost access, or moved to another organisation."""
         now = await self._user()
         is_same = now is not None and (now.pk, now.organisation_id) == (before.pk, before.organisation_id)
         return now if is_same else None
 
     async def _watch_person(self, user: User) -> None:
-        """Until they may not be there any more: then the socket is closed. Somebody whose role has changed comes in again."""
+        """Close the socket once the user loses access. A user whose role has changed reconnects."""
         while True:
             await asyncio.sleep(CHECK_PERSON_INTERVAL_S)
-            with suppress(DatabaseError):  # away for a moment: the next look tells
+            with suppress(DatabaseError):  # unavailable for a moment: the next check reads it
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
                     return self.hang_up(SIGNED_OUT)
 
 
 def _address_of(scope: Any) -> str:
-    """Return where it came from."""
+    """Return the client's address."""
     reported = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
     client = scope.get("client")
     return visitor_address(client[0] if client else "", reported[-1] if reported else "")

@@ -1,4 +1,4 @@
-"""Waiting in the event loop for a signal or until a time is over."""
+"""Waiting in the event loop for an event with a timeout."""
 
 import asyncio
 
@@ -6,7 +6,7 @@ import asyncio
 async def wait_for_event(event: asyncio.Event, timeout_s: float) -> bool:
     """Return whether the event was set in time.
 
-    `asyncio.wait_for` of Python 3.11 drops a cancellation that arrives together with the event (python/cpython issue 86296, mended in
+    `asyncio.wait_for` of Python 3.11 drops a cancellation that arrives together with the event (python/cpython issue 86296, fixed in
     3.12): a task with a loop around it then never ends.
     """
     try:

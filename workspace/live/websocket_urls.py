@@ -1,4 +1,4 @@
-"""Addresses of the workspace's websockets."""
+"""URLs of the workspace's websockets."""
 
 from django.urls import path
 

@@ -1,1 +1,1 @@
-"""Sessions in browsers, and what requests of browsers share: preferences, addresses of visitors, limits on guessing."""
+"""Browser sessions, and what requests of browsers share: preferences, client addresses, limits on password guessing."""

@@ -1,4 +1,4 @@
-"""Sessions in browsers: noting that somebody is there, listing one's own, ending them."""
+"""Browser sessions: recording their use, listing and ending them."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -20,13 +20,13 @@ NOTED_EVERY = timedelta(minutes=1)
 
 @dataclass(frozen=True)
 class SessionRules:
-    longest_s: float  # from signing in, whatever is done
+    longest_s: float  # from the login, whatever happens
     idle_s: float  # without any open page
-    watching_s: float  # with an open page in which nobody does anything
+    watching_s: float  # with an open page that the user does not use
 
 
 def ends_at(*, began_at: datetime, acted_at: datetime, present_at: datetime, rules: SessionRules) -> datetime:
-    """The first of the three ends. `acted_at`: somebody opened or sent something; `present_at`: an open page was heard of."""
+    """Return the first of the three ends. `acted_at`: the user opened or sent something; `present_at`: an open page sent a request."""
     present_at = max(present_at, acted_at)
     return min(
         began_at + timedelta(seconds=rules.longest_s),
@@ -44,13 +44,13 @@ def session_ends_at(row: BrowserSession) -> datetime:
 
 
 def seconds_left(store: Any) -> int:
-    """Until the session ends if nobody is heard of any more."""
+    """Return the seconds until the session ends without further requests."""
     left = settings.SESSION_IDLE_S if store.in_use is None else (session_ends_at(store.in_use) - timezone.now()).total_seconds()
     return max(0, round(left))
 
 
 def note_session(store: Any, user: User, *, is_act: bool, user_agent: str = "") -> None:
-    """That the session of this store is in use, to the minute. One that is not known yet begins now."""
+    """Record, to the minute, that the store's session is in use. An unknown one begins now."""
     now, row = timezone.now(), store.in_use
     if row is None:
         if store.session_key is not None:
@@ -66,25 +66,25 @@ def note_session(store: Any, user: User, *, is_act: bool, user_agent: str = "") 
 def _begin(session_key: str, user: User, user_agent: str, now: datetime) -> BrowserSession | None:
     agent = "".join(character for character in user_agent if character.isprintable())[:200]
     row = BrowserSession(session_id=session_key, user=user, user_agent=agent, began_at=now, acted_at=now, present_at=now)
-    BrowserSession.objects.bulk_create([row], ignore_conflicts=True)  # two requests of a page may come first
+    BrowserSession.objects.bulk_create([row], ignore_conflicts=True)  # a page's first requests may be concurrent
     return BrowserSession.objects.filter(session_id=session_key).first()
 
 
 def open_sessions(user: User) -> list[BrowserSession]:
-    """Those that still let somebody in, the last used first."""
+    """Return the sessions that are still valid, the last used first."""
     now = timezone.now()
     rows = user.browser_sessions.filter(session__expire_date__gt=now).select_related("session")
     return [row for row in rows if session_ends_at(row) > now and _lets_in(row.session, user)]
 
 
 def _lets_in(session: Session, user: User) -> bool:
-    """A new password, or a new generation, has ended the others without touching their rows."""
+    """Whether the session is valid: a new password, or a new generation, ends others without a write to their rows."""
     signed = session.get_decoded().get(HASH_SESSION_KEY, "")
     return any(constant_time_compare(signed, known) for known in (user.get_session_auth_hash(), *user.get_session_auth_fallback_hash()))
 
 
 def end_session(row: BrowserSession, *, actor: User) -> None:
-    """At the next request, and within 5 s for its websockets."""
+    """End a session: at its next request, and within 5 s for its websockets."""
     facts = user_facts(row.user)
     with transaction.atomic():
         Session.objects.filter(pk=row.session_id).delete()
@@ -100,7 +100,7 @@ def end_session(row: BrowserSession, *, actor: User) -> None:
 
 
 def forget_ended_sessions() -> int:
-    """Rows of sessions that are over, whichever way they ended."""
+    """Delete the rows of sessions that have ended, however they ended."""
     now, rules = timezone.now(), session_rules()
     present_since, acted_since = now - timedelta(seconds=rules.idle_s), now - timedelta(seconds=rules.watching_s)
     over = BrowserSession.objects.filter(present_at__lt=present_since) | BrowserSession.objects.filter(acted_at__lt=acted_since)

@@ -1,4 +1,4 @@
-"""Middleware: each request in the language and the time zone of whoever asks, and a note that they were here."""
+"""Middleware: the user's language and time zone for each request, and the record of the session's use."""
 
 import ipaddress
 from collections.abc import Callable
@@ -16,12 +16,12 @@ from workspace.sessions.browser_sessions import note_session
 
 TIME_ZONES = frozenset(available_timezones())
 SEEN_EVERY = timedelta(minutes=1)
-ASKS_HOW_LONG = "/api/v1/account/session"  # no sign of anybody being there
+ASKS_HOW_LONG = "/api/v1/account/session"  # does not count as presence
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 class PreferencesMiddleware:
-    """After the one that knows the session. The API writes times in UTC for everybody: there only the language counts."""
+    """Placed after the session's middleware. The API always writes times in UTC: there only the language applies."""
 
     def __init__(self, get_response: Callable[[HttpRequest], HttpResponse]) -> None:
         self.get_response = get_response
@@ -36,7 +36,7 @@ class PreferencesMiddleware:
         ):
             response = self.get_response(request)
         if user is not None and "Cache-Control" not in response:
-            response["Cache-Control"] = "no-store"  # what is not meant to be kept by the browser, is not
+            response["Cache-Control"] = "no-store"  # by default browsers may not store responses
         if not own_language and response.get("Content-Type", "").startswith("text/html"):
             patch_vary_headers(response, ("Accept-Language",))
         return response
@@ -48,7 +48,7 @@ def _signed_in_user(request: HttpRequest) -> User | None:
     is_read = request.method in SAFE_METHODS
     if is_read and request.path == ASKS_HOW_LONG:
         return request.user
-    is_act = not is_read or not request.path.startswith("/api/")  # what pages read by themselves is none
+    is_act = not is_read or not request.path.startswith("/api/")  # pages' own reads do not count
     note_session(request.session, request.user, is_act=is_act, user_agent=request.headers.get("User-Agent", ""))
     now = timezone.now()
     if request.user.last_seen_at is None or now - request.user.last_seen_at >= SEEN_EVERY:
@@ -58,10 +58,10 @@ def _signed_in_user(request: HttpRequest) -> User | None:
 
 
 def visitor_address(peer: str, forwarded: str) -> str:
-    """Return the address of the visitor.
+    """Return the address of the client.
 
-    peer: who has opened the connection, empty over a unix socket. forwarded: X-Forwarded-For, of which only what our own proxy has
-    appended last counts, and only where the peer may be that proxy (SPANWISE_TRUSTED_PROXIES, or a unix socket).
+    peer: the connection's address, empty over a unix socket. forwarded: X-Forwarded-For, of which only the last entry counts, which our own
+    proxy appended, and only if the peer may be that proxy (SPANWISE_TRUSTED_PROXIES, or a unix socket).
     """
     last = forwarded.rpartition(",")[2].strip()
     return last if last and _is_trusted(peer) else peer
@@ -70,7 +70,7 @@ def visitor_address(peer: str, forwarded: str) -> str:
 def _is_trusted(peer: str) -> bool:
     try:
         address = ipaddress.ip_address(peer)
-    except ValueError:  # a unix socket has no address: nobody but the proxy can open it
+    except ValueError:  # a unix socket has no address: only the proxy can open it
         return True
     address = getattr(address, "ipv4_mapped", None) or address
     return any(address in network for network in settings.TRUSTED_PROXIES)

@@ -1,4 +1,4 @@
-"""Django's sessions in the database, which end here when nobody has used them for so long. It is SESSION_ENGINE."""
+"""Django's database sessions with an idle timeout. It is SESSION_ENGINE."""
 
 from typing import Any
 
@@ -11,7 +11,7 @@ from workspace.sessions.browser_sessions import session_ends_at
 
 
 class SessionStore(DatabaseStore):
-    """`in_use` is read with the session itself, so that looking at the times costs no query."""
+    """Reads `in_use` together with the session, so that checking the times costs no query."""
 
     in_use: BrowserSession | None = None
 

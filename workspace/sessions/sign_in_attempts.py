@@ -1,8 +1,8 @@
-"""Limits on guessing passwords, counted in the cache, that keep nobody out of their own account.
+"""Limits on password guessing, counted in the cache, that do not lock users out of their own account.
 
-Who guesses is slowed down in three ways: by name and network, by network, and by name over all networks. A browser in which
-the name has signed in before (workspace/sessions/sign_in_attempts.py) is counted for itself, so it is free of what others do to the name.
-Without Redis each process counts for itself, so that there are as many tries more as there are processes.
+Attempts are limited by name and network, by network, and by name over all networks. A trusted device, in which the name has logged in
+before, is counted separately, so attempts elsewhere do not affect it. Without Redis each process counts for itself, which multiplies the
+allowed tries by the number of processes.
 """
 
 import hashlib
@@ -22,19 +22,21 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 from workspace.sessions.preferences import visitor_address
 
 WINDOW_S = 15 * 60
-TRIES = 5  # of one name from one network, or from one known browser
+TRIES = 5  # of one name from one network, or from one trusted device
 TRIES_OF_A_NETWORK = 50  # of any names
 TRIES_BEFORE_A_NAME_IS_SLOW = 20  # of one name from everywhere
-SLOW_S = 10  # then strangers have one try in so long
+SLOW_S = 10  # then untrusted devices have one try per this time
 PASSWORD_CHANGES = "changing the password of"  # noqa: S105 - a purpose, no password
-NETWORK_BITS_OF_IPV6 = 64  # what one subscriber usually has
+NETWORK_BITS_OF_IPV6 = 64  # usual network of one subscriber
 
 logger = logging.getLogger(__name__)
-_of_process: BaseCache = LocMemCache("sign-in attempts", {"OPTIONS": {"MAX_ENTRIES": 20_000}})  # while Redis is away
+_of_process: BaseCache = LocMemCache("sign-in attempts", {"OPTIONS": {"MAX_ENTRIES": 20_000}})  # while Redis is unavailable
 
 
 class TooManyAttempts(Exception):
-    """The try is not looked at. `wait_s` says when the next one is; `name_is_slow`: strangers guess at this name everywhere."""
+    """Raised instead of checking a try. `wait_s` is the time until the next one; `name_is_slow`: guesses at this name
+    come from everywhere.
+    """
 
     def __init__(self, wait_s: int, *, name_is_slow: bool = False) -> None:
         super().__init__(f"held back for {wait_s} s")
@@ -44,14 +46,14 @@ class TooManyAttempts(Exception):
 
 @dataclass(frozen=True)
 class Try:
-    """One try that was let through and counted before the password was looked at, so that many at once gain nothing."""
+    """One allowed try, counted before the password is checked, so that concurrent tries gain nothing."""
 
     keys: tuple[str, ...]
-    left: int  # in the window
+    left: int  # tries in the window
     counts: BaseCache
 
     def succeeded(self) -> None:
-        """Somebody who knows the password has not guessed: their own count ends, and the shared ones do not have this try."""
+        """Reset the user's own count and remove this try from the shared ones: the password was right."""
         try:
             self.counts.delete(self.keys[0])
             _take_back(self.counts, *self.keys[1:])
@@ -60,12 +62,12 @@ class Try:
 
 
 def address_of(request: HttpRequest) -> str:
-    """Where the request came from."""
+    """Return the client's address."""
     return visitor_address(request.META.get("REMOTE_ADDR", ""), request.headers.get("X-Forwarded-For", ""))
 
 
 def network_of(address: str) -> str:
-    """What is counted: an IPv4 address, of IPv6 the network that one subscriber has."""
+    """Return what is counted: an IPv4 address, or for IPv6 a subscriber's network."""
     try:
         found = ipaddress.ip_address(address)
     except ValueError:
@@ -77,7 +79,7 @@ def network_of(address: str) -> str:
 
 
 def try_to_sign_in(*, name: str, address: str, trusted_device: str | None) -> Try:
-    """Count a try. `trusted_device` is the mark of a browser in which this name has signed in before. Raises HeldBack."""
+    """Count a try. `trusted_device` is the mark of a browser in which this name has logged in before. Raises TooManyAttempts."""
     network = network_of(address)
     try:
         return _try(cache, name, network, trusted_device)
@@ -95,13 +97,13 @@ def _try(counts: BaseCache, name: str, network: str, trusted_device: str | None)
     of_network = _key("network", network)
     _count(counts, of_network, TRIES_OF_A_NETWORK)
     if _add(counts, everybody) > TRIES_BEFORE_A_NAME_IS_SLOW and not counts.add(_key("slow", name), 1, SLOW_S):
-        _take_back(counts, own, of_network)  # to wait for a turn is no wrong try
+        _take_back(counts, own, of_network)  # waiting is no wrong try
         raise TooManyAttempts(SLOW_S, name_is_slow=True)
     return Try((own, of_network, everybody), left, counts)
 
 
 def count_attempt(purpose: str, *of_whom: str, most: int = TRIES) -> None:
-    """Count something else that may be asked for only so often, such as mails to one address. Raises HeldBack."""
+    """Count another rate-limited action, such as mails to one address. Raises TooManyAttempts."""
     key = _key(purpose, *of_whom)
     try:
         _count(cache, key, most)
@@ -111,7 +113,7 @@ def count_attempt(purpose: str, *of_whom: str, most: int = TRIES) -> None:
 
 
 def is_first_in(seconds: int, *of_what: str) -> bool:
-    """Whether this has not happened for so long. True without the cache."""
+    """Whether this has not happened for so many seconds. True without the cache."""
     try:
         return bool(cache.add(_key("first", *of_what), 1, seconds))
     except CACHE_UNAVAILABLE:
@@ -133,7 +135,7 @@ def _take_back(counts: BaseCache, *keys: str) -> None:
 
 
 def _count(counts: BaseCache, key: str, most: int) -> int:
-    """Tries that are left after this one. Raises HeldBack."""
+    """Return the tries left after this one. Raises TooManyAttempts."""
     count = _add(counts, key)
     if count > most:
         raise TooManyAttempts(WINDOW_S)
@@ -147,12 +149,12 @@ MAX_USERS = 5  # of one browser
 
 
 def mark_of(request: HttpRequest, name: str) -> str | None:
-    """The browser's mark for a name that has signed in here before."""
+    """Return the browser's mark for a name that has logged in here before."""
     return dict(_entries(request)).get(_digest(name))
 
 
 def remember(request: HttpRequest, response: HttpResponse, name: str) -> None:
-    """Somebody has shown to be who they say, with this browser."""
+    """Remember that the user has authenticated with this browser."""
     mine = _digest(name)
     others = [entry for entry in _entries(request) if entry[0] != mine]
     entries = [(mine, secrets.token_urlsafe(12)), *others][:MAX_USERS]

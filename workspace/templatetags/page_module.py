@@ -1,4 +1,4 @@
-"""A page's script with all that it imports, so that the browser asks for everything at once instead of module by module."""
+"""A page's script with all its imports, so that the browser requests everything at once instead of module by module."""
 
 import re
 from functools import cache
@@ -26,7 +26,7 @@ def page_module(name: str) -> SafeString:
 
 
 def _texts() -> tuple[str, ...]:
-    """Modules of the page's language, which its scripts import by name."""
+    """Return the text modules of the page's language, which its scripts import by name."""
     language = (get_language() or "").split("-")[0]
     if language == settings.LANGUAGE_CODE.split("-")[0]:
         return ()
@@ -36,7 +36,7 @@ def _texts() -> tuple[str, ...]:
 
 @cache
 def imported_by(address: str) -> tuple[str, ...]:
-    """Addresses of all modules behind one, the nearest first; a hashed name's imports never change. None before files are collected."""
+    """Return the addresses of all imported modules, nearest first; a hashed file's imports never change. Empty before collectstatic."""
     root = settings.STATIC_URL
     found: dict[str, None] = {}
     waiting = [address]

@@ -1,4 +1,4 @@
-"""Makes an administrator an installation operator, or takes that away: manage.py installation_operator USER [--remove]."""
+"""Makes an administrator an installation operator, or revokes that: manage.py installation_operator USER [--remove]."""
 
 from argparse import ArgumentParser
 from typing import Any

@@ -1,4 +1,4 @@
-"""Takes somebody's second factor away: manage.py reset_second_factor USER. For the last administrator, whom nobody else can help."""
+"""Removes a user's second factor: manage.py reset_second_factor USER. Needed for the last administrator, whom no other can help."""
 
 from argparse import ArgumentParser
 from typing import Any

@@ -1,4 +1,4 @@
-"""Makes the OpenAPI document of this version and keeps it beside the static files: manage.py make_api_document."""
+"""Makes the OpenAPI document of this version and stores it beside the static files: manage.py make_api_document."""
 
 from typing import Any
 
