@@ -1,4 +1,4 @@
-"""Addresses of the pages of what flies, and of what was flown."""
+"""URLs of the live, flight and report pages."""
 
 from django.urls import path
 

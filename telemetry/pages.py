@@ -1,4 +1,4 @@
-"""The pages of what flies: HTML shells, everything on them comes over the live wire and the REST API."""
+"""Pages of flights: HTML shells, filled by the websocket and the REST API."""
 
 from typing import Any
 from uuid import UUID
@@ -12,7 +12,7 @@ from workspace.pages import SignedInPage, raster_maps
 
 
 class LivePage(SignedInPage):
-    """The organisation's whole fleet as it flies."""
+    """The live page of the organisation's fleet."""
 
     template_name = "live.html"
     extra_context = {"section": "live"}
@@ -22,7 +22,7 @@ class LivePage(SignedInPage):
 
 
 class MissionStagePage(SignedInPage):
-    """A stage of one mission of the user's organisation."""
+    """A page of one mission of the user's organisation."""
 
     def page(self, **kwargs: Any) -> dict[str, Any]:
         mission_id: UUID = kwargs["mission_id"]
@@ -55,6 +55,6 @@ class MissionReportPage(MissionStagePage):
 
 
 class MissionScenePage(MissionStagePage):
-    """The flight in space: planned, rehearsed, live or on record, as the address says."""
+    """The 3D view of a flight: planned, rehearsed, live or recorded, by the URL."""
 
     template_name = "scene.html"

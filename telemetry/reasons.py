@@ -1,4 +1,4 @@
-"""The sentence of each code that tells why the gateway or a companion did not do a command."""
+"""The sentence of each code for why the gateway or a companion did not carry out a command."""
 
 from operation.reasons import gettext_noop, register_sentences
 
@@ -6,7 +6,7 @@ SENTENCES = register_sentences({
     "gateway_failed": gettext_noop("The gateway failed; the error is in its log."),
     "fence_does_nothing": gettext_noop("The fence on the UAV does nothing: %(parameter)s."),
     "return_height_unknown": gettext_noop("The vehicle has not told how high it returns."),
-    # of what is sent
+    # uploads and lists
     "damaged_approval": gettext_noop("The approval is not the one that was given: its hash is another one."),
     "no_such_flight": gettext_noop("The approval has no such flight of this UAV."),
     "approved_for_companion": gettext_noop("It was approved for a UAV with a companion computer."),
@@ -21,7 +21,7 @@ SENTENCES = register_sentences({
     "uav_holds_other": gettext_noop("The UAV holds something else than what was approved."),
     "uav_holds_unknown": gettext_noop("The UAV does not say what it holds."),
     "no_reason_given": gettext_noop("The UAV gave no reason."),
-    # of where the UAV is
+    # position and home of the UAV
     "mid_air_start_not_flying": gettext_noop("This route begins in the air, and the UAV does not fly."),
     "stand_unknown": gettext_noop("The UAV does not tell where it stands."),
     "position_unknown": gettext_noop("The UAV does not tell where it flies."),

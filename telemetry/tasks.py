@@ -1,4 +1,4 @@
-"""What is done about telemetry by the clock."""
+"""Periodic tasks of telemetry."""
 
 from celery import shared_task
 

@@ -1,4 +1,4 @@
-"""Addresses of the UAV link under /api/v1/uav-link/."""
+"""URLs of the UAV link under /api/v1/uav-link/."""
 
 from django.urls import path
 

@@ -1,4 +1,4 @@
-"""Addresses of the UAV link and of the log under /api/v1/."""
+"""URLs of the UAV link and of the log under /api/v1/."""
 
 from django.urls import include, path, register_converter
 
@@ -25,7 +25,7 @@ from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnectio
 
 
 class FileKindConverter:
-    """How the name of an exported file ends."""
+    """The extension of an exported file."""
 
     regex = "|".join(KINDS)
 

@@ -1,4 +1,4 @@
-"""Addresses of live pages' websockets."""
+"""URLs of live pages' websockets."""
 
 from django.urls import path
 

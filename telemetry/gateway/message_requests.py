@@ -118,7 +118,7 @@ class MessageRequests:
         return wanted
 
     def _telemetry(self, system: int, autopilot_type: AutopilotType, now_s: float, *, has_position: bool) -> list[Message]:
-        """Return interval requests for missing messages. Streams, which include many unused messages, are a fallback for the position only."""
+        """Return interval requests for missing messages. Streams, with many unused messages, are a fallback for the position only."""
         if has_position:
             self._rounds = 0
         self._first_s = now_s if self._first_s is None else self._first_s

@@ -34,9 +34,7 @@ from telemetry.services.links.links import Lease, LinkState
 from telemetry.services.links.onboard_lists import Doubt
 
 WINDOW_S = 10.0
-TO_WHO_SENDS_A_LIST = frozenset(
-    {"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"}
-)  # only in transfers that write a list; reading one causes none of these
+TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # sent only to a station that writes a list
 QUIET_S = 10.0  # after one of our transfers, its answers may still arrive
 logger = logging.getLogger(__name__)
 MAX_WAITING = 5_000  # frames of a vehicle that waits for a lease

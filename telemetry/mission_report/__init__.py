@@ -1,1 +1,1 @@
-"""Flown against planned, and what came of it."""
+"""Report of a flown mission: flown against planned, and the outcome of each target."""

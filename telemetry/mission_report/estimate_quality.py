@@ -1,4 +1,4 @@
-"""How good the estimates of a mission were, by what was measured of the same moments."""
+"""Quality of a mission's estimates, compared with measurements of the same moments."""
 
 import math
 from bisect import bisect_left
@@ -9,14 +9,14 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from telemetry.estimation.estimate import Ellipse
 
-GAP_S = 3.0  # between two measurements, within which a place between them is told by both
-ALONE_S = 0.5  # from one measurement, which tells alone
+GAP_S = 3.0  # between two measurements, up to which positions in between are interpolated
+ALONE_S = 0.5  # from a single measurement, up to which it is extrapolated
 AGES_S = (2.0, 5.0, 10.0, 30.0, math.inf)  # upper ends
 
 
 @dataclass(frozen=True, slots=True)
 class MeasuredError:
-    """A position that was measured; seconds since the epoch, speeds [m/s] east and north, None where not told."""
+    """A measured position; Unix seconds, speeds [m/s] east and north, None if not reported."""
 
     at_s: float
     position: LonLat
@@ -27,7 +27,7 @@ class MeasuredError:
 
 @dataclass(frozen=True, slots=True)
 class Estimated:
-    """An estimate as it was made; `report_s` is when the last report that it rests on was measured."""
+    """An estimate as it was made; `report_s` is the time of measurement of its last report."""
 
     at_s: float
     position: LonLat
@@ -39,9 +39,10 @@ class Estimated:
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """Of `count` estimates that a measurement tells of. Errors are horizontal [m]; shares 0 to 1, None where nothing can be said.
+    """Quality of `count` compared estimates. Errors are horizontal [m]; shares are 0 to 1; None without data.
 
-    `up_to_s` is the greatest age of the last report among them, from the age of the group before on; infinite for the last.
+    `up_to_s` is the upper limit of the last report's age in this group, whose lower limit is that of the previous group; infinite for the
+    last.
     """
 
     up_to_s: float
@@ -55,7 +56,7 @@ class Quality:
 
 @dataclass(frozen=True, slots=True)
 class EstimateQuality:
-    """`whole` is of all, `by_age` by the age of the last report; `untold` estimates no measurement tells of."""
+    """`whole` is of all estimates, `by_age` by the age of the last report; `untold` counts estimates without a measurement to compare."""
 
     whole: Quality
     by_age: tuple[Quality, ...]
@@ -64,7 +65,7 @@ class EstimateQuality:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """One estimate beside what was measured: the age of its last report, how far off it was, and whether within its bounds."""
+    """One compared estimate: the age of its last report, its error, and whether it is within its bounds."""
 
     age_s: float
     off_m: float
@@ -74,13 +75,16 @@ class Compared:
 
 
 def estimate_quality(estimates: Iterable[Estimated], measured: Sequence[MeasuredError]) -> EstimateQuality:
-    """measured: of one UAV, as all of `estimates`, sorted by time. Several UAVs: `compare` one by one, all together to `quality_of`."""
+    """Return the quality of one UAV's estimates. measured: sorted by time.
+
+    For several UAVs, call `compare` for each and `quality_of` once with all results.
+    """
     compared, untold = compare(estimates, measured)
     return quality_of(compared, untold)
 
 
 def compare(estimates: Iterable[Estimated], measured: Sequence[MeasuredError]) -> tuple[list[Compared], int]:
-    """Of one UAV; what was found, and how many estimates no measurement tells of."""
+    """Return one UAV's compared estimates, and the number of those without a measurement."""
     times = [one.at_s for one in measured]
     found, untold = [], 0
     for estimate in estimates:
@@ -120,7 +124,7 @@ def _rms(errors_m: Sequence[float]) -> float:
 
 
 def _at(measured: Sequence[MeasuredError], times: Sequence[float], at_s: float) -> MeasuredError | None:
-    """Between two measurements that are near each other, or beside one by its speed; None where neither is."""
+    """Return the measured position between two near measurements, or extrapolated from one; None without either."""
     place = bisect_left(times, at_s)
     before = measured[place - 1] if place else None
     after = measured[place] if place < len(measured) else None

@@ -1,4 +1,4 @@
-"""A report as the record of a mission reads it."""
+"""A report as the mission report uses it."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from inspection.geodesy import LonLat
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """Where a UAV was at a time [Unix s, by its own clock set right]. None is not known.
+    """Position of a UAV at a time [Unix s, by its corrected clock]. None: unknown.
 
-    `altitude_relative_m` is above the take-off of the flight it was on, `waypoint_sequence` the waypoint of the approved route that it
-    flew to. `clock_s` is what the vehicle's clock showed since the boot that `boot` names, where it tells that.
+    `altitude_relative_m` is above the take-off of its flight, `waypoint_sequence` the waypoint of the approved route that it flew to.
+    `clock_s` is the vehicle's clock since the boot named by `boot`, if reported.
     """
 
     at_s: float
@@ -28,14 +28,14 @@ class Fix:
 
 
 def uav_s(before: Fix, after: Fix) -> float:
-    """From one to a later one by the vehicle's clock, which runs faster than ours where it is flown faster than real time."""
+    """Return the seconds between two fixes by the vehicle's clock, which runs faster than the server's in faster simulations."""
     if before.clock_s is not None and after.clock_s is not None and before.boot == after.boot and after.clock_s > before.clock_s:
         return after.clock_s - before.clock_s
     return after.at_s - before.at_s
 
 
 def in_order(fixes: Sequence[Fix]) -> list[Fix]:
-    """By time, one of a moment."""
+    """Return the fixes sorted by time, one for each moment."""
     found: list[Fix] = []
     for fix in sorted(fixes, key=lambda fix: fix.at_s):
         if not found or fix.at_s > found[-1].at_s:
@@ -44,9 +44,9 @@ def in_order(fixes: Sequence[Fix]) -> list[Fix]:
 
 
 def airborne(fixes: Sequence[Fix]) -> list[Fix]:
-    """Return those between each take-off and its landing; all where none tells whether it was in the air.
+    """Return the fixes between each take-off and its landing; all if none reports whether it was in the air.
 
-    One that does not tell is where the one before it was, and on the ground before the first that does.
+    A fix without that value takes it from the previous one; before the first value it counts as on the ground.
     """
     if all(fix.is_in_air is None for fix in fixes):
         return list(fixes)
@@ -59,9 +59,9 @@ def airborne(fixes: Sequence[Fix]) -> list[Fix]:
 
 
 def uav_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
-    """From the first of all fixes to the last [s]; each track in order.
+    """Return the time from the first fix of all tracks to the last [s]; each track is sorted.
 
-    Each stretch counts by the clock of a vehicle that was heard before and after it, by ours where none was.
+    Each stretch is measured by the clock of a vehicle with fixes before and after it, else by the server's.
     """
     pairs = sorted((before.at_s, after.at_s, uav_s(before, after)) for track in tracks for before, after in pairwise(track))
     total_s, until_s = 0.0, pairs[0][0] if pairs else 0.0
@@ -75,6 +75,6 @@ def uav_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
 
 
 def uav_after_s(track: Sequence[Fix], at_s: float) -> float:
-    """From the first fix of a track to a moment [Unix s], by the vehicle's clock [s]."""
+    """Return the seconds from the first fix of a track to a moment [Unix s], by the vehicle's clock."""
     passed_s = list(accumulate((uav_s(before, after) for before, after in pairwise(track)), initial=0.0))
     return float(np.interp(at_s, [fix.at_s for fix in track], passed_s))

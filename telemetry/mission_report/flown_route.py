@@ -1,4 +1,4 @@
-"""How a route was flown: beside which leg, how far off it and how much too high or too low."""
+"""How a route was flown: the legs flown, and the errors across and in height."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -12,15 +12,15 @@ from mavlink.approved_route import Flight, FrozenRoute
 from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.mission_report.fix import Fix, airborne, uav_span_s
 
-PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
-MAX_GAP_S = 60.0  # between two reports that are joined to a flown line
+PASSED_END_M = 15.0  # of the last waypoint: later reports belong to the RTL path or the descent
+MAX_GAP_S = 60.0  # between two reports joined to a flown line
 
 
 @dataclass(frozen=True, slots=True)
 class FlownLeg:
-    """One leg between two waypoints of the route; errors are None where no report speaks of it.
+    """One leg between two waypoints of the route; errors are None without a report.
 
-    across_* is beside the leg [m]; height_* is how far outside of what the plan has there, 0 inside.
+    across_* is the distance from the leg [m]; height_* the distance from the planned heights there, 0 within.
     """
 
     from_sequence: int
@@ -37,7 +37,7 @@ class FlownLeg:
 
 @dataclass(frozen=True, slots=True)
 class FlownStage:
-    """All legs of one flight from a target, or its take-off, to the next; without a target the rest. `flight` counts from 1."""
+    """All legs of one flight from a target, or its take-off, to the next; the last stage has no target. `flight` counts from 1."""
 
     flight: int
     target: int | None
@@ -46,7 +46,7 @@ class FlownStage:
 
 @dataclass(frozen=True, slots=True)
 class TrackGap:
-    """A time in the air without reports for longer than MAX_GAP_S; length_m: how much of the route lies between its ends."""
+    """A time in the air without reports for longer than MAX_GAP_S; length_m: length of the route between its ends."""
 
     began_s: float
     ended_s: float
@@ -55,10 +55,10 @@ class TrackGap:
 
 @dataclass(frozen=True, slots=True)
 class ReportedRoute:
-    """A whole route, from its first take-off to its last landing; reports are those in the air.
+    """A whole route, from its first take-off to its last landing, by the reports in the air.
 
-    flown_m is the length of the track as it was reported, without gaps; duration_s is by the vehicle's own clock, and clock_rate how many
-    of its seconds passed in one of ours: a simulation may fly faster than real time.
+    flown_m is the length of the reported track without gaps. duration_s is by the vehicle's clock; clock_rate is its seconds per server
+    second, as a simulation may fly faster than real time.
     """
 
     legs: tuple[FlownLeg, ...]
@@ -88,7 +88,7 @@ class _Seen:
 
 
 def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> ReportedRoute:
-    """fixes: of its UAV in this mission, in order."""
+    """Return the flown route. fixes: of its UAV in this mission, sorted by time."""
     in_air = airborne(fixes)
     legs: list[FlownLeg] = []
     stages: list[FlownStage] = []
@@ -134,7 +134,7 @@ def _gaps(seen: Sequence[_Seen]) -> Iterator[TrackGap]:
 
 
 def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix]]:
-    """By the waypoint that is told; a report that tells none belongs to the flight of the one before it."""
+    """Return the fixes by flight, by their reported waypoint; one without a waypoint belongs to the flight of the previous fix."""
     found: list[list[Fix]] = [[] for _ in flights]
     ends = [flight.waypoints[-1].sequence for flight in flights]
     number = 0
@@ -147,10 +147,9 @@ def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix
 
 
 def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
-    """Each fix with its place on the line.
+    """Return each fix with its place on the line.
 
-    The waypoint that is told right after a gap may be the one from before it, until another one is told: till then any leg from there on
-    may be the one that is flown.
+    After a gap, the reported waypoint may be outdated until it changes. Until then the UAV may be on any later leg.
     """
     seen: list[_Seen] = []
     before: RoutePlace | None = None
@@ -186,7 +185,7 @@ def _stages(flight: Flight, line: RouteLine, by_leg: Sequence[Sequence[_Seen]]) 
 
 
 def _between(line: RouteLine, begin: int, end: int, own: Sequence[_Seen]) -> FlownLeg:
-    """The way between two vertices of the line; own: what was seen on it."""
+    """Return the leg between two vertices of the line. own: the fixes on it."""
     across_m, height_m = _errors(own)
     return FlownLeg(
         from_sequence=line.sequences[begin],
@@ -211,7 +210,7 @@ def _rms(values: Sequence[float]) -> float | None:
 
 
 def track_of(fixes: Sequence[Fix]) -> list[list[LonLat]]:
-    """Lines of the flown track, broken where nothing was reported for longer than MAX_GAP_S."""
+    """Return the lines of the flown track, split where nothing was reported for longer than MAX_GAP_S."""
     lines: list[list[LonLat]] = []
     before_s: float | None = None
     for fix in fixes:

@@ -1,4 +1,4 @@
-"""What came of a target and why: by what its UAV was seen to do, what happened to that UAV, and what people said."""
+"""Outcome of a target and its reason: from the UAV's reports, incidents, and statements of users."""
 
 import math
 import re
@@ -10,7 +10,7 @@ from typing import Any
 from inspection.geodesy import LonLat
 from telemetry.mission_report.visits import ReportedVisit
 
-CAUSE_BEFORE_S, CAUSE_AFTER_S = 60.0, 5.0  # of an incident: what a vehicle says then may name its cause
+CAUSE_BEFORE_S, CAUSE_AFTER_S = 60.0, 5.0  # of an incident: status texts in this time may name its cause
 _CAUSES = {
     "motor": re.compile(r"motor|thrust|\besc\b|propeller", re.IGNORECASE),
     "battery": re.compile(r"\bbatt", re.IGNORECASE),
@@ -21,14 +21,14 @@ _CAUSES = {
 
 class Result(StrEnum):
     INSPECTED = "inspected"
-    NOT_CONFIRMED = "not-confirmed"  # counted as complete, and no report shows that the UAV was there
+    NOT_CONFIRMED = "not-confirmed"  # counted as complete, but no report confirms it
     NOT_INSPECTED = "not-inspected"
     OPEN = "open"  # the mission is not over
 
 
 class IncidentKind(StrEnum):
     CRASHED = "crashed"
-    DOWN = "down"  # on the ground where its flight does not end
+    DOWN = "down"  # on the ground off plan
     FAILSAFE_RETURN = "failsafe-return"
     FAILSAFE_LAND = "failsafe-land"
     ORDERED_RETURN = "told-return"
@@ -45,7 +45,7 @@ EXPLAINS = ENDS_A_FLIGHT | {IncidentKind.BATTERY, IncidentKind.LINK_LOST}
 
 @dataclass(frozen=True, slots=True)
 class OutcomeReason:
-    """`code` names the words, `values` are put into them; `at_s` is when it happened [Unix s], None where that says nothing."""
+    """`code` selects the text, `values` are inserted into it; `at_s` is when it happened [Unix s], None if not applicable."""
 
     code: str
     values: Mapping[str, Any] = field(default_factory=dict)
@@ -54,7 +54,7 @@ class OutcomeReason:
 
 @dataclass(frozen=True, slots=True)
 class Incident:
-    """`place` is the UAV's in the mission, None for all of them; `position` where it was then, as far as that is known."""
+    """`place` is the UAV's in the mission, None for all UAVs; `position` is where it was, as far as known."""
 
     kind: IncidentKind
     reason: OutcomeReason
@@ -65,7 +65,7 @@ class Incident:
 
 @dataclass(frozen=True, slots=True)
 class TargetFacts:
-    """What is stored of a target. `stated` are the words of a person or a plan, `reported` the last outcome and note of a UAV."""
+    """Stored data of a target. `stated` is the text of a user or a plan, `reported` the last outcome and note of a UAV."""
 
     state: str
     state_reason: str = ""
@@ -77,7 +77,7 @@ class TargetFacts:
 
 @dataclass(frozen=True, slots=True)
 class FlightFacts:
-    """The UAV that was to do a target, and what it did: its name, visit of the target, and when it was last at one [Unix s]."""
+    """The UAV assigned to a target, and its flight: name, visit of the target, and time of its last visit to any target [Unix s]."""
 
     place: int
     name: str
@@ -94,13 +94,13 @@ class Outcome:
 
 
 def cause_in(texts: Iterable[tuple[float, str]], at_s: float) -> str:
-    """Return motor, battery, position or link where what a vehicle said about then [Unix s, text] names it, else nothing."""
+    """Return motor, battery, position or link if the vehicle's status texts [Unix s, text] around then name it, else ""."""
     about = [text for stated_s, text in texts if at_s - CAUSE_BEFORE_S <= stated_s <= at_s + CAUSE_AFTER_S]
     return next((cause for cause, pattern in _CAUSES.items() if any(pattern.search(text) for text in about)), "")
 
 
 def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident], *, is_over: bool) -> Outcome:
-    """flight: None for a target of no route. incidents: of the whole mission, in order."""
+    """Return the outcome of a target. flight: None without a route. incidents: of the whole mission, sorted by time."""
     if target.state == "complete":
         return _complete(target, flight)
     reason = _why(target, flight, incidents)
@@ -110,7 +110,7 @@ def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Seque
 
 
 def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
-    """Where the log was forgotten, what was stored of the visit counts."""
+    """Return the outcome of a complete target. Without records, the stored data of the visit counts."""
     visit = flight.visit if flight is not None and flight.has_reports else None
     if target.reported is not None and target.reported[0] == "complete":
         return Outcome(Result.INSPECTED)
@@ -124,7 +124,7 @@ def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
 
 
 def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident]) -> OutcomeReason | None:
-    """None where nothing says it yet."""
+    """Return the reason; None if there is none yet."""
     if target.reported is not None:
         outcome, note = target.reported
         values = {"uav": flight.name if flight else "", "outcome": outcome, "note": note}
@@ -159,7 +159,7 @@ def _stated(words: str, why: Sequence[Mapping[str, Any]]) -> OutcomeReason | Non
 
 
 def _decisive(flight: FlightFacts, incidents: Sequence[Incident]) -> Incident | None:
-    """What kept its UAV from the target: a crash, else the first that ended its flight after the last target that it was at."""
+    """Return the incident that kept the UAV from the target: a crash, else the first that ended its flight after its last visit."""
     own = [one for one in incidents if one.place in (None, flight.place) and one.kind in EXPLAINS]
     since_s = -math.inf if flight.last_visit_s is None else flight.last_visit_s
     after = [one for one in own if one.at_s >= since_s] or own[-1:]

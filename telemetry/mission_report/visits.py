@@ -1,8 +1,8 @@
-"""Whether a UAV was at its targets, and stayed as long as was planned.
+"""Whether a UAV visited its targets, and held as long as planned.
 
-What a vehicle counts says that it went on to the next waypoint, not why: a person may have told it to leave one out. So where it was
-decides. Between two reports it can have been anywhere that its speed allows: a target that it can have been at, and that it says it has
-passed, is taken for reached. One that it cannot have been at was not, whatever is said.
+A vehicle's waypoint count shows that it continued, not why: a user may have skipped a waypoint. The position therefore decides. Between two
+reports the UAV may have been anywhere within its speed. A target counts as reached if the UAV can have been there and reports having passed
+it. One that it cannot have reached counts as missed, whatever is reported.
 """
 
 import math
@@ -18,23 +18,22 @@ from mavlink.approved_route import FrozenRoute, FrozenWaypoint
 from telemetry.alerting.route_line import RouteLine, RoutePlace
 from telemetry.mission_report.fix import Fix, airborne, uav_s
 
-REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
-HOLD_SLACK_S = 3.0  # slowing down and setting out are part of a hold
-JOINED_S = 12.0  # between two reports that a straight line joins: UAVs report every ten seconds at least
-TURNED_M = 20.0  # back along a leg, after which the next one is flown
-OFF_LEG_M = 30.0  # more than off a later leg, which is flown then
+REACHED_M = 15.0  # across: an autopilot accepts a waypoint some metres before it; GPS adds a few more
+HOLD_SLACK_S = 3.0  # braking and departure are part of a hold
+JOINED_S = 12.0  # between two reports joined by a straight line: UAVs report at least every ten seconds
+TURNED_M = 20.0  # back along a leg: then the next leg is flown
+OFF_LEG_M = 30.0  # farther from the leg than from a later one: then the later one is flown
 
-Pass = tuple[Sequence[Fix], int]  # reports, and how many of them are from before it flew to the waypoint
+Pass = tuple[Sequence[Fix], int]  # reports, and how many precede the flight to the waypoint
 
 
 @dataclass(frozen=True, slots=True)
 class ReportedVisit:
-    """What the reports say of one target of a route.
+    """What the reports show of one target of a route.
 
-    closest_m is the nearest that the track of its reports came, altitude_relative_m its height at the nearest report [m above take-off],
-    can_have_reached whether it may have been within REACHED_M between reports, reached_s the first time at which it was seen there or,
-    unseen, the middle of the time in which it can have been; held_s the longest that it can have stayed by its own clock, all stays taken
-    together.
+    closest_m is the smallest distance of the reported track, altitude_relative_m the height at the nearest report [m above take-off].
+    can_have_reached: it may have been within REACHED_M between reports. reached_s is the first report there, else the middle of the time in
+    which it can have been there. held_s is the longest possible stay by its clock, summed over all stays.
     """
 
     target: int
@@ -48,7 +47,7 @@ class ReportedVisit:
 
     @property
     def is_confirmed(self) -> bool:
-        """Tell whether its reports show that it was there, not merely that it can have been."""
+        """Return whether the reports show it at the target, not only that it is possible."""
         return self.closest_m is not None and self.closest_m <= REACHED_M
 
     @property
@@ -57,7 +56,10 @@ class ReportedVisit:
 
 
 def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[ReportedVisit]:
-    """Of each waypoint with a target, in the order of the route. fixes: in order, of one UAV; fastest_mps: over ground, wind and all."""
+    """Return the visit of each waypoint with a target, in route order.
+
+    fixes: of one UAV, sorted by time. fastest_mps: maximum ground speed, wind included.
+    """
     in_air = airborne(fixes)
     reported = _waypoints_reported(in_air) or _waypoints_by_place(route, in_air)
     found = []
@@ -72,7 +74,7 @@ def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -
 
 
 def _best(visits: Sequence[ReportedVisit]) -> ReportedVisit:
-    """Of several passes, as of a mission that was begun anew: the first that was long enough, else the longest."""
+    """Return the first of several passes that was long enough, else the longest; a restarted mission has several."""
     done = next((visit for visit in visits if visit.is_done), None)
     return done or max(visits, key=lambda visit: (visit.can_have_reached, visit.held_s))
 
@@ -82,7 +84,7 @@ def _apart_m(one: FrozenWaypoint, other: FrozenWaypoint) -> float:
 
 
 def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_mps: float) -> ReportedVisit:
-    """before: how many of the reports are from before it flew to the waypoint."""
+    """Return the visit in a pass. before: how many of its reports precede the flight to the waypoint."""
     hold_s = 0.0 if waypoint.task is None else waypoint.task.hold_s
     target = -1 if waypoint.target is None else waypoint.target
     if not near:
@@ -114,7 +116,7 @@ def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_m
 
 
 def _waypoints_reported(fixes: Sequence[Fix]) -> list[int] | None:
-    """The waypoint that each flies to; one that tells none flies to that of the one before. None: none tells it."""
+    """Return the waypoint that each fix flies to, or that of the previous fix if not reported; None if no fix reports one."""
     if all(fix.waypoint_sequence is None for fix in fixes):
         return None
     reported: list[int] = []
@@ -125,7 +127,7 @@ def _waypoints_reported(fixes: Sequence[Fix]) -> list[int] | None:
 
 
 def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] | None:
-    """Of a vehicle that tells no waypoints, by where it was along its route. None for a route of several flights: which is not known."""
+    """Return the waypoints of a vehicle that reports none, by its place along the route; None for a route of several flights."""
     if len(route.flights) != 1 or len(route.waypoints) < 2:
         return None
     line = RouteLine(route.flights[0], route.charging_stops)
@@ -147,7 +149,7 @@ def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] |
 
 
 def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[float]) -> float:
-    """The distance of a track: of its reports, and of straight lines between those that are at most JOINED_S apart."""
+    """Return the distance of a track: of its reports, and of straight lines between those at most JOINED_S apart."""
     frame = LocalFrame.around(*waypoint.position)
     metres = frame.to_metres(np.array([fix.position for fix in fixes]))
     joined = [uav_s(before, after) <= JOINED_S for before, after in pairwise(fixes)]
@@ -160,10 +162,10 @@ def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[
 
 
 def _passes(sequence: int, fixes: Sequence[Fix], reported: Sequence[int], *, is_followed_here: bool) -> list[Pass]:
-    """The reports of each time at which the UAV was on its way to a waypoint, at it and on the leg after it, one more at either end.
+    """Return the reports of each approach to a waypoint, at it and on the leg after it, with one more at either end.
 
-    A route may pass one place several times, and a vehicle may count from the begin again: what it was seen doing there while it flew to
-    another waypoint does not count. is_followed_here: the next waypoint is at the same place, so that being there is no sign.
+    A route may pass a place several times, and a vehicle may restart its mission: reports there during the flight to another waypoint do
+    not count. is_followed_here: the next waypoint is at the same place, so being there is no evidence.
     """
     last = sequence if is_followed_here else sequence + 1
     found: list[Pass] = []

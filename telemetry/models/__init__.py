@@ -1,4 +1,4 @@
-"""What happens in the air."""
+"""Models of links, records, estimates, flights and alerts."""
 
 from telemetry.models.alerts import Alert, AlertLevel, AlertNote
 from telemetry.models.flights import FlightEvent, FlightEventKind

@@ -1,4 +1,4 @@
-"""What an operator must know at once."""
+"""Alerts to operators."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -16,7 +16,7 @@ class AlertLevel(models.TextChoices):
 
 
 class Alert(models.Model):
-    """One cause, one alert: open until the cause is gone."""
+    """One alert per cause, open until the cause is gone."""
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="alerts")
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, null=True, blank=True, related_name="alerts")
@@ -57,7 +57,7 @@ class Alert(models.Model):
 
 
 class AlertNote(models.Model):
-    """What somebody wrote to an alert. Never changed."""
+    """A user's note on an alert. Never changed."""
 
     alert = models.ForeignKey(Alert, on_delete=models.CASCADE, related_name="notes")
     author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, related_name="+")

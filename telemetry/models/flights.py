@@ -1,4 +1,4 @@
-"""Take-offs and landings, as UAVs reported them."""
+"""Take-offs and landings as reported by UAVs."""
 
 from django.contrib.gis.db import models
 from django.db.models import Q
@@ -12,7 +12,7 @@ class FlightEventKind(models.TextChoices):
 
 
 class FlightEvent(models.Model):
-    """A UAV left the ground, or was on it again, in a mission."""
+    """A take-off or landing of a UAV in a mission."""
 
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="flight_events")
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="flight_events")

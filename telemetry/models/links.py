@@ -1,4 +1,4 @@
-"""Who is connected: UAVs and the gateways that serve them, vehicles that nobody knows, and the logs of their flights."""
+"""Links of UAVs to gateways, unknown vehicles, flight logs and status texts."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -10,7 +10,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 
 class UavLink(models.Model):
-    """What is known of a UAV's connection. Written by the gateway that serves it, which holds it by a lease."""
+    """State of a UAV's link, written by the gateway that serves it under a lease."""
 
     uav = models.OneToOneField(Uav, on_delete=models.CASCADE, related_name="connection", primary_key=True)
     holder = models.CharField(max_length=100, blank=True, help_text="the gateway that serves it")
@@ -79,7 +79,7 @@ class UnknownVehicleState(models.TextChoices):
 
 
 class UnknownVehicle(models.Model):
-    """A vehicle that spoke to a gateway and belongs to no UAV, for an administrator to adopt or ignore."""
+    """A vehicle that a gateway received and that belongs to no UAV; an administrator adopts or ignores it."""
 
     mavlink_system_id = models.PositiveSmallIntegerField(unique=True)
     autopilot = models.CharField(max_length=20, blank=True)
@@ -121,7 +121,7 @@ class FlightLog(models.Model):
 
 
 class VehicleText(models.Model):
-    """What a vehicle said in words (STATUSTEXT)."""
+    """A status text of a vehicle (STATUSTEXT)."""
 
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="texts")
     severity = models.PositiveSmallIntegerField(help_text="MAV_SEVERITY: 0 emergency to 7 debug")

@@ -1,4 +1,4 @@
-"""The log: where UAVs were and how they did, measured and kept."""
+"""The log: measured positions and states of UAVs, and results of targets."""
 
 from django.contrib.gis.db import models
 from django.contrib.postgres.indexes import BrinIndex
@@ -9,7 +9,7 @@ from missions.models import Approval, InspectionTarget, LinkKind, Mission, Uav
 
 
 class TelemetryStream(models.Model):
-    """One run of a UAV's counter: since a boot of its autopilot, or of its companion. Within it a sequence number is one record."""
+    """One run of a UAV's counter, since a boot of its autopilot or companion. A sequence number is unique within it."""
 
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="streams")
     link = models.CharField(max_length=10, choices=LinkKind.choices)
@@ -25,7 +25,7 @@ class TelemetryStream(models.Model):
 
 
 class TelemetryRecord(models.Model):
-    """One report of a UAV. Heights name their reference; angles are degrees, speeds metres a second in north, east, down."""
+    """One report of a UAV. Heights name their reference; angles are in degrees, speeds in m/s north, east, down."""
 
     stream = models.ForeignKey(TelemetryStream, on_delete=models.CASCADE, related_name="records")
     sequence = models.BigIntegerField(help_text="within the stream; the time since boot [ms] where the vehicle counts nothing else")
@@ -85,7 +85,7 @@ class TelemetryRecord(models.Model):
 
 
 class InspectionResult(models.Model):
-    """What a UAV found at a target, as it reported it."""
+    """What a UAV reported about a target."""
 
     stream = models.ForeignKey(TelemetryStream, on_delete=models.CASCADE, related_name="results")
     sequence = models.BigIntegerField()

@@ -1,4 +1,4 @@
-"""What is known of UAVs between and beside their reports: estimates, and the latest of everything for the live pages."""
+"""Estimates of UAVs, and their latest state for live pages."""
 
 from django.contrib.gis.db import models
 from django.db.models.functions import Now
@@ -8,10 +8,9 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 
 class PositionEstimate(models.Model):
-    """Where a UAV was estimated to be at a moment for which there was no report. Bounds hold 95 of 100 times.
+    """Estimated position of a UAV for a moment without a report. Bounds hold with 95 %.
 
-    A report that comes later for this moment replaces it: `replaced_at` is set, and the row stays, so that the record can say how good
-    it was.
+    A later report for this moment sets `replaced_at`. The row is kept, so that the mission report can compare both.
     """
 
     uav = models.ForeignKey(Uav, on_delete=models.CASCADE, related_name="estimates", db_index=False)
@@ -43,7 +42,7 @@ class PositionEstimate(models.Model):
 
 
 class UavWatch(models.Model):
-    """The latest of a UAV, as live pages show it. `measured` is written with the log, `estimated` by the watch that holds it by a lease."""
+    """Latest state of a UAV for live pages. `measured` is written with the log, `estimated` by the estimator that holds its lease."""
 
     uav = models.OneToOneField(Uav, on_delete=models.CASCADE, related_name="watch", primary_key=True)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="+")

@@ -1,1 +1,1 @@
-"""What is read of the log and of links."""
+"""Reads of the log, links, alerts and reports."""

@@ -1,4 +1,4 @@
-"""What detectors have to know of UAVs besides their reports, for all of them at once."""
+"""Input of detectors other than reports, read for all UAVs at once."""
 
 import json
 from collections import defaultdict
@@ -26,7 +26,7 @@ WARNING_SEVERITY, MAX_TEXTS = 4, 30  # MAV_SEVERITY_WARNING
 
 @dataclass(frozen=True, slots=True)
 class LoadedFacts:
-    """What was read back from a UAV."""
+    """The last readback of a UAV."""
 
     sha256: str = ""
     approval_id: UUID | None = None
@@ -36,7 +36,10 @@ class LoadedFacts:
 
 
 def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, LoadedFacts]]:
-    """A clock that runs at another rate is believed of a simulated UAV alone: a real one's only seems to, while its link lags."""
+    """Return link and readback by UAV.
+
+    A clock rate other than 1 is used for simulated UAVs only: a real UAV's rate only appears to differ while its link lags.
+    """
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
         "uav_id", "last_message_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot", "battery_state",
@@ -58,7 +61,7 @@ def _rtl_behaviour(reported: Mapping[str, Any]) -> RtlBehaviour | None:
 
 
 def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[AutopilotText, ...]]:
-    """Warnings and worse of UAVs in their own words of late, the newest last."""
+    """Return the recent status texts of severity warning or worse by UAV, the newest last."""
     since = datetime.fromtimestamp(now_s - KEPT_S, UTC)
     rows = VehicleText.objects.filter(uav__in=uav_ids, received_at__gt=since, severity__lte=WARNING_SEVERITY).order_by("received_at", "pk")
     found: dict[int, list[AutopilotText]] = defaultdict(list)
@@ -68,7 +71,7 @@ def status_texts_of(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[A
 
 
 def closed_by_users(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:
-    """UAVs, missions and subjects whose alert of a code a person has closed since the UAV was started last."""
+    """Return UAV, mission and subject of alerts of a code that a user has closed since the UAV's last start."""
     started = UavCommand.objects.filter(
         uav=OuterRef("uav"), mission=OuterRef("mission"), kind=CommandKind.START, state=CommandState.APPLIED,
         finished_at__gt=OuterRef("closed_at"),
@@ -94,9 +97,9 @@ FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LE
 
 
 def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[IssuedOrder | None, bool]]:
-    """To UAVs with their missions: the last command about the flight that counts, and whether a mission is being brought or taken off.
+    """Return by UAV, for its mission, the latest flight command in force, and whether a mission is being uploaded or cleared.
 
-    It is also while a UAV is held to be given another one.
+    The latter is also true while a UAV is held to receive another mission.
     """
     values: dict[str, str | list[int] | list[UUID] | list[CommandState]] = {
         "along": ALONG_ROUTE, "return_along": RETURN_ALONG,
@@ -118,7 +121,7 @@ def _order(kind: str | None, given_at: datetime | None, finished_at: datetime | 
 
 
 def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mapping[str, float], Mapping[str, float]]]:
-    """Of UAVs in missions, what the type and the mission state of alerts' limits."""
+    """Return the alert limits of type and mission by UAV."""
     of_type = dict(Uav.objects.filter(pk__in={uav for uav, _ in pairs}).values_list("pk", "uav_type__alert_limits"))
     of_mission = dict(Mission.objects.filter(pk__in={mission for _, mission in pairs}).values_list("pk", "alert_limits"))
     return {uav: (of_type.get(uav) or {}, of_mission.get(mission) or {}) for uav, mission in pairs}
@@ -135,7 +138,7 @@ WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.e
 def estimated_by_other_watches(
     organisations: Collection[int], uav_ids: Collection[int]
 ) -> dict[int, list[tuple[int, str, Any, float, bool]]]:
-    """By organisation: UAVs, their names, estimates as stored (services/watches.py), how fast their clocks run, and which are twins."""
+    """Return by organisation the UAVs of other estimators: id, name, stored estimate (services/watches.py), clock rate, is_twin."""
     with connection.cursor() as cursor:
         cursor.execute(_OTHERS, [sorted(organisations), sorted(uav_ids)])
         rows = cursor.fetchall()

@@ -1,4 +1,4 @@
-"""What alerts say, in the reader's language: stored is a template in English, and what is put into it."""
+"""Texts of alerts in the reader's language. Stored are an English template and its values."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,7 +10,7 @@ from missions.models import UavCommand
 from operation.reasons import Reason, english
 from workspace.reason_texts import reasons_of_column, why_text
 
-# Detectors know no languages: what they may say is named here for the catalogues.
+# Texts of detectors, listed here for the catalogues.
 TEMPLATES = (
     gettext_noop("%(uav)s: no telemetry for %(seconds)s s."),
     gettext_noop("Link to %(uav)s lost: no telemetry for %(seconds)s s."),
@@ -123,17 +123,17 @@ STATES = (gettext_noop("low"), gettext_noop("critical"), gettext_noop("emergency
 
 
 def why_values(why: Sequence[Reason]) -> dict[str, Any]:
-    """The values of an alert that quotes reasons: `words` in English, and the reasons."""
+    """Return the values of an alert that quotes reasons: `words` in English, and the reasons."""
     return {"words": english(why), WORDS_WHY: [reason.to_json() for reason in why]}
 
 
 def outcome_values(command: UavCommand) -> dict[str, Any]:
-    """The same of what became of a command."""
+    """Return the values of an alert that quotes the outcome of a command."""
     return {"words": command.outcome, WORDS_WHY: reasons_of_column(command.outcome_why, command.outcome)}
 
 
 def alert_words(message: str, values: Mapping[str, Any]) -> str:
-    """What was stored without values, or does not fit its template, is as it was stored."""
+    """Return the text. A message without values, or with values that do not fit, is returned as stored."""
     if not values:
         return message
     read = {

@@ -1,4 +1,4 @@
-"""Alerts as they are."""
+"""Reads of alerts."""
 
 from collections import defaultdict
 from collections.abc import Collection, Mapping
@@ -14,13 +14,13 @@ from telemetry.models import Alert, AlertLevel
 from workspace.models import Organisation
 
 MIXED, OTHER_LIST = "mission-mixed", "other-list-on-board"  # codes
-WORST = "worst"  # in the details of an alert: the worst that it has said
-BY_PERSON = "by-person"  # why an alert is closed
+WORST = "worst"  # in the details of an alert: its worst message so far
+BY_PERSON = "by-person"  # close reason
 
 
 @dataclass(frozen=True, slots=True)
 class OpenRow:
-    """An open alert, as far as the watch needs it."""
+    """An open alert with the fields that the estimator needs."""
 
     id: int
     uav_id: int
@@ -31,8 +31,8 @@ class OpenRow:
     values: Mapping[str, Any]
     written_at: datetime
     worst: Mapping[str, Any] | None = None  # services/alerts/rows.py
-    answer: tuple[Any, ...] = (None, None, None)  # as answer_of has it
-    figures: Mapping[str, Any] = field(default_factory=dict)  # as figures_of has them
+    answer: tuple[Any, ...] = (None, None, None)  # as returned by answer_of
+    figures: Mapping[str, Any] = field(default_factory=dict)  # as returned by figures_of
 
 
 def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int, list[OpenRow]]:
@@ -44,15 +44,15 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
 
 
 def waiting_to_be_seen() -> Q:
-    """Critical alerts that have ended and that nobody has acknowledged (ANSI/ISA-18.2: unacknowledged, returned to normal), however old.
+    """Return the condition for critical alerts that ended unacknowledged, however old (ANSI/ISA-18.2: unacknowledged, returned to normal).
 
-    Its terms are those of the index alert_waits_to_be_seen_idx.
+    Its terms match the index alert_waits_to_be_seen_idx.
     """
     return Q(level=AlertLevel.CRITICAL, acknowledged_at=None, closed_at__isnull=False)
 
 
 def unanswered_counts(organisation: Organisation) -> dict[str, int]:
-    """By level, alerts that nobody has acknowledged: open ones, and critical ones that have ended."""
+    """Return the number of unacknowledged alerts by level: open ones, and critical ones that have ended."""
     rows = Alert.objects.filter(Q(closed_at=None, acknowledged_at=None) | waiting_to_be_seen(), organisation=organisation)
     return dict.fromkeys(AlertLevel.values, 0) | dict(rows.order_by().values_list("level").annotate(Count("pk")))
 
@@ -75,7 +75,7 @@ def alerts_of_organisation(organisation: Organisation) -> QuerySet[AlertWithNote
 
 @dataclass(frozen=True, slots=True)
 class AlertFilter:
-    """None, or empty: whatever it is."""
+    """None or empty: any value."""
 
     is_open: bool | None = None
     is_acknowledged: bool | None = None

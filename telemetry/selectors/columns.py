@@ -1,4 +1,4 @@
-"""Columns as plain numbers: geometries and datetimes take the most time of a read of many rows."""
+"""Geometry and time columns as plain numbers, which are faster to read in many rows."""
 
 from django.db.models import F, FloatField, Func
 
@@ -12,5 +12,5 @@ def latitude() -> Func:
 
 
 def unix_s(column: str) -> Func:
-    """A time in seconds since 1970."""
+    """Return a time column as Unix seconds."""
     return Func(F(column), template="extract(epoch from %(expressions)s)::float8", output_field=FloatField())

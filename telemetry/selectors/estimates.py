@@ -24,7 +24,7 @@ def estimates_of_mission(
     estimated_before: datetime | None = None,
     is_replaced: bool | None = None,
 ) -> QuerySet[PositionEstimate]:
-    """`estimated_before` is left out; is_replaced: by a measurement that came later."""
+    """Return the estimates that match. `estimated_before` is exclusive; is_replaced: by a later measurement."""
     found = PositionEstimate.objects.filter(mission=mission)
     if uav_id is not None:
         found = found.filter(uav=uav_id)
@@ -38,7 +38,7 @@ def estimates_of_mission(
 
 
 def estimate_quality_of(mission_id: UUID) -> EstimateQuality:
-    """By all that was measured of the mission's UAVs, whenever it came. One UAV after the other is in memory."""
+    """Return the quality by all measurements of the mission's UAVs, late ones included. Reads one UAV at a time into memory."""
     compared: list[Compared] = []
     untold = 0
     for uav_id in PositionEstimate.objects.filter(mission=mission_id).order_by("uav").values_list("uav", flat=True).distinct():

@@ -1,4 +1,4 @@
-"""What telemetry adds to the event log of missions: alerts, take-offs and landings, and crashes in the UAVs' own words."""
+"""Telemetry's entries in the event log of missions: alerts, take-offs and landings, and crashes reported in status texts."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -23,7 +23,7 @@ _WORDS = {EventKind.ALERT_RAISED: "Raised", EventKind.ALERT_ACKNOWLEDGED: "Ackno
 _FLIGHTS = "SELECT id::text, kind, at, mission_id FROM telemetry_flightevent WHERE mission_id = ANY(%(missions)s)"
 _FLIGHT_WORDS = {EventKind.TAKE_OFF: "took off", EventKind.LANDING: "landed"}
 
-# While its mission flies, and shortly after: a UAV may say so once it has ended.
+# During the mission and shortly after: the UAV may report it after the end.
 _CRASHES = rf"""
 SELECT said.id::text, 'crash', said.received_at, mission.id FROM missions_mission mission
 JOIN missions_missionuav place ON place.mission_id = mission.id

@@ -1,4 +1,4 @@
-"""Whether a UAV is in the air, by what it reported last."""
+"""Whether a UAV is in flight, by its last report."""
 
 from datetime import timedelta
 
@@ -11,6 +11,6 @@ MAX_SILENCE = timedelta(hours=1)  # no flight lasts longer
 
 
 def is_in_flight(uav: Uav) -> bool:
-    """One that was in the air when it was last heard, within the hour, may be so still."""
+    """Return whether the UAV was in the air at its last message within the hour; it may still be."""
     since = timezone.now() - MAX_SILENCE
     return UavLink.objects.filter(uav=uav, is_in_air=True, last_message_at__gte=since).exclude(is_armed=False).exists()

@@ -1,4 +1,4 @@
-"""What happened to the UAVs of a mission: crashes, failsafes, low batteries, lost links, and what people told them."""
+"""Incidents of a mission's UAVs: crashes, failsafes, low batteries, lost links, and users' commands."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -15,9 +15,9 @@ from telemetry.selectors.alert_facts import WARNING_SEVERITY
 from telemetry.selectors.alert_words import alert_words
 from workspace.models import AuditEntry, User
 
-NEAR_S = 60.0  # of an incident: a report that tells where the UAV was
-ABOUT = timedelta(minutes=2)  # before its first and after its last report, in which a UAV may speak of the flight
-ONE_FALL_S = 180.0  # between the words of a crash and the alert that the UAV is down: the same one
+NEAR_S = 60.0  # of an incident, to take the UAV's position from a report
+ABOUT = timedelta(minutes=2)  # before the first and after the last report: status texts in it belong to the flight
+ONE_FALL_S = 180.0  # between a crash text and the alert that the UAV is down: the same crash
 _CRASH = re.compile(r"\bcrash", re.IGNORECASE)
 _ORDERED = {CommandKind.RETURN: IncidentKind.ORDERED_RETURN, CommandKind.LAND: IncidentKind.ORDERED_LAND}
 _REACHED_UAV = (CommandState.SENT, CommandState.ACKNOWLEDGED, CommandState.APPLIED)
@@ -26,7 +26,7 @@ Flown = tuple[int, str, Sequence[Fix]]  # place in the mission, name, reports
 
 
 def incidents_of(mission: Mission, flown: Mapping[int, Flown]) -> list[Incident]:
-    """In the order of time. flown: by the UAV's id."""
+    """Return the incidents sorted by time. flown: by the UAV's id."""
     texts = {uav_id: _texts(uav_id, fixes) for uav_id, (_place, _name, fixes) in flown.items()}
     found = [*_of_alerts(mission, flown, texts), *_of_commands(mission, flown), *_of_aborts(mission)]
     for uav_id, (place, name, fixes) in flown.items():
@@ -35,7 +35,7 @@ def incidents_of(mission: Mission, flown: Mapping[int, Flown]) -> list[Incident]
 
 
 def _texts(uav_id: int, fixes: Sequence[Fix]) -> list[tuple[float, str]]:
-    """Warnings and worse in its own words, while it flew."""
+    """Return its status texts of severity warning or worse during its flight."""
     if not fixes:
         return []
     since, until = (datetime.fromtimestamp(at_s, UTC) for at_s in (fixes[0].at_s, fixes[-1].at_s))
@@ -74,7 +74,7 @@ def _with_cause(kind: IncidentKind, name: str, cause: str, at_s: float) -> Outco
 
 
 def _with_crash(found: list[Incident], place: int, name: str, fixes: Sequence[Fix], texts: list[tuple[float, str]]) -> list[Incident]:
-    """A UAV that says that it has crashed: that stands for the alert that it is down."""
+    """Replace the alert that a UAV is down by the crash that its status texts report, if any."""
     stated_s = next((at_s for at_s, text in texts if _CRASH.search(text)), None)
     if stated_s is None:
         return found

@@ -1,6 +1,6 @@
-"""What live pages of an organisation show at this moment: keys and versions, cheap enough to be looked at many times a second.
+"""Keys and versions of what live pages show now, cheap enough to poll several times a second.
 
-Whole objects are in live/objects.py; they are read only where a version has changed.
+Whole objects are in live/objects.py, and read only when their version has changed.
 """
 
 from collections.abc import Collection
@@ -16,7 +16,7 @@ KINDS = ("uavs", "missions", "alerts", "commands", "offers")
 
 @dataclass(frozen=True, slots=True)
 class ShownObject:
-    """One object: another version after each change. If `is_in_whole`, pages of the organisation show it; those of `missions` do, too."""
+    """One object, with a new version after each change. Pages of the organisation show it if `is_in_whole`, those of `missions` always."""
 
     version: int
     is_in_whole: bool
@@ -27,11 +27,10 @@ class ShownObject:
 
 
 MAX_CLOSED = 100
-# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, the newest
-# critical ones that have ended and that nobody has acknowledged, and the newest that were closed within the hour, of the organisation and
-# of each mission asked for; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked
-# for: to these belong UAVs with a route of theirs that fly no other mission. A UAV flies the mission of which it was sent a route last
-# (missions/selectors/commands.py).
+# Shown are: UAVs that fly a mission or were received within a day; missions under way or ended within the hour; open alerts, the newest
+# critical ones that ended unacknowledged, and the newest closed within the hour, for the organisation and for each requested mission;
+# commands and offers that are open or ended within ten minutes. In addition, everything of the requested missions, including UAVs with a
+# route of theirs that fly no other mission. A UAV flies the mission whose route it was sent last (missions/selectors/commands.py).
 _LOOK = f"""
 WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
 flown AS (
@@ -123,6 +122,6 @@ WHERE offer.state IN ('computing', 'open') OR coalesce(offer.decided_at, offer.c
 
 
 def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, ShownObject]:
-    """With the missions asked for, as far as they are the organisation's and there."""
+    """Return the objects shown, with those of the requested missions that exist in the organisation."""
     rows = prepared_rows(_LOOK, [organisation_id, list(missions)])
     return {(kind, key): ShownObject(version, is_in_whole, tuple(own)) for kind, key, version, is_in_whole, own in rows}

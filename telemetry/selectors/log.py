@@ -21,7 +21,7 @@ ROWS_AT_ONCE = 2_000
 
 @dataclass(frozen=True)
 class LogFilter:
-    """Which records; None is not asked for. Times are those of measurement, `before` is left out."""
+    """Filter of records; None: any. Times are those of measurement; `measured_before` is exclusive."""
 
     uav_id: int | None = None
     mission_id: UUID | None = None
@@ -31,7 +31,7 @@ class LogFilter:
 
 
 def records_that_match(organisation: Organisation, wanted: LogFilter) -> QuerySet[TelemetryRecord]:
-    """A UAV or mission of another organisation has none."""
+    """Return the matching records; none for a UAV or mission of another organisation."""
     uavs = Uav.objects.filter(organisation=organisation)
     if wanted.uav_id is not None:
         uavs = uavs.filter(pk=wanted.uav_id)
@@ -48,17 +48,17 @@ def records_that_match(organisation: Organisation, wanted: LogFilter) -> QuerySe
 
 
 def in_time(records: QuerySet[TelemetryRecord]) -> QuerySet[TelemetryRecord]:
-    """None of the future."""
+    """Return the records without those from the future."""
     return records.filter(is_from_future=False)
 
 
 def on_track(records: QuerySet[TelemetryRecord]) -> QuerySet[TelemetryRecord]:
-    """Those that say where a UAV was at a time that can have been (LoggedRecord.is_on_track)."""
+    """Return the records with a position and a possible time (LoggedRecord.is_on_track)."""
     return in_time(records).filter(position__isnull=False)
 
 
 def latest_record(uav: Uav) -> TelemetryRecord | None:
-    """What the UAV measured last, with its UAV and stream; never from the future."""
+    """Return the record that the UAV measured last, with its UAV and stream; never one from the future."""
     return newest_of(uav.pk, "uav", "stream")
 
 
@@ -71,13 +71,13 @@ _COLUMNS = ("pk", "uav_id", "uav__name", "mission_id", "stream__key", "sequence"
 
 
 def logged(records: QuerySet[TelemetryRecord], *order: str) -> Iterator[LoggedRecord]:
-    """Row by row out of the database, in this order; never more than some thousand at once in memory."""
+    """Yield the records in this order, with at most some thousand in memory."""
     rows = records.order_by(*order).values_list(*_COLUMNS, longitude(), latitude(), *REPORTED, *FLAGS)
     return (_from_columns(row) for row in rows.iterator(chunk_size=ROWS_AT_ONCE))
 
 
 def as_logged(record: TelemetryRecord) -> LoggedRecord:
-    """One row that has been read with its UAV and stream."""
+    """Return a row that was read with its UAV and stream."""
     place = record.position
     return LoggedRecord(
         id=record.pk,

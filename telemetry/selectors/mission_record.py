@@ -1,4 +1,4 @@
-"""The record of a mission: what was planned, what was flown, and what came of each target."""
+"""Mission report: what was planned, what was flown, and the outcome of each target."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -25,12 +25,12 @@ from workspace.models import Organisation
 from workspace.reason_texts import reasons_of_column
 
 _FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
-HASTE = 1.5  # so much faster than it was told may a UAV be: down the wind, or flown by hand
+HASTE = 1.5  # factor on the planned speed that a UAV may reach with tailwind or flown manually
 
 
 @dataclass(frozen=True)
 class RouteOnRecord:
-    """One UAV's part. `planned` has the figures of the approval; times of `flown` and `visits` are Unix seconds."""
+    """One UAV's part. `planned` has the values of the approval; times of `flown` and `visits` are Unix seconds."""
 
     place: int
     uav_id: int | None
@@ -44,9 +44,9 @@ class RouteOnRecord:
 
 @dataclass(frozen=True)
 class TargetOnRecord:
-    """A target with its UAV's route and visit, None where it is on none, and what came of it.
+    """A target with its outcome, and its UAV's route and visit, None without a route.
 
-    Seconds are after that UAV's take-off, flown ones by its own clock; None where they are not known.
+    Seconds are after that UAV's take-off, flown ones by its clock; None if unknown.
     """
 
     row: InspectionTarget
@@ -59,7 +59,7 @@ class TargetOnRecord:
 
 @dataclass(frozen=True)
 class WholeRecord:
-    """What the report, and the files of results, are made of. Targets are in the operator's order."""
+    """Input of the report and of result files. Targets are in the operator's order."""
 
     mission: Mission
     approval: Approval | None
@@ -73,12 +73,12 @@ def mission_on_record(organisation: Organisation, mission_id: UUID) -> Mission |
 
 
 def approval_on_record(mission: Mission) -> Approval | None:
-    """By which it was flown: the one in force, else the last one."""
+    """Return the approval that was flown: the one in force, else the last one."""
     return mission.approvals.select_related("approved_by").order_by(F("revoked_at").asc(nulls_first=True), "-approved_at").first()
 
 
 def fixes_of(mission: Mission, uav_id: int) -> list[Fix]:
-    """Where a UAV was in a mission, by time; none of the future."""
+    """Return a UAV's positions in a mission by time, without those from the future."""
     rows = TelemetryRecord.objects.filter(mission=mission, uav=uav_id, is_from_future=False, position__isnull=False).order_by("measured_at")
     columns = rows.values_list(unix_s("measured_at"), longitude(), latitude(), "stream__link", "stream_id", "sequence", *_FIX_COLUMNS)
     return in_order([_fix(*row) for row in columns.iterator(chunk_size=5_000)])
@@ -88,19 +88,19 @@ def _fix(
     at_s: float, lon: float, lat: float, link: str, stream: int, sequence: int, altitude_relative_m: float | None,
     battery_percent: float | None, waypoint: int | None, is_in_air: bool | None,
 ) -> Fix:  # fmt: skip
-    """By MAVLink a record's number is the time since boot [ms]."""
+    """Return the fix of a row. A MAVLink record's number is the time since boot [ms]."""
     clock_s = sequence / 1_000.0 if link == LinkKind.MAVLINK else None
     return Fix(at_s, LonLat(lon, lat), altitude_relative_m, battery_percent, waypoint, is_in_air, boot=stream, clock_s=clock_s)
 
 
 def fastest_mps(route: FrozenRoute, figures: dict[str, Any]) -> float:
-    """Over ground, by any means."""
+    """Return the highest possible ground speed."""
     assigned_speeds = [route.cruise_speed_mps, (figures.get("performance") or {}).get("max_airspeed_mps") or 0.0]
     return HASTE * max([*assigned_speeds, *(waypoint.speed_mps or 0.0 for waypoint in route.waypoints)])
 
 
 def routes_on_record(mission: Mission, approval: Approval | None) -> list[RouteOnRecord]:
-    """As approved; none for a mission that nobody has approved."""
+    """Return the routes as approved; none for a mission without approval."""
     found = []
     for approved in approval.document["routes"] if approval else ():
         route = route_from_json(approved["route"])
@@ -121,7 +121,7 @@ def routes_on_record(mission: Mission, approval: Approval | None) -> list[RouteO
 
 
 def whole_record(mission: Mission) -> WholeRecord:
-    """Read all that was planned, flown and reported."""
+    """Read everything planned, flown and reported."""
     approval = approval_on_record(mission)
     routes = routes_on_record(mission, approval)
     flown = {route.uav_id: (route.place, route.name, route.in_air) for route in routes if route.uav_id is not None}
@@ -130,7 +130,7 @@ def whole_record(mission: Mission) -> WholeRecord:
 
 
 def in_flown_order(targets: Sequence[TargetOnRecord]) -> list[TargetOnRecord]:
-    """As they were reached; those that were not, by UAV as planned, after them, and those on no route last."""
+    """Return the targets in the order reached; then those not reached, by UAV and plan; those without a route last."""
 
     def order(target: TargetOnRecord) -> tuple[bool, float, bool, int, int]:
         reached_s = None if target.visit is None or target.outcome.result is Result.NOT_INSPECTED else target.visit.reached_s
@@ -142,7 +142,7 @@ def in_flown_order(targets: Sequence[TargetOnRecord]) -> list[TargetOnRecord]:
 
 
 def mission_record(mission: Mission) -> dict[str, Any]:
-    """As the API shows it, times as datetimes."""
+    """Return the report for the API, with times as datetimes."""
     whole = whole_record(mission)
     approval, routes = whole.approval, whole.routes
     flown_by = [route.uav_id for route in routes if route.uav_id is not None]
@@ -182,7 +182,7 @@ def _incident(incident: Incident, routes: Sequence[RouteOnRecord]) -> dict[str, 
 
 
 def _continuation(mission: Mission) -> UUID | None:
-    """The mission that flies what is left of this one, once a person has confirmed it."""
+    """Return the mission that flies the rest of this one, once a user has accepted it."""
     return mission.continued_by.filter(offered_by__state=OfferState.ACCEPTED, deleted_at=None).values_list("pk", flat=True).first()
 
 
@@ -229,7 +229,7 @@ def _summary(whole: WholeRecord) -> dict[str, Any]:
 
 
 def _clock_rate(flown: Sequence[ReportedRoute]) -> float:
-    """Of all UAVs together: seconds of their clocks in one of ours."""
+    """Return the rate over all UAVs: seconds of their clocks per server second."""
     ours_s = sum(route.duration_s / route.clock_rate for route in flown if route.duration_s)
     return sum(route.duration_s for route in flown if route.duration_s) / ours_s if ours_s else 1.0
 
@@ -255,7 +255,7 @@ def _used_wh(route: RouteOnRecord) -> float | None:
 
 
 def _sum(values: Sequence[float | None]) -> float | None:
-    """None where one is not known, or there are none."""
+    """Return the sum; None if any value is unknown or there are none."""
     known = [value for value in values if value is not None]
     return sum(known) if known and len(known) == len(values) else None
 
@@ -301,12 +301,12 @@ def _with_times(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def at(seconds: float | None) -> datetime | None:
-    """Return the time of Unix seconds."""
+    """Return Unix seconds as a datetime."""
     return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
 
 
 def _reasons_of(target: InspectionTarget) -> list[dict[str, Any]]:
-    """Why it was not done, as far as no person wrote it."""
+    """Return why the target was not done, except for text that a user wrote."""
     return reasons_of_column(target.state_why, target.state_reason) if target.state_reason else target.unassigned_why
 
 

@@ -1,4 +1,4 @@
-"""The results of a mission as its files have them."""
+"""Results of a mission for its files."""
 
 from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
@@ -25,7 +25,7 @@ RESULT_WORDS = {
 
 
 def mission_results(whole: WholeRecord) -> MissionResults:
-    """Targets in flown order; tracks with one point a second."""
+    """Return the results: targets in flown order, tracks with one point per second."""
     mission = whole.mission
     assets = {target.row.asset_id for target in whole.targets if target.row.asset_id is not None}
     external_ids = {key: row.external_id for key, row in references_of(mission.organisation_id, assets).items()}
@@ -86,7 +86,7 @@ def _lines(route: RouteOnRecord) -> RouteLines:
 
 
 def _runs(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:
-    """One fix a second, cut where nothing was heard for long; none of a single fix."""
+    """Yield runs with one fix per second, split at gaps; runs of a single fix are omitted."""
     run: list[Fix] = []
     for fix in fixes:
         if run and fix.at_s - run[-1].at_s > MAX_GAP_S:

@@ -1,4 +1,4 @@
-"""Where UAVs are now: measured, or estimated with how far that may be off."""
+"""Present positions of UAVs: measured, or estimated with an uncertainty."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -13,16 +13,16 @@ from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PE
 from missions.models import Uav
 from telemetry.models import UavLink, UavWatch
 
-LAST_SPEED_MPS = 10.0  # of a UAV that has reported none: how far it may have come since
-MEASURED_FOR_S = 2.0  # a report counts as of now
+LAST_SPEED_MPS = 10.0  # assumed for a UAV without a reported speed
+MEASURED_FOR_S = 2.0  # age up to which a report counts as present
 
 
 @dataclass(frozen=True)
 class PresentPosition:
-    """A UAV's place at this moment. `altitude_relative_m` counts from where it took off; None: not known.
+    """Present position of a UAV. `altitude_relative_m` is above its take-off; None: unknown.
 
-    age_s            since the report on which it rests
-    uncertainty_m    within which it is, 95 of 100 times; the ellipse is given by `along_m` and `across_m` about `bearing_deg`
+    age_s            since the report that it is based on
+    uncertainty_m    radius that contains it with 95 %; `along_m` and `across_m` along and across `bearing_deg` give the ellipse
     """
 
     position: LonLat
@@ -53,7 +53,7 @@ class PresentPosition:
 
 @dataclass(frozen=True)
 class LastReceived:
-    """A UAV with what is known of it now. `battery` is what the watch has made of it, `battery_age_s` old; see battery_forecast.py."""
+    """A UAV with its present state. `battery` is the estimator's forecast, `battery_age_s` old; see battery_forecast.py."""
 
     uav: Uav
     present: PresentPosition | None = None
@@ -71,7 +71,7 @@ class LastReceived:
 
 
 def last_received(uavs: Iterable[Uav], now: datetime) -> list[LastReceived]:
-    """In the order of the UAVs."""
+    """Return the present state of the UAVs, in their order."""
     found = list(uavs)
     keys = [uav.pk for uav in found]
     links = {link.uav_id: link for link in UavLink.objects.filter(uav__in=keys)}
@@ -105,7 +105,7 @@ def _received(uav: Uav, link: UavLink | None, watch: UavWatch | None, now: datet
 
 
 def _present(measured: Mapping[str, Any], estimated: Mapping[str, Any] | None, now: datetime) -> PresentPosition | None:
-    """The estimate while a watch makes one; else the last report, from which it may have come away since at its last speed."""
+    """Return the estimate if there is a current one; else the last report, with the distance flown since at its last speed as bound."""
     reported, report = measured.get("position"), measured.get("report", {})
     age_s = None
     if reported is not None:

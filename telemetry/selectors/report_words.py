@@ -1,4 +1,4 @@
-"""Why a target was not inspected, and what happened to UAVs, in the reader's language."""
+"""Reasons of targets that were not inspected, and incidents, in the reader's language."""
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
@@ -48,7 +48,7 @@ def reason_words(reason: OutcomeReason) -> str:
     """Return part of a sentence, without the time at which it happened."""
     values = dict(reason.values)
     if reason.code == "stated":
-        return why_text(values.get("why", ()), str(values["words"])).rstrip(".")  # a planner's sentence, which becomes part of one
+        return why_text(values.get("why", ()), str(values["words"])).rstrip(".")  # a planner's sentence, inserted into another one
     if values.get("cause"):
         values["cause"] = _(CAUSES[values["cause"]])
     if values.get("outcome") in OUTCOMES:

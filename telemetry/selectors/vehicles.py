@@ -1,4 +1,4 @@
-"""Reads of vehicles: what they said, the logs of their flights, and those that nobody knows."""
+"""Reads of vehicles: status texts, flight logs and unknown vehicles."""
 
 from pathlib import Path
 
@@ -10,11 +10,11 @@ from telemetry.models import FlightLog, UavLink, UnknownVehicle, VehicleText
 
 
 class LogFileMissing(Exception):
-    """The file is not there, or lies outside the folder of logs."""
+    """The file is missing, or outside the log folder."""
 
 
 def connection_of(uav: Uav) -> UavLink:
-    """An empty one for a UAV that was never heard."""
+    """Return the UAV's link; an empty one for a UAV that never connected."""
     return UavLink.objects.filter(uav=uav).first() or UavLink(uav=uav)
 
 
@@ -27,7 +27,7 @@ def flight_logs_of(uav: Uav) -> QuerySet[FlightLog]:
 
 
 def file_of(log: FlightLog) -> Path:
-    """Raises LogFileMissing, also for a path that leaves the folder by whatever way."""
+    """Return the path of a log file. Raises LogFileMissing, also for a path that leaves the folder in any way."""
     folder = Path(settings.FLIGHT_LOG_DIR).resolve()
     path = (folder / log.path).resolve()
     if not path.is_relative_to(folder) or not path.is_file():
@@ -36,5 +36,5 @@ def file_of(log: FlightLog) -> Path:
 
 
 def unknown_vehicles() -> QuerySet[UnknownVehicle]:
-    """The last heard first."""
+    """Return unknown vehicles, the most recently received first."""
     return UnknownVehicle.objects.select_related("settled_by", "uav")

@@ -1,4 +1,4 @@
-"""Reads of the watch: who is on a mission, and what was reported since."""
+"""Reads of the estimator: UAVs on missions, and their new reports."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -16,16 +16,16 @@ from telemetry.estimation.link_model import PROMPT_S
 from telemetry.estimation.report import Report, VehicleBoot
 from telemetry.exports.logged_record import REPORTED
 
-ON_ITS_WAY = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
-STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UAV for so long is no word
+ON_ITS_WAY = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first takes precedence
+STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; a last message older than this does not count
 
 
 @dataclass(frozen=True, slots=True)
 class WatchedFlight:
-    """A UAV and the approved flight that it is on; `flight` counts from 1, and is one past the last after all were flown.
+    """A UAV and its approved flight. `flight` counts from 1, and is one past the last after all were flown.
 
-    From `home` on, what UavLink has of it; `last_message_at` is set for UAVs that a gateway serves. `clock_rate` is how fast its clock is;
-    None for a real UAV, whose rate would be learnt wrongly while the link lags or catches up.
+    The fields from `home` on are those of UavLink; `last_message_at` is set for UAVs with a gateway. `clock_rate` is None for a real UAV,
+    whose rate would be estimated wrongly while its link lags or catches up.
     """
 
     uav_id: int
@@ -65,7 +65,7 @@ ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, mission.state = ANY(%(
     sent.mission_id IS NOT DISTINCT FROM mission.id DESC, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
     mission.updated_at DESC
 """  # noqa: S608 (texts of ours)
-_BOOT_MS = "CASE WHEN stream.link = 'mavlink' THEN record.sequence END"  # others count something else
+_BOOT_MS = "CASE WHEN stream.link = 'mavlink' THEN record.sequence END"  # other links count something else
 _VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
 _STREAMS = "JOIN telemetry_telemetrystream stream ON stream.id = record.stream_id"
 _NEW = f"""
@@ -98,7 +98,7 @@ class StoredReport:
 
 
 def watched_flights() -> list[WatchedFlight]:
-    """UAVs of missions on their way, and those still in the air after theirs ended; each once."""
+    """Return UAVs of missions under way, and those still in the air after their mission ended; each once."""
     with connection.cursor() as cursor:
         cursor.execute(_FLYING, {"on_its_way": list(ON_ITS_WAY), "over": list(ENDED_STATES), "longest_s": STILL_IN_THE_AIR_S})
         rows = cursor.fetchall()
@@ -106,7 +106,7 @@ def watched_flights() -> list[WatchedFlight]:
 
 
 def _flight(row: Sequence[Any]) -> WatchedFlight:
-    """A row of _FLYING: the fields of WatchedFlight in their order, home as longitude and latitude."""
+    """Return a row of _FLYING: the fields of WatchedFlight in order, with home as longitude and latitude."""
     lon, lat = row[6:8]
     home = None if lon is None or lat is None else LonLat(lon, lat)
     return WatchedFlight(*(*row[:6], home, *row[8:]))
@@ -119,17 +119,17 @@ def last_record_id() -> int:
 
 
 def reports_stored_after(last_id: int, *, but: Collection[int], uav_ids: Sequence[int]) -> list[StoredReport]:
-    """In the order in which they were stored; `but` are ids after the last that are known already."""
+    """Return new reports in the order of storage. `but`: ids after the last that are already known."""
     return _reports(_NEW, [last_id, sorted(but), list(uav_ids)])
 
 
 def newest_reports(uav_ids: Sequence[int], *, most: int) -> list[StoredReport]:
-    """The newest of each UAV by the time of measurement, in its order."""
+    """Return the newest reports of each UAV, sorted by time of measurement."""
     return _reports(_NEWEST, [list(uav_ids), most])
 
 
 def places_received(uav_id: int, *, most: int, every: int) -> list[LonLat]:
-    """Where the newest records of a UAV were measured that came promptly: one of so many."""
+    """Return the positions of a UAV's newest promptly received records, one of every `every`."""
     with connection.cursor() as cursor:
         cursor.execute(_RECEIVED, [uav_id, most, PROMPT_S, every])
         return [LonLat(lon, lat) for lon, lat in cursor.fetchall()]

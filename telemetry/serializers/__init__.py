@@ -1,1 +1,1 @@
-"""Shapes of the app's requests and answers."""
+"""Request and response shapes of the API."""

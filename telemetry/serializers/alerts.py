@@ -1,4 +1,4 @@
-"""Alerts as they go over the wire."""
+"""Alerts in the API."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ from telemetry.services.alerts.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
 from workspace.api import strict_serializers as serializers
 from workspace.models import User
 
-NO_FIGURES = (ACTS, ADVICE, OWN_ACT, WORST)  # of an alert's details: shown in fields of their own
+NO_FIGURES = (ACTS, ADVICE, OWN_ACT, WORST)  # keys of an alert's details that have their own fields
 MAX_ACKNOWLEDGED = 500  # alerts in one request
 
 
@@ -24,7 +24,7 @@ class AlertActSerializer(serializers.Serializer):
 
 
 class AlertOwnActSerializer(serializers.Serializer):
-    """That it returns or lands already, by its failsafe, a pilot or a command."""
+    """The UAV already returns or lands, by its failsafe, a pilot or a command."""
 
     kind = serializers.ChoiceField(choices=[RETURN, LAND])
     since = serializers.DateTimeField(allow_null=True, help_text="by its reports; null: before it was watched")
@@ -38,7 +38,7 @@ class AlertWorstSerializer(serializers.Serializer):
 
 
 class UnansweredAlertsSerializer(serializers.Serializer):
-    """Alerts that nobody has acknowledged: open ones, and critical ones that have ended."""
+    """Unacknowledged alerts: open ones, and critical ones that have ended."""
 
     critical = serializers.IntegerField()
     warning = serializers.IntegerField()
@@ -128,7 +128,7 @@ class AlertNoteInputSerializer(KnownFieldsSerializer):
 
 
 class AlertLimitsSerializer(serializers.Serializer):
-    """By name, each ends with its unit."""
+    """Alert limits by name; each name ends with its unit."""
 
     stated = serializers.DictField(child=serializers.FloatField(), help_text="here")
     in_force = serializers.DictField(child=serializers.FloatField(), help_text="these, else those below; a mission's come before a type's")

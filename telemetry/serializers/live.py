@@ -1,4 +1,4 @@
-"""What live pages show, in the shapes of the API; read and put together in telemetry/live."""
+"""Objects of live pages in the API; telemetry/live reads and composes them."""
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
@@ -74,7 +74,7 @@ class MeasuredSerializer(serializers.Serializer):
 
 
 class RhythmSerializer(serializers.Serializer):
-    """How far apart its reports come, and how old the newest may be."""
+    """Interval of a UAV's reports, and the ages at which the newest counts as late and as silent."""
 
     interval_s = serializers.FloatField(help_text="as the last few came; until then as its link usually has it")
     late_after_s = serializers.FloatField(help_text="as the alert link-lost has it, by the limits of its type and mission")
@@ -82,7 +82,7 @@ class RhythmSerializer(serializers.Serializer):
 
 
 class EstimateBoundSerializer(serializers.Serializer):
-    """Half axes of the ellipse in which the UAV is 95 of 100 times, and bounds of height and speed."""
+    """Semi-axes of the 95 % ellipse of the UAV's position, and bounds of height and speed."""
 
     along_m = serializers.FloatField()
     across_m = serializers.FloatField()
@@ -100,7 +100,7 @@ class EstimateArrivalSerializer(serializers.Serializer):
 
 
 class BatteryForecastSerializer(serializers.Serializer):
-    """What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own."""
+    """Battery forecast of a UAV, by its drain in the same kind of flight; seconds are the UAV's own."""
 
     level = serializers.ChoiceField(choices=["", "warning", "critical"], help_text="of now; an alert keeps its worst")
     left_percent = serializers.FloatField()
@@ -118,7 +118,7 @@ class BatteryForecastSerializer(serializers.Serializer):
 
 
 class EstimateShapeSerializer(serializers.Serializer):
-    """What telemetry/services/watches.py writes."""
+    """The estimate that telemetry/services/watches.py stores."""
 
     at = serializers.DateTimeField()
     report_at = serializers.DateTimeField()
@@ -144,7 +144,7 @@ class EstimateShapeSerializer(serializers.Serializer):
 
 @extend_schema_field(EstimateShapeSerializer(allow_null=True))
 class EstimateField(serializers.JSONField):
-    """An estimate as it is stored."""
+    """An estimate as stored."""
 
 
 class LiveUavSerializer(serializers.Serializer):

@@ -1,4 +1,4 @@
-"""Shapes of the log's answers, for the OpenAPI document."""
+"""Responses of the log, for the OpenAPI document."""
 
 from rest_framework import serializers
 
@@ -8,7 +8,7 @@ from telemetry.exports.logged_record import FLAGS
 
 
 class RecordPropertiesSerializer(serializers.Serializer):
-    """Heights name their reference, angles are degrees, speeds metres a second; null is not known."""
+    """Heights name their reference; angles are in degrees, speeds in m/s; null is unknown."""
 
     uav = serializers.IntegerField()
     uav_name = serializers.CharField()

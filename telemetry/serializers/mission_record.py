@@ -1,4 +1,4 @@
-"""Shape of a mission's record, for the OpenAPI document."""
+"""The mission report, for the OpenAPI document."""
 
 from rest_framework import serializers
 
@@ -64,7 +64,7 @@ class FlownTotalsSerializer(TotalsSerializer):
 
 
 class EstimatesSerializer(serializers.Serializer):
-    """How good the estimates between reports were, by what was measured of the same moments."""
+    """Quality of the estimates between reports, compared with measurements of the same moments."""
 
     compared = serializers.IntegerField(help_text="estimates that a measurement tells of")
     untold = serializers.IntegerField(help_text="those that none tells of")
@@ -112,7 +112,7 @@ class FlownStageSerializer(FlownLegSerializer):
 
 
 class FlownGapSerializer(serializers.Serializer):
-    """A time in the air without reports for over 60 s. No other figure speaks of it."""
+    """A time in the air without reports for over 60 s. It is not included in other values."""
 
     began_at = serializers.DateTimeField()
     ended_at = serializers.DateTimeField()

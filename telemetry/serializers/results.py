@@ -1,4 +1,4 @@
-"""What came of targets, as the API shows it."""
+"""Results of targets in the API."""
 
 from datetime import timedelta
 from typing import Any
@@ -74,7 +74,7 @@ class ResultPageSerializer(serializers.Serializer):
 
 
 def result_json(target: Any, reference: AssetReference | None) -> dict[str, Any]:
-    """`target` is a row of selectors.results, `reference` what the organisation keeps with its asset."""
+    """Return a result. `target` is a row of selectors.results, `reference` the organisation's reference to its asset."""
     mission, asset = target.mission, target.asset
     at = target.position or (asset.centre if asset is not None else None)
     return {

@@ -1,4 +1,4 @@
-"""What UAVs meet if they return now, or land where they are, in the shapes of the API."""
+"""Checks of a return or a landing from the present position, in the API."""
 
 from dataclasses import asdict
 from datetime import datetime
@@ -22,7 +22,7 @@ class PresentPositionSerializer(serializers.Serializer):
 
 
 class BatteryAtLandingSerializer(serializers.Serializer):
-    """Percent of the full battery."""
+    """Percentages of the full battery."""
 
     left_percent = serializers.FloatField(allow_null=True)
     home_percent = serializers.FloatField(allow_null=True, help_text="that the way home and the landing take")
@@ -95,7 +95,7 @@ class LandingHereSerializer(serializers.Serializer):
 
 
 def landing_here_json(found: LandingHere, at: datetime) -> dict[str, Any]:
-    """As LandingHereSerializer has it."""
+    """Return the data of LandingHereSerializer."""
     return {
         "at": at,
         "present": _present_json(found.present),
@@ -104,7 +104,7 @@ def landing_here_json(found: LandingHere, at: datetime) -> dict[str, Any]:
 
 
 def present_return_json(found: PresentReturn) -> dict[str, Any]:
-    """As PresentReturnSerializer has it."""
+    """Return the data of PresentReturnSerializer."""
     check, battery = found.check, found.battery
     return {
         "place": check.place,

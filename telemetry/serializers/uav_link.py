@@ -1,4 +1,4 @@
-"""What UAVs send and get over the HTTP link, as the OpenAPI document tells it, and the envelopes of what they send."""
+"""Requests and responses of the HTTP link, for the OpenAPI document, and the envelopes of requests."""
 
 import json
 from typing import Any
@@ -25,7 +25,7 @@ MAX_SEQUENCE = 2**63 - 1
 
 
 class StreamField(serializers.RegexField):
-    """Names one run of the sender's counter."""
+    """Name of one run of the sender's counter."""
 
     def __init__(self, **options: Any) -> None:
         words = "one run of the UAV's counter: a new one whenever its numbers begin anew"
@@ -33,7 +33,7 @@ class StreamField(serializers.RegexField):
 
 
 class ReportSerializer(serializers.Serializer):
-    """One report. Heights name their reference, angles are degrees, speeds metres a second; what is not known is left out or null."""
+    """One report. Heights name their reference; angles are in degrees, speeds in m/s. Unknown values are omitted or null."""
 
     sequence = serializers.IntegerField(min_value=0, max_value=MAX_SEQUENCE, help_text="grows within the stream")
     measured_at = serializers.DateTimeField(help_text="by the UAV's clock, with its zone")
@@ -58,7 +58,7 @@ class ReportsSerializer(serializers.Serializer):
 
 
 class ReportsEnvelopeSerializer(KnownFieldsSerializer):
-    """A batch whose records are read one by one later."""
+    """A batch whose records are validated one by one later."""
 
     stream = StreamField()
     records = serializers.ListField(min_length=1, max_length=MAX_RECORDS)
@@ -71,7 +71,7 @@ class RefusedSerializer(serializers.Serializer):
 
 
 class StoredReportsSerializer(serializers.Serializer):
-    """Every record of the batch is stored, known or refused: none of them needs to be sent again as it is."""
+    """Every record of the batch is stored, known or refused; none needs to be sent again unchanged."""
 
     stored = serializers.IntegerField(help_text="new ones")
     known = serializers.IntegerField(help_text="that had been stored before, under the same stream and sequence")
@@ -81,7 +81,7 @@ class StoredReportsSerializer(serializers.Serializer):
 
 
 class AcknowledgementSerializer(KnownFieldsSerializer):
-    """What became of a command: it is here, it is done, it is not done and why. May be sent again."""
+    """State of a command: received, done, or failed with a reason. May be sent again."""
 
     command = serializers.UUIDField()
     state = serializers.ChoiceField(choices=["acknowledged", "applied", "failed"])
@@ -122,7 +122,7 @@ class LinkResultSerializer(KnownFieldsSerializer):
 
 
 class EndedFlightSerializer(KnownFieldsSerializer):
-    """How a flight ended. May be sent again."""
+    """End of a flight. May be sent again."""
 
     approval = serializers.UUIDField()
     flight = serializers.IntegerField(min_value=1, max_value=MAX_FLIGHTS)
@@ -130,7 +130,7 @@ class EndedFlightSerializer(KnownFieldsSerializer):
 
 
 def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
-    """A result as it was sent, or what is wrong with it by field."""
+    """Return the result, or its faults by field."""
     serializer = LinkResultSerializer(data=sent)
     if not serializer.is_valid():
         return None, {str(name): " ".join(map(str, words)) for name, words in serializer.errors.items()}
@@ -169,7 +169,7 @@ class ResultsSerializer(serializers.Serializer):
 
 
 class ResultsEnvelopeSerializer(KnownFieldsSerializer):
-    """A batch whose results are read one by one later."""
+    """A batch whose results are validated one by one later."""
 
     stream = StreamField()
     results = serializers.ListField(max_length=MAX_RESULTS)
@@ -179,7 +179,7 @@ class ResultsEnvelopeSerializer(KnownFieldsSerializer):
 
 
 class StoredResultsSerializer(serializers.Serializer):
-    """Every result of the batch is stored, known or refused: none of them needs to be sent again as it is."""
+    """Every result of the batch is stored, known or refused; none needs to be sent again unchanged."""
 
     stored = serializers.IntegerField()
     known = serializers.IntegerField()
@@ -220,7 +220,7 @@ class RouteWaypointSerializer(serializers.Serializer):
 
 
 class RouteContentSerializer(serializers.Serializer):
-    """What is flown, and named by `content_sha256`."""
+    """The flight to fly, identified by `content_sha256`."""
 
     flight = serializers.IntegerField(help_text="which of the route's flights, from 1")
     take_off = TakeOffSerializer()

@@ -1,4 +1,4 @@
-"""Vehicles that nobody knows, and the connections of those that somebody does."""
+"""Unknown vehicles, and the links of UAVs."""
 
 from datetime import datetime
 from typing import Any
@@ -35,7 +35,7 @@ class UnknownVehiclePageSerializer(serializers.Serializer):
 
 
 class AdoptionSerializer(KnownFieldsSerializer):
-    """Either `uav`, which gets the system id, or what a new UAV is made from."""
+    """Either `uav`, which receives the system id, or the data of a new UAV."""
 
     uav = serializers.IntegerField(required=False, min_value=1, max_value=2**63 - 1)
     name = serializers.CharField(required=False, max_length=100)
@@ -68,7 +68,7 @@ def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
 
 
 class UavConnectionSerializer(serializers.Serializer):
-    """What is known of a UAV's connection; null or empty where nothing is."""
+    """State of a UAV's link; null or empty if unknown."""
 
     link = serializers.ChoiceField(choices=LinkKind.choices, help_text="the door by which it is told what to do")
     last_message_at = serializers.DateTimeField(allow_null=True, help_text="when anything was last received, by the server's clock")

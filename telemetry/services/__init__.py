@@ -1,4 +1,4 @@
-"""Writes of what happens in the air."""
+"""Services of telemetry."""
 
 from telemetry.services.ingest import NewRecord, StoredCount, store_records
 from telemetry.services.retention import forget_old_telemetry

@@ -1,4 +1,4 @@
-"""Take-offs and landings: noted as reports come in, each once."""
+"""Take-offs and landings, recorded once each from incoming reports."""
 
 from collections.abc import Iterable, Sequence
 from datetime import datetime
@@ -23,7 +23,7 @@ class FlightEventReport(Protocol):
 
 
 def note_take_offs_and_landings(reports: Iterable[FlightEventReport]) -> None:
-    """Of reports that are not from the future; called before they are noted as the latest. What comes late changes nothing."""
+    """Record take-offs and landings of reports not from the future, before these are stored as the latest. Late reports are ignored."""
     reported = sorted((report for report in reports if report.measurement.is_in_air is not None), key=lambda report: report.measured_at)
     if not reported:
         return
@@ -38,7 +38,7 @@ def note_take_offs_and_landings(reports: Iterable[FlightEventReport]) -> None:
             continue
         kind = FlightEventKind.TAKE_OFF if now_in_air else FlightEventKind.LANDING
         mission_id = report.mission_id or (None if now_in_air else _took_off_for(report.uav_id, report.measured_at))
-        if is_in_air is None and not now_in_air:  # a report between said nothing of it: it has landed if it had taken off
+        if is_in_air is None and not now_in_air:  # an intermediate report had no value: if it had taken off, it has landed
             if mission_id is not None:
                 note_landing(mission_id=mission_id, uav_id=report.uav_id, at=report.measured_at)
         elif mission_id is not None:
@@ -46,7 +46,7 @@ def note_take_offs_and_landings(reports: Iterable[FlightEventReport]) -> None:
 
 
 def note_landing(*, mission_id: UUID, uav_id: int, at: datetime) -> None:
-    """A flight that was told to be over, of a UAV that was seen to take off and not to land."""
+    """Record the landing of a flight reported as ended, if its take-off was recorded and its landing was not."""
     if _last_of(mission_id, uav_id) == FlightEventKind.TAKE_OFF:
         _note(mission_id, uav_id, FlightEventKind.LANDING, at)
 
@@ -61,12 +61,12 @@ def _last_of(mission_id: UUID, uav_id: int) -> str | None:
 
 
 def _in_air_before(uav_ids: Sequence[int] | set[int]) -> dict[int, tuple[bool | None, datetime | None]]:
-    """Whether each was in the air by its newest report that says so, and when that was measured."""
+    """Return whether each UAV was in the air by its newest report with that value, and when that was measured."""
     rows = UavWatch.objects.filter(uav__in=uav_ids, measured__has_key="state").values_list("uav_id", "measured__state")
     return {uav_id: (state.get("is_in_air"), datetime.fromisoformat(state["measured_at"])) for uav_id, state in rows}
 
 
 def _took_off_for(uav_id: int, at: datetime) -> UUID | None:
-    """The mission for which it took off and has not landed: a mission may have ended before its last UAV is down."""
+    """Return the mission of its last take-off without a landing, which may end before its last UAV is down."""
     last = FlightEvent.objects.filter(uav=uav_id, at__lt=at).order_by("-at", "-pk").first()
     return last.mission_id if last is not None and last.kind == FlightEventKind.TAKE_OFF else None

@@ -1,4 +1,4 @@
-"""What was flown of an approved flight, told to the mission."""
+"""Reports the progress of approved flights to their missions."""
 
 from uuid import UUID
 
@@ -12,11 +12,10 @@ OTHERS = frozenset({Doubt.OTHER_STATION, Doubt.OTHER_LENGTH})
 
 
 def note_flown(*, uav_id: int, flown: FlownMissionItem) -> None:
-    """Of the flight that was last read back from the vehicle; of anything else it may have flown nothing is known, and nothing once
-    another list may have been put on it.
+    """Record progress of the flight last read back from the vehicle. Ignored for other lists, or if another list may have been uploaded
+    since.
 
-    Safe to call again. A flight that was broken off is neither flown nor failed: it can be started again. One that ended away from its
-    plan is told by note_down_off_plan.
+    Idempotent. An interrupted flight is neither flown nor failed: it can start again. note_down_off_plan records one that ended off plan.
     """
     loaded = loaded_on(uav_id)
     approval = None if loaded is None else Approval.objects.filter(pk=loaded.approval, revoked_at=None).first()
@@ -36,9 +35,9 @@ def note_flown(*, uav_id: int, flown: FlownMissionItem) -> None:
 
 
 def note_down_off_plan(*, uav_id: int, approval_id: UUID, flight: int) -> None:
-    """A vehicle is down for good where its flight does not end: crashed, or landed by itself. The flight has failed. Safe to call again.
+    """Record a vehicle that is down off plan, crashed or landed by itself: its flight has failed. Idempotent.
 
-    Companion computers report the ends of their flights themselves.
+    Companion computers report the end of their flights themselves.
     """
     approval = Approval.objects.filter(pk=approval_id, revoked_at=None).first()
     if approval is not None and Uav.objects.filter(pk=uav_id, link=LinkKind.MAVLINK).exists():

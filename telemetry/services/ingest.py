@@ -1,4 +1,4 @@
-"""The log's one way in: records of any link, in bulk, each stored once."""
+"""Stores records of all links in the log, in bulk and each once."""
 
 import math
 from collections.abc import Sequence
@@ -20,16 +20,16 @@ from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on
 from workspace.live.changes import publish_live
 
-FUTURE_S = 60.0  # findings: stored, but never shown as the latest
-FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
+FUTURE_S = 60.0  # after receipt: such records are stored, but never shown as the latest
+FLYING = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first takes precedence
 
 
 @dataclass(frozen=True, slots=True)
 class NewRecord:
-    """One report as it came in.
+    """One incoming report.
 
-    `stream` is the key of the sender's counter, at most 64 characters, `sequence` its number in it: what has been stored under both
-    already is dropped. Without a mission it is of the one that the UAV is flying or has been sent.
+    `stream` is the key of the sender's counter, at most 64 characters; `sequence` is its number. A record with a stored stream and sequence
+    is dropped. Without a mission it belongs to the one that the UAV flies or was sent.
     """
 
     uav_id: int
@@ -44,7 +44,7 @@ class NewRecord:
 
 @dataclass(frozen=True)
 class StoredCount:
-    """What became of records: stored ones, of them from the future and late ones; not stored ones."""
+    """Counts of records: stored, of these from the future and late, and not stored."""
 
     stored: int = 0
     from_future: int = 0
@@ -62,7 +62,7 @@ class _Row:
 
 @transaction.atomic
 def store_records(records: Sequence[NewRecord]) -> StoredCount:
-    """Stores what is new, in the order given, and moves the UAVs' reported positions forward. Safe to call again with the same records."""
+    """Store new records in the given order, and advance the UAVs' reported positions. Idempotent for the same records."""
     known, organisations = _known_with_missions({record.uav_id for record in records})
     lists = lists_on({record.uav_id for record in records if record.measurement.mission_item is not None})
     kept = [_attributed(record, known[record.uav_id], lists.get(record.uav_id)) for record in records if record.uav_id in known]
@@ -86,7 +86,7 @@ def store_records(records: Sequence[NewRecord]) -> StoredCount:
 
 
 def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set[int]]:
-    """The UAVs that exist, held against deletion until the transaction ends, each with the mission that it flies; and whose they are."""
+    """Return existing UAVs with the missions that they fly, and their organisations. Locks the UAVs against deletion in this transaction."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT id, organisation_id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
         found = cursor.fetchall()
@@ -119,7 +119,7 @@ def _attributed(record: NewRecord, flies_mission: UUID | None, loaded: LoadedLis
 
 
 def _with_heights_above_ground(records: Sequence[NewRecord]) -> list[NewRecord]:
-    """As measured, else above the terrain model where there is one."""
+    """Return the records with their height above ground: as measured, else above the terrain model where available."""
     nan = float("nan")
     place = ("longitude_deg", "latitude_deg", "altitude_amsl_m")
     reported = np.array(
@@ -137,7 +137,7 @@ def _with_heights_above_ground(records: Sequence[NewRecord]) -> list[NewRecord]:
 
 
 def _newest_measured(records: Sequence[NewRecord]) -> dict[int, datetime]:
-    """Per UAV the time of its newest stored record that is not from the future."""
+    """Return by UAV the time of its newest stored record that is not from the future."""
     latest_possible = max(record.received_at for record in records) + timedelta(seconds=FUTURE_S)
     with connection.cursor() as cursor:
         cursor.execute(
@@ -208,7 +208,7 @@ RETURNING stream_id, sequence
 
 
 def _insert(rows: Sequence[_Row]) -> list[_Row]:
-    """Those that were stored."""
+    """Return the rows that were stored."""
     records = [row.record for row in rows]
     streams = _stream_ids({(record.uav_id, record.link, record.stream) for record in records})
     columns: dict[str, list[object]] = {name: [getattr(record.measurement, name) for record in records] for name in _MEASURED}

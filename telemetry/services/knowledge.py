@@ -1,4 +1,4 @@
-"""What the estimator may know of a flight: the approved route, and what it was approved with."""
+"""Input of the estimator for a flight: the approved route and its approval's data."""
 
 from uuid import UUID
 
@@ -14,7 +14,7 @@ from telemetry.services.of_flight import OfFlight
 
 @OfFlight
 def knowledge_of(approval_id: UUID, uav_id: int, flight: int) -> Knowledge:
-    """An approval never changes. After its last flight, and of a document that is damaged, nothing is known."""
+    """Return the knowledge of a flight; empty after the last flight and for a damaged document. An approval never changes."""
     approval = Approval.objects.filter(pk=approval_id).first()
     if approval is None:
         return Knowledge()

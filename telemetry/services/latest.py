@@ -1,7 +1,7 @@
-"""The newest that is known of each UAV, for live pages, kept beside the log and written with it.
+"""The newest values of each UAV for live pages, written with the log.
 
-What a UAV tells comes in groups, and not each report has all of them: each group is kept with the time at which it was measured, so that a
-report without a position leaves the last position there, with its own age. What comes late fills in only what was older still.
+Values come in groups, and a report may lack some. Each group is stored with its time of measurement, so a report without a position keeps
+the last position with its age. A late report only replaces older values.
 """
 
 import json
@@ -28,7 +28,7 @@ class LatestReport(Protocol):
     def measurement(self) -> Measurement: ...
 
 
-# A group gives way to a newer one only. Rows are held in the order of their UAVs.
+# A group is only replaced by a newer one. Rows are locked in the order of their UAVs.
 _IS_NEWER = """(watch.measured -> key ->> 'measured_at' COLLATE "C" >= value ->> 'measured_at') IS NOT TRUE"""
 NOTE = f"""
 INSERT INTO telemetry_uavwatch AS watch (uav_id, organisation_id, holder, measured)
@@ -43,7 +43,7 @@ WHERE EXISTS (SELECT FROM jsonb_each(excluded.measured) WHERE {_IS_NEWER})
 
 
 def note_latest(reports: Iterable[LatestReport]) -> None:
-    """Of reports that are not from the future; in any order, and again."""
+    """Store the newest values of reports that are not from the future. Accepts any order; idempotent."""
     newest: dict[int, dict[str, dict[str, Any]]] = {}
     for report in sorted(reports, key=lambda report: report.measured_at, reverse=True):
         known = newest.setdefault(report.uav_id, {})
@@ -56,7 +56,7 @@ def note_latest(reports: Iterable[LatestReport]) -> None:
 
 
 def _add_what_is_missing(known: dict[str, dict[str, Any]], report: LatestReport) -> None:
-    """Each group with its time as text of one length, so that texts compare as times do."""
+    """Add missing groups, with times as text of fixed length, so that their order as text is that in time."""
     for name, read in _READ.items():
         if name not in known and (values := read(report)) is not None:
             known[name] = {"measured_at": time_text(report.measured_at), **values}
@@ -84,7 +84,7 @@ def _speed(report: LatestReport) -> dict[str, Any] | None:
 
 
 def _wind(report: LatestReport) -> dict[str, Any] | None:
-    """Pilots are reported where it comes from; the log keeps where the air goes."""
+    """Return where the wind blows from, as pilots expect; the log stores where the air moves to."""
     north_mps, east_mps = report.measurement.wind_north_mps, report.measurement.wind_east_mps
     if north_mps is None or east_mps is None:
         return None
@@ -92,7 +92,7 @@ def _wind(report: LatestReport) -> dict[str, Any] | None:
 
 
 def _as_reported(fields: Sequence[str]) -> Callable[[LatestReport], dict[str, Any] | None]:
-    """Together as soon as one of them is known."""
+    """Return a reader of fields that are stored together if any is known."""
 
     def read(report: LatestReport) -> dict[str, Any] | None:
         values = {field: getattr(report.measurement, field) for field in fields}

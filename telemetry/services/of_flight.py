@@ -1,21 +1,21 @@
-"""What is worked out of an approved flight: once, as an approval never changes, and kept as long as somebody asks for it."""
+"""Cache for data derived from an approved flight: computed once, as an approval never changes, and kept while it is used."""
 
 import time
 from collections.abc import Callable
 from typing import Generic, TypeVar
 from uuid import UUID
 
-FORGOTTEN_AFTER_S = 600.0  # a watch asks every second
+FORGOTTEN_AFTER_S = 600.0  # the estimator asks every second
 
 Found = TypeVar("Found")
 
 
 class OfFlight(Generic[Found]):
-    """Around a function of an approval's id, a UAV's id and a flight's number. One that is over is forgotten when another one begins."""
+    """Caches a function of approval id, UAV id and flight number. Expired entries are dropped when a new one is added."""
 
     def __init__(self, work_out: Callable[[UUID, int, int], Found], now_s: Callable[[], float] = time.monotonic) -> None:
         self._work_out, self._now_s = work_out, now_s
-        self._kept: dict[tuple[UUID, int, int], tuple[Found, float]] = {}  # with when it was asked for last
+        self._kept: dict[tuple[UUID, int, int], tuple[Found, float]] = {}  # with the time of the last use
 
     def __call__(self, approval_id: UUID, uav_id: int, flight: int) -> Found:
         key, now_s = (approval_id, uav_id, flight), self._now_s()

@@ -1,4 +1,4 @@
-"""Checks before the UAVs of a mission are started: what is ready, what speaks against a start, and which act comes next."""
+"""Preflight checks of a mission's UAVs: what is ready, what prevents a start, and the next act."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -38,34 +38,33 @@ RECEIVED_WITHIN = timedelta(seconds=15)  # companions report every 10 s
 BATTERY_WITHIN = timedelta(seconds=60)
 MAP_CHECK_PERIOD_S = 15.0
 FIX_IN_SPACE = 3  # GPS_FIX_TYPE of MAVLink: 3D
-MORE_WIND_MPS = 3.0  # than planned, of which is warned
-AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # of the planned take-off: nothing is said, and it may not start
-HOME_AT_M = 15.0  # of the planned take-off, as far as which nothing is said; before a start it is read again, and refused from far away
-FENCE_PARAMETERS = {ARDUPILOT: "FENCE_ENABLE", PX4: "GF_ACTION"}  # that put a fence on
+MORE_WIND_MPS = 3.0  # above the planned wind: warning
+AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # from the planned take-off: up to the first OK, above the second no start
+HOME_AT_M = 15.0  # from the planned take-off, up to which it is OK; a start reads the home again and refuses one too far away
+FENCE_PARAMETERS = {ARDUPILOT: "FENCE_ENABLE", PX4: "GF_ACTION"}  # parameters that enable a fence
 Reported = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
 
 
 class CheckState(StrEnum):
     OK = "ok"
     WARNING = "warning"
-    UNKNOWN = "unknown"  # nothing tells
-    WAITING = "waiting"  # passes by itself, or by the next act
-    FAILED = "failed"  # it is not started
+    UNKNOWN = "unknown"  # not reported
+    WAITING = "waiting"  # resolves by itself, or by the next act
+    FAILED = "failed"  # prevents the start
 
 
 class NextAct(StrEnum):
     CONNECT = "connect"
     UPLOAD = "upload"
-    WAIT = "wait"  # missions are on their way to UAVs
+    WAIT = "wait"  # uploads are under way
     START = "start"
 
 
 @dataclass(frozen=True)
 class Check:
-    """`code` is short and stable; `message` a sentence, or a few words where all is well.
+    """One check. `code` is short and stable; `message` is a sentence, or a short phrase if OK.
 
-    safe_height_m: of a return with something in its way, the height above take-off at which there is nothing.
-    detail: parameters of the autopilot that were not read, for whoever sets it up; empty: none.
+    safe_height_m: for an obstructed return, the clear height above take-off. detail: unread autopilot parameters, for set-up; empty: none.
     """
 
     code: str
@@ -89,13 +88,13 @@ class UavPreflight:
 
     @property
     def is_ready(self) -> bool:
-        """Whether it may be started without waiting for others of its mission."""
+        """Return whether it can start without waiting for other UAVs of its mission."""
         return self.is_loaded and not self.blocks
 
 
 @dataclass(frozen=True)
 class Preflight:
-    """`next_act` is None where nothing is left to start. `checks` are those of the whole mission."""
+    """Preflight of a mission. `next_act` is None if nothing is left to start. `checks` apply to the whole mission."""
 
     next_act: NextAct | None
     checks: tuple[Check, ...]
@@ -103,7 +102,7 @@ class Preflight:
 
 
 def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
-    """Checks of the UAVs whose first flight has not begun and which are not being started. Raises NoGraph."""
+    """Return the checks of UAVs whose first flight has not begun and which are not being started. Raises NoGraph."""
     approval = approval_in_force(mission)
     if approval is None or approval.revoke_requested_at is not None or mission.state not in TO_SEND:
         return Preflight(None, (), ())
@@ -124,7 +123,7 @@ def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
 
 @dataclass(frozen=True)
 class _OnTheMap:
-    """What zones, terrain and obstacles say of the routes and of the ways home, by place in the mission."""
+    """Result of checking routes and RTL paths against zones, terrain and obstacles, by place in the mission."""
 
     reasons: tuple[RefusalReason, ...]
     returns: Mapping[int | None, ReturnCheck]
@@ -134,15 +133,17 @@ class _OnTheMap:
 def _checked_on_the_map(
     organisation_id: int, mission_id: UUID, revision: int, ground: int, read_at: tuple[datetime | None, ...], language: str, period: int
 ) -> _OnTheMap:
-    """Most of the cost of a preflight, so computed once a period; the arguments change with all that it depends on but time and other
-    missions. A start is decided by a check of its own."""
+    """Check routes and RTL paths, the costliest part of a preflight, at most once per period.
+
+    The arguments change with every input but time and other missions. A start runs its own check.
+    """
     mission = mission_of_organisation(Organisation(pk=organisation_id), mission_id)
     check = check_approval(mission, now=timezone.now())
     return _OnTheMap(() if check is None else check.reasons, {check.place: check for check in return_checks(mission)})
 
 
 def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
-    """Connected UAVs without the mission come first. Those that nobody hears, and those that refused it, hold up no other's start."""
+    """Return the next act. Connected UAVs without the mission come first; silent UAVs and failed uploads do not delay other starts."""
     states = [{check.code: check.state for check in row.checks} for row in rows if not row.is_loaded]
     links = [found["mission"] for found in states if found["link"] == CheckState.OK]
     if CheckState.WAITING in links:
@@ -155,7 +156,7 @@ def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
 
 
 def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[RefusalReason]:
-    """What blocks the start of these UAVs by the checks before start; those of a mission that cannot be started have no checks."""
+    """Return the failed preflight checks of these UAVs and their mission; none for a mission that cannot be started."""
     found = preflight_of(mission, now=timezone.now())
     against = [RefusalReason(check.code, check.message) for check in found.checks if check.state == CheckState.FAILED]
     for row in found.uavs:
@@ -169,7 +170,7 @@ def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[Refusa
 
 
 def _against(reasons: Sequence[RefusalReason], place: int | None) -> Iterator[Check]:
-    """What speaks against this UAV's route, or against the whole mission."""
+    """Return the reasons against this UAV's route, or against the whole mission."""
     return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
 
 
@@ -226,7 +227,7 @@ def _position(route: Route, reported: Reported) -> Check:
 
 
 def _home(uav: Uav, route: Route, link: UavLink) -> Check:
-    """Where its autopilot flies on Return, and counts its heights from. As last reported: it sets it anew where it is armed."""
+    """Check the last reported home position, the destination of RTL and origin of heights. Arming sets it again."""
     if link.home is None:
         words = _("Its companion reports no home position.") if uav.link == LinkKind.HTTP else _("It has not reported its home position.")
         return Check("home", CheckState.UNKNOWN, words)
@@ -239,7 +240,7 @@ def _home(uav: Uav, route: Route, link: UavLink) -> Check:
 
 
 def _away_m(place: Sequence[float], route: Route) -> float:
-    """From the planned take-off. place: longitude, latitude [deg]."""
+    """Return the distance from the planned take-off. place: longitude, latitude [deg]."""
     return float(distance_m(np.array([place]), np.array([route.mission_uav.start.coords]))[0])
 
 
@@ -277,7 +278,7 @@ def _onboard_mission(uav: Uav, approval: Approval, link: UavLink) -> Check:
 
 
 def _fence(uav: Uav, name: str, approval: Approval, link: UavLink) -> Iterator[Check]:
-    """Whether its autopilot keeps out of the fence that is approved with its route, by its parameters; none without a fence."""
+    """Check by its parameters whether the autopilot obeys the route's approved fence; no check without a fence."""
     approved = approved_content(approval.pk, uav.pk, 1)
     if approved is None or not approved.has_fence:
         return
@@ -305,7 +306,7 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
 
 
 def _wind(mission: Mission, reported: Reported) -> Check:
-    """Most vehicles report it in the air alone."""
+    """Check the wind, which most vehicles only report in the air."""
     measured_mps = reported.get("wind", {}).get("wind_speed_mps")
     layers = (mission.conditions or {}).get("wind") or []
     planned_mps = max((float(layer["speed_mps"]) for layer in layers), default=0.0)

@@ -1,4 +1,4 @@
-"""Everything that is known of a mission, in one ZIP file that other programs read."""
+"""All data of a mission in one ZIP file for other programs."""
 
 import json
 import tempfile
@@ -43,7 +43,7 @@ _ESTIMATED = (
 
 
 def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
-    """At its beginning; gone when it is closed."""
+    """Return the file, positioned at its beginning; deleted when closed."""
     whole = tempfile.SpooledTemporaryFile(max_size=IN_MEMORY_BYTES)  # noqa: SIM115 - whoever sends it closes it
     records = records_that_match(organisation, LogFilter(mission_id=mission.pk))
     approval = approval_on_record(mission)

@@ -1,4 +1,4 @@
-"""What UAVs found at targets and how their flights ended, as they report it: each stored once, and the mission follows."""
+"""Results of targets and ends of flights as UAVs report them: each stored once, and applied to the mission."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from telemetry.services.links.http_messages import note_on_ground_over_http
 
 @dataclass(frozen=True)
 class NewResult:
-    """`place` is the target's in the mission as it was approved."""
+    """A result. `place` is the target's in the mission as approved."""
 
     sequence: int
     approval_id: UUID
@@ -35,7 +35,7 @@ class NewResult:
 
 @dataclass(frozen=True)
 class EndedFlight:
-    """`flight` counts from 1."""
+    """The end of a flight. `flight` counts from 1."""
 
     approval_id: UUID
     flight: int
@@ -44,7 +44,7 @@ class EndedFlight:
 
 @dataclass(frozen=True)
 class TakenResults:
-    """Refused are those, by their place in what was given, that this UAV was never sent; reused those under the number of another."""
+    """Counts and refusals. Refused entries, by index, were never sent to this UAV; reused ones have the number of another result."""
 
     stored: int
     known: int
@@ -57,7 +57,7 @@ class TakenResults:
 def take_results(
     *, uav_id: int, stream: str, results: Sequence[NewResult], flights: Sequence[EndedFlight], received_at: datetime
 ) -> TakenResults:
-    """Of this UAV's own routes alone, in any approval that it was sent: one may have been revoked while it could not be reached."""
+    """Store results and ends of flights of this UAV's routes in any approval that it was sent, including revoked ones."""
     named = {result.approval_id for result in results} | {flight.approval_id for flight in flights}
     given = approvals_given_to(uav_id, named)
     places = {key: places_of_targets(uav_id, approval) for key, approval in given.items()}
@@ -66,7 +66,7 @@ def take_results(
     reused = _numbers_used_again(uav_id, stream, own) if stored < len(own) else set()
     numbers = {key: number_of_flights(uav_id, approval) for key, approval in given.items()}
     if not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
-        numbers = {}  # how its flights end is seen by the gateway
+        numbers = {}  # the gateway detects the end of its flights
     for flight in flights:
         if flight.flight > numbers.get(flight.approval_id, 0):
             continue
@@ -91,11 +91,11 @@ def take_results(
 
 def _store(uav_id: int, stream: str, results: Sequence[NewResult], given: dict[UUID, Approval], received_at: datetime) -> int:
     run, _ = TelemetryStream.objects.get_or_create(uav_id=uav_id, link=LinkKind.HTTP, key=stream)
-    run = TelemetryStream.objects.select_for_update(no_key=True).get(pk=run.pk)  # two batches of one counter: one after the other
+    run = TelemetryStream.objects.select_for_update(no_key=True).get(pk=run.pk)  # batches of one counter are stored one after the other
     known = set(
         InspectionResult.objects.filter(stream=run, sequence__in=[result.sequence for result in results]).values_list("sequence", flat=True)
     )
-    new = {result.sequence: result for result in reversed(results) if result.sequence not in known}  # of a number that is twice, the first
+    new = {result.sequence: result for result in reversed(results) if result.sequence not in known}  # of a repeated number the first counts
     targets = _targets(given)
     InspectionResult.objects.bulk_create(
         InspectionResult(
@@ -122,7 +122,7 @@ def _store(uav_id: int, stream: str, results: Sequence[NewResult], given: dict[U
 
 
 def _numbers_used_again(uav_id: int, stream: str, own: Sequence[NewResult]) -> set[int]:
-    """Of results that are another than what is stored under their number: a counter that began anew, and no replay. By identity."""
+    """Return, by identity, results that differ from the stored one with their number: the counter restarted; it is not a repetition."""
     run = InspectionResult.objects.filter(stream__uav_id=uav_id, stream__link=LinkKind.HTTP, stream__key=stream)
     rows = run.filter(sequence__in=[result.sequence for result in own]).values_list("sequence", "approval", "place", "measured_at")
     stored = {sequence: what for sequence, *what in rows}
@@ -130,13 +130,13 @@ def _numbers_used_again(uav_id: int, stream: str, own: Sequence[NewResult]) -> s
 
 
 def _targets(given: dict[UUID, Approval]) -> dict[tuple[UUID, int], int]:
-    """Keys by approval and place, while the approval is in force: after that another target may have the place."""
+    """Return target keys by approval and place, for approvals in force: afterwards another target may have the place."""
     in_force = {approval.mission_id: approval.pk for approval in given.values() if approval.revoked_at is None}
     rows = InspectionTarget.objects.filter(mission__in=in_force).values_list("mission_id", "sequence", "pk")
     return {(in_force[mission_id], place): key for mission_id, place, key in rows}
 
 
 def _newest_outcome(approval: Approval, place: int) -> TargetState:
-    """A result counts from when it was measured, but not from later than it came: a clock that is ahead settles nothing for good."""
+    """Return the outcome of the newest result. Its time is that of measurement, at most that of receipt, in case the clock is ahead."""
     results = InspectionResult.objects.filter(approval=approval, place=place).annotate(counts_at=Least("measured_at", "received_at"))
     return TargetState(results.order_by("-counts_at", "-pk").values_list("outcome", flat=True)[0])

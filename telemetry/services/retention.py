@@ -1,4 +1,4 @@
-"""What is older than the settings want is forgotten, in pieces: nothing waits for a long deletion."""
+"""Deletes telemetry older than the configured retention, in batches, so that nothing waits for a long deletion."""
 
 import time
 from datetime import timedelta
@@ -31,9 +31,9 @@ DELETE FROM telemetry_telemetrystream stream WHERE started_at < %s
 
 
 def forget_old_telemetry() -> int:
-    """Records, estimates, texts and logs of flights that are older than TELEMETRY_DAYS; 0 keeps all. Returns how many records went.
+    """Delete records, estimates, texts and flight logs older than TELEMETRY_DAYS; 0 keeps all. Returns the number of deleted records.
 
-    Results of inspections stay. Ends after a while; the next call goes on.
+    Inspection results are kept. Stops after a time limit; the next call continues.
     """
     if settings.TELEMETRY_DAYS <= 0:
         return 0

@@ -1,6 +1,6 @@
-"""Targets that count as complete because their UAV went on are looked at again: was it there, and for long enough?
+"""Checks targets that count as complete because their UAV continued: did it reach them and hold long enough?
 
-What a UAV reports of a target itself is the last word on its state. When a target was reached and how long the UAV stayed is stored of all.
+A UAV's own report on a target has precedence. The time of reaching and the hold are stored for all targets.
 """
 
 from dataclasses import dataclass, field
@@ -18,9 +18,9 @@ from missions.services.commands.flight_progress import NOT_HELD, NOT_REACHED, SE
 from telemetry.mission_report.visits import ReportedVisit, visits_of
 from telemetry.selectors.mission_record import approval_on_record, at, fastest_mps, fixes_of, routes_on_record
 
-SETTLED_S = 3.0  # by then the reports about it are stored
+SETTLED_S = 3.0  # by then their reports are stored
 LATELY = timedelta(days=2)
-LOOKBACK_S = 120.0  # missions that have just ended are looked at, too
+LOOKBACK_S = 120.0  # includes missions that have just ended
 _SETTLED = """
 SELECT mission.id, approval.id, place.uav_id, max(target.state_at), array_agg(DISTINCT target.sequence) FILTER (
     WHERE target.state = 'complete'
@@ -41,12 +41,12 @@ GROUP BY mission.id, approval.id, place.uav_id
 
 @dataclass
 class TargetChecks:
-    """What one watch has looked at already. After a start everything recent is looked at again, which changes nothing twice."""
+    """Targets already checked by one estimator. After a restart all recent ones are checked again, with the same result."""
 
     _checked_at: dict[tuple[UUID, int], Any] = field(default_factory=dict)  # when the newest target was settled
 
     def check(self, uav_ids: list[int]) -> int:
-        """Look at targets of these UAVs that were settled. Returns how many of them were missed."""
+        """Check newly settled targets of these UAVs. Returns how many were missed."""
         with connection.cursor() as cursor:
             cursor.execute(_SETTLED, {"uav_ids": uav_ids, "back_s": LOOKBACK_S, "settled_s": SETTLED_S})
             found = cursor.fetchall()
@@ -55,19 +55,19 @@ class TargetChecks:
             if self._checked_at.get((mission_id, uav_id)) != newest:
                 missed += _note_targets_checked(mission_id, approval_id, uav_id, set(places or ()))
             checked_at[mission_id, uav_id] = newest
-        self._checked_at = checked_at  # what is no longer recent is not found again
+        self._checked_at = checked_at  # older entries are not found again
         return missed
 
 
 def _note_targets_checked(mission_id: UUID, approval_id: UUID, uav_id: int, unreported: set[int]) -> int:
-    """Skip the missed ones among the targets at these places, which nobody reported, and store the visits of all of the UAV's route."""
+    """Mark missed targets at these places, which have no report, as skipped, and store the visits of the UAV's whole route."""
     routes = Approval.objects.values_list("document", flat=True).get(pk=approval_id)["routes"]
     approved = next((route for route in routes if route["uav"] == uav_id), None)
     if approved is None:
         return 0
     route = route_from_json(approved["route"])
     fixes = fixes_of(Mission(pk=mission_id), uav_id)
-    if not fixes:  # nothing tells where it was
+    if not fixes:  # its positions are unknown
         return 0
     missed = 0
     for visit in visits_of(route, fixes, fastest_mps=fastest_mps(route, approved["figures"])):
@@ -79,7 +79,7 @@ def _note_targets_checked(mission_id: UUID, approval_id: UUID, uav_id: int, unre
 
 
 def store_missing_visits() -> int:
-    """Store visits of missions that have ended in the last days, of which no watch stored any, as it did not run. Returns how many."""
+    """Store visits of recently ended missions that no running estimator has stored. Returns how many."""
     lately = timezone.now() - LATELY
     settled = InspectionTarget.objects.filter(mission=OuterRef("pk"), state__in=SETTLED, visit_stored_at=None)
     ended = Mission.objects.filter(Exists(settled), ended_at__gte=lately, ended_at__lt=timezone.now() - timedelta(seconds=LOOKBACK_S))
@@ -91,7 +91,7 @@ def store_missing_visits() -> int:
 
 
 def _store(mission_id: UUID, visit: ReportedVisit) -> bool:
-    """Whether something new was stored; nothing is where no report tells where the UAV was."""
+    """Return whether a new visit was stored; nothing is stored without a position report."""
     if visit.closest_m is None:
         return False
     return store_visit(mission_id=mission_id, target=visit.target, reached_at=at(visit.reached_s), held_s=visit.held_s)

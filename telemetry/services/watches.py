@@ -1,7 +1,6 @@
-"""Which watch estimates which UAV, and what it writes down.
+"""Leases of UAVs by estimators, and the estimates that these store.
 
-A watch holds a UAV by a lease. Another may take it when the lease is out, or when it bears the same name: it is the same watch, started
-again.
+Another estimator may take a UAV when the lease has expired. One with the same name may take it before: it is the same one, restarted.
 """
 
 import json
@@ -59,7 +58,7 @@ WHERE uav_id IN (SELECT id FROM missions_uav) ON CONFLICT (uav_id, estimated_for
 
 
 def estimate_to_json(estimate: Estimate) -> dict[str, Any]:
-    """Times as RFC 3339 in UTC, to a tenth of a second; metres and degrees rounded to what they can be worth."""
+    """Return the estimate with times as RFC 3339 in UTC to 0.1 s, and values rounded to their precision."""
     bound = estimate.bound
     return {
         "at": _time(estimate.at_s),
@@ -108,9 +107,9 @@ def _rounded(value: float | None) -> float | None:
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """An estimate of one UAV; `report_at` and `estimated_for` are its own times as the database has them.
+    """An estimate of one UAV; `report_at` and `estimated_for` are database times.
 
-    battery: what it allows, as live pages show it; None: not known.
+    battery: its forecast for live pages; None: unknown.
     """
 
     uav_id: int
@@ -122,7 +121,7 @@ class Made:
 
 
 def take_watches(*, missions: dict[int, UUID], holder: str, lease_s: float) -> set[int]:
-    """Those of the UAVs, given with the mission that each flies, that the watch holds from now on. holder: "name/run"."""
+    """Return those of the UAVs, given with their missions, that the estimator now holds. holder: "name/run"."""
     with transaction.atomic():
         with connection.cursor() as cursor:
             cursor.execute(_ADD, [sorted(missions)])
@@ -135,12 +134,12 @@ def take_watches(*, missions: dict[int, UUID], holder: str, lease_s: float) -> s
 
 
 def renew_watches(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
-    """Those that are still held."""
+    """Return the UAVs still held."""
     return set(renew(UavWatch.objects.filter(uav__in=uav_ids, holder=holder), lease_s=lease_s))
 
 
 def release_watches(*, holder: str, uav_ids: Collection[int] | None = None, is_over: bool = False) -> None:
-    """All of the holder, or these. is_over: they fly no mission any more, and nothing is estimated of them."""
+    """Release all UAVs of the holder, or these. is_over: they fly no mission any more, and their estimates are removed."""
     held = UavWatch.objects.filter(holder=holder)
     if uav_ids is not None:
         held = held.filter(uav__in=uav_ids)
@@ -148,12 +147,12 @@ def release_watches(*, holder: str, uav_ids: Collection[int] | None = None, is_o
 
 
 def forget_what_is_over(*, flying: Collection[int]) -> None:
-    """Estimates that a watch left behind when it died, of UAVs that fly no mission by now."""
+    """Remove estimates left by a failed estimator for UAVs that fly no mission now."""
     release(UavWatch.objects.filter(is_free(), mission__isnull=False).exclude(uav__in=flying), **_CHANGED, **_IS_OVER)
 
 
 def show_estimates(*, made: Sequence[Made], holder: str) -> dict[int, int]:
-    """For live pages; only of UAVs that the watch still holds. Returns these with their organisations."""
+    """Store the estimates for live pages, of UAVs still held. Returns these with their organisations."""
     made = sorted(made, key=lambda one: one.uav_id)
     uavs, missions = [one.uav_id for one in made], [one.mission_id for one in made]
     estimates = [json.dumps(estimate_to_json(one.estimate) | {"battery": one.battery}) for one in made]
@@ -163,14 +162,14 @@ def show_estimates(*, made: Sequence[Made], holder: str) -> dict[int, int]:
 
 
 def store_estimates(*, made: Sequence[Made]) -> None:
-    """Beside the log. Safe to call again: of one moment one estimate is kept, the first."""
+    """Store the estimates beside the log. Idempotent: the first estimate of a moment is kept."""
     rows = [_row(one) for one in made]
     with connection.cursor() as cursor:
         cursor.execute(_STORE, [[row[name] for row in rows] for name in _COLUMNS])
 
 
 def replace_estimates(*, reports: Sequence[tuple[int, datetime]]) -> int:
-    """UAVs, and moments that estimates may speak of: a report was measured in the second before. Returns how many were replaced."""
+    """Mark estimates as replaced, given by UAV and moment: a report was measured in the second before it. Returns their number."""
     with connection.cursor() as cursor:
         cursor.execute(_REPLACE, [[uav_id for uav_id, _ in reports], [second for _, second in reports]])
         return cursor.rowcount

@@ -1,7 +1,7 @@
-"""Which waypoint of its approved route a vehicle is at, from the item that its own list is at.
+"""Maps the item of a vehicle's list to the waypoint of its approved route.
 
-An autopilot counts the items of the list that it holds: with home as item 0 on ArduPilot, and with speeds, tasks and points put in between
-waypoints. What is on the vehicle, as it was read back, says to which waypoint each belongs.
+An autopilot counts the items of its list: with home as item 0 on ArduPilot, and with speeds, tasks and intermediate waypoints. The onboard
+list as read back gives the waypoint of each item.
 """
 
 from collections.abc import Iterable
@@ -19,7 +19,7 @@ from missions.services.commands.dispatch import DamagedApproval, approved_load
 
 @dataclass(frozen=True, slots=True)
 class LoadedList:
-    """What was read back from a vehicle at `read_at`: `waypoints` are those of its items, `first` is the number of the first of them."""
+    """The list read back at `read_at`: `waypoints` of its items, and `first`, the number of the first item."""
 
     mission_id: UUID
     read_at: datetime
@@ -27,18 +27,18 @@ class LoadedList:
     waypoints: tuple[int | None, ...]
 
     def waypoint_of(self, item: int | None) -> int | None:
-        """That belongs to the item, as the vehicle counts; None for home, and for what is not in the list."""
+        """Return the waypoint of an item, as the vehicle counts; None for home, and outside the list."""
         if item is None or not 0 <= item - self.first < len(self.waypoints):
             return None
         return self.waypoints[item - self.first]
 
     def waypoint_at(self, item: int | None, measured_at: datetime, mission_id: UUID | None) -> int | None:
-        """None before it was read back: a report that comes late may be of another list."""
+        """Return the waypoint; None before the readback, as a late report may refer to another list."""
         return self.waypoint_of(item) if mission_id == self.mission_id and measured_at >= self.read_at else None
 
 
 def lists_on(uav_ids: Iterable[int]) -> dict[int, LoadedList]:
-    """By UAV; without those that hold nothing that was approved, or of which that is in doubt."""
+    """Return the lists by UAV; without UAVs that hold nothing approved, or whose list is in doubt."""
     with connection.cursor() as cursor:
         cursor.execute(
             "SELECT uav_id, loaded_approval, loaded_flight, autopilot, loaded_read_at FROM telemetry_uavlink WHERE uav_id = ANY(%s) "
@@ -57,7 +57,7 @@ def lists_on(uav_ids: Iterable[int]) -> dict[int, LoadedList]:
 
 @lru_cache(maxsize=256)
 def _approved_waypoints(approval_id: UUID, uav_id: int, flight: int) -> tuple[UUID, tuple[int | None, ...]] | None:
-    """The mission, and the waypoint of each item; an approval never changes. None where it has no items for an autopilot."""
+    """Return the mission, and the waypoint of each item; None without items for an autopilot. An approval never changes."""
     approval = Approval.objects.filter(pk=approval_id).first()
     if approval is None:
         return None

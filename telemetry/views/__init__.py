@@ -1,1 +1,1 @@
-"""The UAV link, the log, and vehicles that nobody knows, over HTTP."""
+"""API views of the UAV link, the log, alerts and unknown vehicles."""

@@ -1,4 +1,4 @@
-"""Limits of alerts that a UAV type or a mission states."""
+"""Alert limits of a UAV type or a mission."""
 
 from dataclasses import asdict
 from typing import Any
@@ -24,7 +24,7 @@ DESCRIPTION = "All that is stated, by name, in one object; what is left out or n
 
 
 def state_alert_limits(*, row: UavType | Mission, limits: Any, actor: User) -> None:
-    """All that differ from the usual ones. Nothing else of the row is touched. Raises InvalidLimits."""
+    """Store all limits that differ from the defaults, and nothing else of the row. Raises InvalidLimits."""
     stated = checked_limits(limits)
     limits_of(stated)
     with transaction.atomic():

@@ -1,4 +1,4 @@
-"""Alerts: listed, looked at, acknowledged, noted."""
+"""Alerts: list, detail, acknowledgement, notes and closing."""
 
 from uuid import UUID
 
@@ -162,7 +162,7 @@ def _detail(alert: Alert) -> dict[str, object]:
 
 
 def _asked(request: Request) -> AlertFilter:
-    """Raises ApiProblem 400."""
+    """Return the requested filter. Raises ApiProblem 400."""
     ask = request.query_params
     state = asked_choice(request, "state", STATES)
     levels = tuple(filter(None, ask.get("level", "").split(",")))

@@ -1,4 +1,4 @@
-"""Where UAVs of a mission were estimated to be while nothing was heard of them."""
+"""Estimated positions of a mission's UAVs between their reports."""
 
 from typing import Any
 from uuid import UUID
@@ -33,7 +33,7 @@ FILTERS = [
 
 
 class EstimatePropertiesSerializer(serializers.Serializer):
-    """Bounds hold 95 of 100 times: an ellipse around the position, with semi-axes along a bearing and across it, heights and speed ±."""
+    """Bounds hold with 95 %: an ellipse around the position, with semi-axes along a bearing and across it; heights and speed ±."""
 
     uav = serializers.IntegerField()
     estimated_for = serializers.DateTimeField(help_text="the moment that it speaks of")

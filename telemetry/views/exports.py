@@ -1,4 +1,4 @@
-"""Flown tracks as files, written while they are sent."""
+"""Flown tracks as files, generated while they are sent."""
 
 import math
 import re
@@ -30,12 +30,12 @@ from workspace.api.renderers import OneAnswer
 from workspace.api.signed_in import SignedInRequest
 
 BY_TIME = ("measured_at", "pk")
-BY_STREAM = ("uav_id", "stream_id", "sequence")  # as each counter ran: a track is drawn in this order
-UNSAFE = re.compile(r"[^A-Za-z0-9]+")  # in names of files: other programs stumble over more
+BY_STREAM = ("uav_id", "stream_id", "sequence")  # in counter order, in which a track is drawn
+UNSAFE = re.compile(r"[^A-Za-z0-9]+")  # in file names: other programs may fail on these
 
 
 class ExportFormat(NamedTuple):
-    """`is_track`: it has the records with a place and a time that can have been, and no others."""
+    """A file format. `is_track`: it only includes records with a position and a possible time."""
 
     media_type: str
     order: tuple[str, ...]
@@ -100,7 +100,7 @@ class UavTelemetryFile(APIView):
 
 
 def file_stem(name: str) -> str:
-    """A file's name begins so."""
+    """Return the beginning of a file's name."""
     return UNSAFE.sub("-", name).strip("-") or "flight"
 
 

@@ -1,4 +1,4 @@
-"""What live pages show, for where there are no websockets."""
+"""State of live pages, for clients without websockets."""
 
 from typing import Any
 from uuid import UUID
@@ -19,7 +19,9 @@ from workspace.locale_negotiation import language_of_request
 
 class Live(APIView):
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        """A view and its request know each other, and wait for the collector; the answer, often 1 MB, need not wait with them."""
+        """Drop the view's reference to the response, which is often 1 MB: view and request form a cycle that waits for the garbage
+        collector.
+        """
         response = super().dispatch(request, *args, **kwargs)
         del self.response
         return response
@@ -37,7 +39,7 @@ class Live(APIView):
     def get(self, request: SignedInRequest) -> HttpResponse:
         mission = _asked_mission(request)
         language = language_of_request(request.user, request)
-        known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
+        known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that compresses responses makes the ETag weak
         snapshot = page_snapshot(request.user.organisation_id, mission, language, known=known)
         if mission is not None and ("missions", str(mission)) not in snapshot.shown:
             raise Http404

@@ -1,4 +1,4 @@
-"""The log: records by place, time, mission and UAV, and the filters of their addresses."""
+"""The log: records by place, time, mission and UAV, and the query parameters for them."""
 
 import math
 from collections.abc import Callable
@@ -56,41 +56,41 @@ FILTERS = [
 
 
 def one_each(rows: QuerySet[Any], every_s: float, *, time: str = "measured_at") -> QuerySet[Any]:
-    """The first of each UAV in each stretch of so many seconds."""
+    """Return the first row of each UAV in each interval of so many seconds."""
     stretch = Floor(Extract(time, "epoch") / Value(every_s), output_field=FloatField())
     place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F(time), F("pk")])
     return rows.model._default_manager.filter(pk__in=rows.order_by().annotate(place=place).filter(place=1).values("pk"))
 
 
 def spacing_for(rows: QuerySet[Any], most: int, *, time: str = "measured_at") -> float | None:
-    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
+    """Return the interval [s] that leaves at most `most` rows, but up to two per UAV; None if there are no more than that."""
     unordered = rows.order_by()
     if len(unordered.values_list("pk")[: most + 1]) <= most:
         return None
     facts = unordered.aggregate(first=Min(time), last=Max(time))
     uavs = unordered.values("uav_id").distinct().count()
     span: timedelta = facts["last"] - facts["first"]
-    stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
+    stretches = max(most // uavs - 1, 1)  # whole intervals; the span may touch one more
     return min(max(span.total_seconds() / stretches, MIN_DURATION_S), MAX_DURATION_S)
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """Rows as they were thinned out: how far apart those of a UAV were chosen, None where all of them are there."""
+    """Thinned rows with the interval between those of a UAV; None if all rows are included."""
 
     rows: QuerySet[Any]
     every_s: float | None
     most: int | None
 
     def next(self, address: str | None) -> str | None:
-        """Later pages keep the spacing that the first one chose, though more rows may have come."""
+        """Return the address of the next page, with the interval of the first page, as new rows may have been stored since."""
         if address is None or self.most is None or self.every_s is None:
             return address
         return address.replace(f"most={self.most}", f"every_s={self.every_s!r}")
 
 
 def asked_log(request: Request) -> LogFilter:
-    """Without a UAV, a mission or a beginning: of the last day. Raises ApiProblem 400."""
+    """Return the requested filter; the last day without a UAV, a mission or a start. Raises ApiProblem 400."""
     uav_id, mission_id = UAV.asked(request), mission_of(request)
     wanted = LogFilter(uav_id, mission_id, time_of(request, "from"), time_of(request, "to"), box_of(request))
     if uav_id is None and mission_id is None and wanted.measured_from is None:
@@ -102,7 +102,7 @@ def asked_log(request: Request) -> LogFilter:
 def sampled(
     request: Request, rows: QuerySet[Any], *, of: Callable[[QuerySet[Any]], QuerySet[Any]] = lambda rows: rows, time: str = "measured_at"
 ) -> Sampled:
-    """All rows where no thinning is asked for, else those chosen from `of` them. Raises ApiProblem 400."""
+    """Return all rows without thinning, else those chosen from `of` them. Raises ApiProblem 400."""
     every_s, most = request.query_params.get("every_s", ""), MAX_RECORDS.asked(request)
     if every_s and most:
         raise invalid("most", "Either every_s or most.")

@@ -1,4 +1,4 @@
-"""The record of a mission, its results as files, and all that was recorded as one file."""
+"""Mission report, its results as files, and all data of a mission as one file."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

@@ -1,4 +1,4 @@
-"""Checks before the UAVs of a mission are started."""
+"""Preflight checks of a mission's UAVs."""
 
 from uuid import UUID
 

@@ -1,4 +1,4 @@
-"""What came of targets, over all missions."""
+"""Results of targets over all missions."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -37,7 +37,7 @@ FILTERS = [
 
 @dataclass(frozen=True, slots=True)
 class ResultFilter:
-    """None, or empty: whatever it is."""
+    """None or empty: any value."""
 
     asset_id: int | None = None
     external_id: str = ""  # of the asset
@@ -50,9 +50,9 @@ class ResultFilter:
 
 
 def results_that_match(organisation_id: int, wanted: ResultFilter) -> QuerySet[InspectionTarget]:
-    """The targets that a UAV was at, or that were left out, with what was planned and what UAVs reported of each.
+    """Return the targets that were visited or left out, with their planned waypoints and the UAVs' reports.
 
-    Three queries, however many there are.
+    Needs three queries for any number of targets.
     """
     targets = InspectionTarget.objects.filter(
         mission__organisation=organisation_id, mission__deleted_at=None, state_at__isnull=False
@@ -93,7 +93,7 @@ class Results(APIView):
 
 
 def _asked(request: Request) -> ResultFilter:
-    """Raises ApiProblem 400."""
+    """Return the requested filter. Raises ApiProblem 400."""
     return ResultFilter(
         asset_id=ASSET.asked(request),
         external_id=asked_external_id(request),

@@ -1,4 +1,4 @@
-"""What UAVs meet if they return now, or land where they are."""
+"""Checks of returns and landings of UAVs from their present positions."""
 
 from django.http import Http404
 from django.utils import timezone
@@ -51,7 +51,7 @@ class UavLanding(APIView):
 
 
 def _asked(request: SignedInRequest) -> list[Uav]:
-    """In the order asked for. Raises ApiProblem 400 and Http404."""
+    """Return the UAVs in the requested order. Raises ApiProblem 400 and Http404."""
     keys = UAVS.all_asked(request)
     found = {uav.pk: uav for uav in uavs_of_organisation(request.user.organisation).filter(pk__in=keys)}
     if len(found) < len(keys):

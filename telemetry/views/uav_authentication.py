@@ -1,4 +1,4 @@
-"""Who is asking on the UAV link: a UAV by its own token, never a user."""
+"""Authentication on the UAV link: by a UAV's token, never by a user."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -20,13 +20,13 @@ from workspace.api_tokens import hash_token
 from workspace.prepared_statements import prepared_rows
 from workspace.sessions.sign_in_attempts import TooManyAttempts, address_of, count_attempt, network_of
 
-WRONG_TOKENS = 30  # of one network in a quarter of an hour; a right token is never held back
+WRONG_TOKENS = 30  # per network in 15 minutes; a valid token is never throttled
 GUESSING = "guessing tokens of UAVs"
 
 
 @dataclass(frozen=True)
 class UavAccess:
-    """The UAV that asks, and where it was last: longitude, latitude."""
+    """The authenticated UAV, and its last position: longitude, latitude."""
 
     uav_id: int
     organisation_id: int
@@ -34,7 +34,7 @@ class UavAccess:
 
 
 class UavTokenAuthentication(BaseAuthentication):
-    """`Authorization: Bearer spu_…`. The answer never tells whether a token is unknown or revoked, or its UAV retired."""
+    """`Authorization: Bearer spu_…`. The response does not reveal whether a token is unknown or revoked, or its UAV retired."""
 
     def authenticate(self, request: Request) -> tuple[AnonymousUser, UavAccess] | None:
         scheme, *rest = get_authorization_header(request).strip().split(b" ", 1)
@@ -58,21 +58,21 @@ class UavTokenAuthentication(BaseAuthentication):
 
 
 class UavsAlone(BasePermission):
-    """A UAV, and nobody else."""
+    """Permits UAVs only."""
 
     def has_permission(self, request: Request, view: Any) -> bool:
         return isinstance(request.auth, UavAccess)
 
 
 def uav_access(request: Request) -> UavAccess:
-    """Return the UAV that asks, in a view that is for UAVs alone. Raises NotAuthenticated if none does."""
+    """Return the authenticated UAV, in a view for UAVs only. Raises NotAuthenticated without one."""
     if not isinstance(request.auth, UavAccess):
         raise NotAuthenticated
     return request.auth
 
 
 class UavRate(ScopedRate):
-    """Counts requests per UAV."""
+    """Throttles requests per UAV."""
 
     def get_cache_key(self, request: Request, view: Any) -> str:
         return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{uav_access(request).uav_id}"})

@@ -1,4 +1,4 @@
-"""The HTTP link: what a companion computer asks for and tells. A UAV gets its own data only, and tells of itself only."""
+"""The HTTP link of companion computers. A UAV reads its own data only, and reports on itself only."""
 
 import hashlib
 from collections.abc import Sequence
@@ -86,7 +86,7 @@ def _target(target: dict[str, Any]) -> dict[str, Any]:
 
 
 class UavView(APIView):
-    """An address for UAVs alone. Whatever a UAV asks here, it has been heard."""
+    """An endpoint for UAVs only. Each request counts as a contact of the UAV."""
 
     authentication_classes = [UavTokenAuthentication]
     parser_classes = [UavJSONParser]
@@ -189,7 +189,7 @@ class UavRoute(UavView):
     def get(self, request: Request) -> Response:
         uav_id = uav_access(request).uav_id
         given = given_to(uav_id)
-        known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
+        known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that compresses responses makes the ETag weak
         if known == _etag(uav_id, given):
             return Response(status=304, headers={"ETag": _etag(uav_id, given), "Cache-Control": "private, no-cache"})
         given = handed_to(uav_id, given)
@@ -229,7 +229,7 @@ class UavAcknowledgements(UavView):
 
 
 def _etag(uav_id: int, given: Given) -> str:
-    """A route is what its upload was approved with, which never changes; so are the commands."""
+    """Return the ETag of upload and commands, which never change."""
     digest = hashlib.sha256(f"{uav_id} {given.upload} {' '.join(map(str, given.waiting))}".encode()).hexdigest()
     return f'"{digest[:32]}"'
 

@@ -1,4 +1,4 @@
-"""Vehicles that spoke to a gateway and belong to no UAV: for administrators."""
+"""Unknown vehicles that gateways received, for administrators."""
 
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _

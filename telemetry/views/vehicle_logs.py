@@ -1,4 +1,4 @@
-"""How UAVs are connected, what their autopilots said in words, and the logs of their flights as files."""
+"""Links of UAVs, status texts of their autopilots, and flight logs as files."""
 
 from typing import Any
 

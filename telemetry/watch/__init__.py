@@ -1,1 +1,1 @@
-"""The watch: a process that estimates every UAV on a mission once a second."""
+"""The estimator: a process that estimates every UAV on a mission once a second."""

@@ -1,4 +1,4 @@
-"""What a watch is started with."""
+"""Options of an estimator."""
 
 from dataclasses import dataclass
 
@@ -6,19 +6,19 @@ from django.conf import settings
 
 from workspace.leases import HolderOptions, holder_name
 
-LEASE_S = 3.0  # a killed watch's UAVs are taken over within this and one round
+LEASE_S = 3.0  # a killed estimator's UAVs are taken over within this and one round
 
 
 @dataclass(frozen=True, kw_only=True)
 class EstimatorOptions(HolderOptions):
-    """It holds `most_uavs` at most."""
+    """Options; it holds at most `most_uavs` UAVs."""
 
     most_uavs: int
     lease_s: float = LEASE_S
 
 
 def options_of_settings(*, name: str | None = None, most_uavs: int | None = None) -> EstimatorOptions:
-    """Without a name, of this process alone: two watches on a machine are two."""
+    """Return the options; without a name one is made for this process, so that two estimators on a host differ."""
     return EstimatorOptions(
         name=holder_name(name or settings.ESTIMATOR_NAME), most_uavs=settings.ESTIMATOR_MAX_UAVS if most_uavs is None else most_uavs
     )

@@ -1,4 +1,4 @@
-"""The watch as a whole: once a second it reads what came, estimates every UAV that it holds, and writes down what it made of it."""
+"""The estimator process: once a second it reads new reports, estimates every UAV that it holds, and stores the estimates."""
 
 import logging
 import math
@@ -48,33 +48,33 @@ from telemetry.watch.options import EstimatorOptions
 from workspace.api.errors import DATABASE_UNAVAILABLE
 from workspace.live.changes import publish_live
 
-OPEN_FOR_S = 30.0  # a store that took its ids earlier than others may end later than them, by so much
-CHECK_INTERVAL_S = 10.0  # of a UAV, or where its reports are farther apart at each
+OPEN_FOR_S = 30.0  # a transaction may commit this much later than others with higher ids
+CHECK_INTERVAL_S = 10.0  # per UAV; at each report if these are farther apart
 logger = logging.getLogger(__name__)
 INTERVAL_S = 1.0
-UNAVAILABLE_INTERVAL_S = 60.0  # one line of log
-LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that neither answers nor refuses may hold it up for minutes
-READ_BACK = 60  # reports of a UAV, to know again what was known of it
+UNAVAILABLE_INTERVAL_S = 60.0  # between log lines
+LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that does not respond may block it for minutes
+READ_BACK = 60  # reports of a UAV, to restore its state
 FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
 WITHOUT_RECORD_S = 3.0
-LEARN_AT_ONCE = 3  # UAVs a round
+LEARN_AT_ONCE = 3  # UAVs per round
 RECEIVED_BACK, RECEIVED_INTERVAL = 20_000, 20  # records of a UAV
 
 
 @dataclass
 class NewReports:
-    """Ids are given before a store ends, so what lies behind the newest may still come: it is asked for again for a while."""
+    """Reads new reports. Ids are assigned before commit, so lower ids may still appear and are read again for a while."""
 
-    _behind: int = -1  # all up to this id have been seen, or were there before
+    _behind: int = -1  # all ids up to this one are read, or older than the start
     _watched_uav: deque[tuple[float, int]] = field(default_factory=deque)
 
     def begin(self) -> None:
-        """From now on, at the first call."""
+        """Start from the present on, at the first call."""
         if self._behind < 0:
             self._behind = last_record_id()
 
     def read(self, uav_ids: Sequence[int], now_s: float) -> list[StoredReport]:
-        """Of these UAVs, since the last call. now_s: any clock that only goes on."""
+        """Return reports of these UAVs stored since the last call. now_s: any monotonic clock."""
         found = reports_stored_after(self._behind, but=[key for _, key in self._watched_uav], uav_ids=uav_ids)
         self._watched_uav.extend((now_s, report.id) for report in found)
         while self._watched_uav and self._watched_uav[0][0] < now_s - OPEN_FOR_S:
@@ -83,14 +83,14 @@ class NewReports:
 
 
 class Judged(Protocol):
-    """A UAV that is watched."""
+    """A monitored UAV."""
 
     tracker: Tracker
     judged_s: float
 
 
 def judge(watched: Judged, report: Report) -> None:
-    """Before the estimator takes the report: what did it think of this moment? One in a while tells enough, and costs nothing."""
+    """Compare the estimate for a report's moment with the report, before the estimator takes it. Sampled at intervals, at low cost."""
     reported, newest = report.measurement, watched.tracker.newest
     if newest is None or report.measured_s <= newest.measured_s or report.measured_s < watched.judged_s + CHECK_INTERVAL_S:
         return
@@ -106,7 +106,7 @@ def judge(watched: Judged, report: Report) -> None:
 
 
 def count_states(made: Iterable[Made], *, held: int) -> None:
-    """UAVs by what is known of them."""
+    """Set the metric of UAVs by state."""
     states = Counter({"measured": 0, "estimated": 0, "lost": 0})
     for one in made:
         states["lost" if one.estimate.is_lost else "measured" if one.estimate.is_measured else "estimated"] += 1
@@ -117,17 +117,17 @@ def count_states(made: Iterable[Made], *, held: int) -> None:
 
 @dataclass
 class Watched:
-    """A UAV that the watch holds. Another flight than before is another tracker."""
+    """A UAV that the estimator holds. Another flight gets another tracker."""
 
     flight: WatchedFlight
     tracker: Tracker
     newest: Report | None = None  # record
     has_learnt: bool = False
     judged_s: float = 0.0
-    battery: dict[str, Any] | None = None  # what it allowed at the last look
+    battery: dict[str, Any] | None = None  # forecast at the last poll
 
     def keep_time(self) -> None:
-        """From its newest report on, by its own clock as it runs now."""
+        """Continue from its newest report with the present rate of its clock."""
         newest = self.tracker.newest
         self.tracker.time.run_at(self.flight.clock_rate, 0.0 if newest is None else newest.measured_s)
 
@@ -138,7 +138,7 @@ class Watched:
 
 @dataclass
 class Watch:
-    """`run` until `stop`."""
+    """The estimator: `run` until `stop`."""
 
     options: EstimatorOptions
     held: dict[int, Watched] = field(default_factory=dict)  # by UAV
@@ -146,13 +146,13 @@ class Watch:
     _new: NewReports = field(default_factory=NewReports)
     _targets: TargetChecks = field(default_factory=TargetChecks)
     _held_at_s: dict[int, float] = field(default_factory=dict)
-    _replaced: set[tuple[int, datetime]] = field(default_factory=set)  # UAVs, and seconds that were measured
+    _replaced: set[tuple[int, datetime]] = field(default_factory=set)  # UAVs, and seconds with a measurement
     _quiet_until_s: float = -UNAVAILABLE_INTERVAL_S
     _quiet_about_faults_until_s: float = -UNAVAILABLE_INTERVAL_S
 
     def run(self) -> None:
         logger.info("watch %s has begun", self.options.holder)
-        wait_s = 0.0  # the first at once: UAVs may have been without a watch
+        wait_s = 0.0  # at once: UAVs may have been without an estimator
         while not self._stop.wait(wait_s):
             loop_heartbeats.send_heartbeat(LOOP, within_s=HANGS_AFTER_S)
             try:
@@ -168,7 +168,7 @@ class Watch:
         self._stop.set()
 
     def round(self, now_s: float) -> None:
-        """Everything of one second. Raises what the database raises; the next round begins anew."""
+        """Run one second's work. Raises database errors; the next round starts again."""
         with ESTIMATOR_ROUND_SECONDS.time():
             self._round(now_s)
 
@@ -185,7 +185,7 @@ class Watch:
             self.held[uav_id].battery = battery
         self._check_targets(now_s)
 
-    # Who is watched
+    # Held UAVs
 
     def _hold(self, flights: list[WatchedFlight]) -> None:
         flying = {flight.uav_id: flight for flight in flights}
@@ -207,7 +207,7 @@ class Watch:
         forget_what_is_over(flying=flying.keys())
 
     def _begin(self, flights: list[WatchedFlight]) -> None:
-        """From what is stored, as if it had been watched before."""
+        """Restore the state from stored reports."""
         if not flights:
             return
         begun = {
@@ -243,14 +243,14 @@ class Watch:
             self._report_fault(watched)
 
     def _learn(self, now_s: float) -> None:
-        """Of UAVs that have fallen silent: where they were heard on earlier flights; a few in a round."""
+        """Load for silent UAVs where they were received on earlier flights; a few per round."""
         silent = [watched for watched in self.held.values() if not watched.has_learnt and watched.tracker.is_silent(now_s)]
         for watched in silent[:LEARN_AT_ONCE]:
             watched.tracker.learn(places_received(watched.flight.uav_id, most=RECEIVED_BACK, every=RECEIVED_INTERVAL))
             watched.has_learnt = True
 
     def _estimated(self, watched: Watched, now_s: float) -> Made | None:
-        """A fault in one UAV's filter does not blind the watch for the others."""
+        """Return the estimate; a fault in one UAV's filter does not affect the others."""
         try:
             return _made(watched, now_s)
         except FAULTS:
@@ -264,13 +264,13 @@ class Watch:
             logger.exception("%s cannot be estimated", watched.flight.name, extra=about)
 
     def _check_targets(self, now_s: float) -> None:
-        """Also of UAVs whose mission has just ended: its last targets count as complete by that."""
+        """Check targets, including those of missions that have just ended, which completes their last targets."""
         self._held_at_s |= dict.fromkeys(self.held, now_s)
         self._held_at_s = {uav_id: at_s for uav_id, at_s in self._held_at_s.items() if now_s - at_s <= LOOKBACK_S}
         if self._held_at_s:
             self._targets.check(sorted(self._held_at_s))
 
-    # What is told
+    # Output
 
     def _notify(self, made: list[Made]) -> None:
         if not made:
@@ -322,7 +322,7 @@ def _watched_uav(watched: Watched, made: Made | None) -> WatchedUav:
 
 
 def _reported_by_link(watched: Watched) -> Report | None:
-    """How it does, where no record has told for a while: an autopilot without a position makes none."""
+    """Return the state on the link if no record has arrived for a while: an autopilot without a position sends no records."""
     flight, newest = watched.flight, watched.tracker.newest
     if flight.last_message_at is None or newest is None or flight.last_message_at.timestamp() < newest.measured_s + WITHOUT_RECORD_S:
         return None
@@ -342,5 +342,5 @@ def _end_of_second(at: datetime) -> datetime:
 
 
 def _until_next(now_s: float) -> float:
-    """Seconds to the next whole one of the server's clock."""
+    """Return the seconds to the next whole second of the server's clock."""
     return INTERVAL_S - now_s % INTERVAL_S

@@ -1,1 +1,1 @@
-"""Alerts: opened with their cause, closed with it, acknowledged and noted by users."""
+"""Alerts: opened and closed with their cause, acknowledged and noted by users."""

@@ -1,4 +1,4 @@
-"""What the watch sees of UAVs becomes alerts: opened, raised and closed in bulk."""
+"""Converts detector findings to alerts, which are opened, raised and closed in bulk."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -32,12 +32,12 @@ from telemetry.services.alerts.rows import close_alerts_of_ended_missions, settl
 from telemetry.services.flown import note_down_off_plan
 from workspace.live.changes import publish_live
 
-MIN_REACH_M, MAX_SPEED_MPS = 200.0, 40.0  # within which zones are looked at: as far as it comes in the time ahead
+MIN_REACH_M, MAX_SPEED_MPS = 200.0, 40.0  # search distance for zones: at least this, and as far as a UAV flies within the horizon
 
 
 @dataclass
 class DetectorStates:
-    """What one process remembers from look to look, by UAV. It may be lost: the alerts themselves are rows."""
+    """Detector states of this process by UAV. They may be lost: the alerts themselves are rows."""
 
     of_uav: dict[int, DetectorState] = field(default_factory=lambda: defaultdict(DetectorState))
 
@@ -52,9 +52,9 @@ _OF_THIS_PROCESS = DetectorStates()
 def poll_alerts(
     *, watched: Sequence[WatchedUav], now: datetime, detector_states: DetectorStates | None = None
 ) -> dict[int, dict[str, Any] | None]:
-    """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again.
+    """Open, raise and close alerts of this process's UAVs. Called once a second; idempotent.
 
-    Returns what the battery of each allows, as live pages show it (battery_forecast.py).
+    Returns the battery forecast of each UAV for live pages (battery_forecast.py).
     """
     detector_states = _OF_THIS_PROCESS if detector_states is None else detector_states
     detector_states.keep_only(uav.uav_id for uav in watched)
@@ -85,7 +85,7 @@ def poll_alerts(
 
 
 def _end_flights(situations: Iterable[DetectorInput]) -> None:
-    """Of UAVs that are down for good away from their plans: each is told to its mission once."""
+    """End the flights of UAVs that are down off plan; each is reported to its mission once."""
     for inputs in situations:
         if not inputs.detector_state.has_ended and down.has_ended(inputs):
             uav = inputs.uav
@@ -94,7 +94,7 @@ def _end_flights(situations: Iterable[DetectorInput]) -> None:
 
 
 def _with_accounts(situations: list[DetectorInput]) -> list[DetectorInput]:
-    """A UAV that still lies where somebody knows of it is not reported again."""
+    """Mark UAVs that are down where a user has closed the alert, so that they are not reported again."""
     pairs = [(inputs.uav.uav_id, inputs.uav.mission_id) for inputs in situations if down.is_down_away(inputs)]
     known = closed_by_users(pairs, down.CODE) if pairs else set()
     return [
@@ -104,7 +104,7 @@ def _with_accounts(situations: list[DetectorInput]) -> list[DetectorInput]:
 
 
 def _is_new(change: Opened, rows: Iterable[OpenRow]) -> bool:
-    """Or worse than it was, or another of the same cause. rows: open alerts of its UAV."""
+    """Return whether the alert is new, worse, or has another message. rows: open alerts of its UAV."""
     finding = change.finding
     row = next((row for row in rows if (row.code, row.subject) == (finding.code, finding.subject)), None)
     return row is None or row.level != finding.level or (row.message != finding.message and not change.is_held)

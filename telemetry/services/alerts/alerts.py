@@ -1,4 +1,4 @@
-"""Alerts: opened with their cause, closed with it, acknowledged and noted by people."""
+"""Alerts: opened and closed with their cause, acknowledged and noted by users."""
 
 from collections.abc import Collection
 from datetime import datetime
@@ -23,11 +23,11 @@ COPIES = (
     "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
 )
 OPENED, ROSE, ACKNOWLEDGED, CLOSED = "opened", "rose", "acknowledged", "closed"
-STILL_OPEN, UNKNOWN = "still-open", "unknown"  # beside ACKNOWLEDGED: what became of an alert that was to be acknowledged as ended
+STILL_OPEN, UNKNOWN = "still-open", "unknown"  # beside ACKNOWLEDGED: outcomes of acknowledging an ended alert
 
 
 class LevelRose(Exception):
-    """An alert that is to be acknowledged has risen above the level that was seen. `alert` is what it is by now."""
+    """The alert has risen above the level that the user saw. `alert` is its present state."""
 
     def __init__(self, alert: Alert) -> None:
         super().__init__(f"{alert.code} rose to {alert.level}")
@@ -35,7 +35,7 @@ class LevelRose(Exception):
 
 
 def step(what: str, at: Any, **facts: Any) -> dict[str, Any]:
-    """Of an alert's course."""
+    """Return an entry of an alert's history."""
     return {"at": at.isoformat(), "what": what, **facts}
 
 
@@ -50,9 +50,9 @@ def open_alert(
     details: dict[str, Any] | None = None,
     subject: str = "",
 ) -> Alert:
-    """Of one cause there is one open alert: opened again, it says the newer words. `message` is a template for the values.
+    """Open the alert of a cause, or update the open one. `message` is a template for the values.
 
-    Its level may change; raised, it is not acknowledged any more.
+    A change may lower or raise its level; raising it resets the acknowledgement.
     """
     now = timezone.now()
     alert = Alert(
@@ -62,7 +62,7 @@ def open_alert(
     with transaction.atomic():
         inserted = Alert.objects.bulk_create([alert], ignore_conflicts=True)
         open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject=subject, closed_at=None).first()
-        if open_one is None:  # closed in this moment
+        if open_one is None:  # closed at this moment
             return inserted[0]
         stated = (alert.message, alert.values, alert.details, alert.level)
         if (open_one.message, open_one.values, open_one.details, open_one.level) != stated:
@@ -77,7 +77,7 @@ def open_alert(
 
 
 def close_alert(*, uav: Uav, code: str) -> bool:
-    """Whether one was open."""
+    """Close the alert; return whether one was open."""
     now = timezone.now()
     with transaction.atomic():
         alert = Alert.objects.select_for_update().filter(uav=uav, code=code, closed_at=None).first()
@@ -91,10 +91,10 @@ def close_alert(*, uav: Uav, code: str) -> bool:
 
 
 def acknowledge_alert(*, alert: Alert, actor: User, note: str = "", seen_level: str | None = None) -> Alert:
-    """It goes on, and is silent. Acknowledged again it stays with who was first, and the note is added.
+    """Acknowledge an alert: it stays open and silent. A second acknowledgement keeps the first user and adds the note.
 
-    Alerts of the same cause that have ended before are acknowledged with it. Raises LevelRose where nobody has acknowledged the level
-    that it has, and that is above `seen_level`; None: whatever level it has.
+    Earlier ended alerts of the same cause are acknowledged with it. Raises LevelRose if its unacknowledged level is above `seen_level`;
+    None: any level.
     """
     with transaction.atomic():
         held = _acknowledge_cause(alert, actor, note, seen_level)
@@ -105,10 +105,10 @@ def acknowledge_alert(*, alert: Alert, actor: User, note: str = "", seen_level: 
 
 
 def acknowledge_ended(*, organisation: Organisation, alert_ids: Collection[int], actor: User) -> dict[int, str]:
-    """Acknowledge critical alerts that have ended, one by one; returns by id ACKNOWLEDGED, STILL_OPEN or UNKNOWN.
+    """Acknowledge critical alerts that have ended, one by one; return by id ACKNOWLEDGED, STILL_OPEN or UNKNOWN.
 
-    One that is open is left as it is. One that was acknowledged before counts as acknowledged. Earlier ones of the same cause, which have
-    ended as well, are acknowledged with it.
+    Open alerts are left unchanged. Previously acknowledged ones count as acknowledged. Earlier ended ones of the same cause are
+    acknowledged with them.
     """
     outcomes, now = dict.fromkeys(alert_ids, UNKNOWN), timezone.now()
     with transaction.atomic():
@@ -129,7 +129,7 @@ def acknowledge_ended(*, organisation: Organisation, alert_ids: Collection[int],
 
 
 def _acknowledge_cause(alert: Alert, actor: User, note: str = "", seen_level: str | None = None) -> Alert:
-    """The alert, and those of its cause that have ended before; all locked in one order. Raises LevelRose."""
+    """Acknowledge the alert and earlier ended ones of its cause, all locked in one order. Raises LevelRose."""
     earlier = Q(organisation=alert.organisation_id, uav=alert.uav_id, code=alert.code, subject=alert.subject, opened_at__lt=alert.opened_at)
     same = earlier & waiting_to_be_seen()
     rows = {row.pk: row for row in Alert.objects.select_for_update().filter(Q(pk=alert.pk) | same).order_by("pk")}
@@ -166,12 +166,12 @@ def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
 
 
 def alert_was_closed(alert: Alert, actor: User, reason: str) -> None:
-    """Written to the audit log, for an alert that a person closes."""
+    """Write the closing of an alert by a user to the audit log."""
     _record(alert, actor, "close", {"code": alert.code, "level": alert.level, "uav": alert.uav_id, "reason": reason})
 
 
 def raise_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:
-    """Without another one it is over."""
+    """Open the alert of a second sender, or close it without `other`."""
     uav = Uav.objects.filter(pk=uav_id).first()
     if uav is None:
         return

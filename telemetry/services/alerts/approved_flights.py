@@ -1,4 +1,4 @@
-"""What detectors know of an approved flight, worked out once: an approval never changes."""
+"""Data of approved flights for detectors, computed once: an approval never changes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -20,12 +20,12 @@ from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.services.of_flight import OfFlight
 
-HEIGHT_OF_WAY_M = 60.0  # above ground, at which the wind of the way home is taken
+HEIGHT_OF_WAY_M = 60.0  # height above ground of the wind used for the flight home
 
 
 @dataclass(frozen=True, slots=True)
 class ApprovedContent:
-    """`items` is None for a UAV with a companion computer, which is given no fence either."""
+    """`items` is None for a UAV with a companion computer, which receives no fence either."""
 
     content_sha256: str
     items: int | None
@@ -34,7 +34,7 @@ class ApprovedContent:
 
 @OfFlight
 def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | None:
-    """None after its last flight, and of a document that is damaged."""
+    """Return the model of a flight; None after the last flight and for a damaged document."""
     found = _approved(approval_id, uav_id, flight)
     if found is None:
         return None

@@ -1,4 +1,4 @@
-"""Commands that failed and left a UAV without what was to follow: its other route, or its return. Alerts until another command is given."""
+"""Alerts of failed commands that left a UAV without its next route or its return. They last until another command is given."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -25,7 +25,7 @@ NOT_DONE = "%(uav)s was told to return, and does not. %(words)s"
 
 
 def settle_command_alerts() -> None:
-    """Open those that are due, and close those that are over; of returns also once the UAV is on the ground."""
+    """Open alerts that are due and close those that are over; alerts of returns also close once the UAV is on the ground."""
     hand_overs = stuck_hand_overs()
     for command in hand_overs:
         _open(command, HAND_OVER_FAILED, IS_STUCK, {"mission": str(command.mission), "step": command.get_kind_display()}, {})

@@ -1,4 +1,4 @@
-"""UAVs that are down where their flights do not end: reported at once, and until somebody closes it."""
+"""Alerts of UAVs that are down off plan: opened at once, and closed only by a user."""
 
 from uuid import UUID
 
@@ -16,11 +16,11 @@ from workspace.models import User
 
 
 class ClosedByItself(Exception):
-    """An alert that is over when its cause is gone is closed by nobody."""
+    """An alert that closes with its cause cannot be closed by a user."""
 
 
 def raise_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
-    """A flight whose companion computer has reported that it failed, of a UAV that is not where it begins or ends."""
+    """Open the alert if a companion computer reports a failed flight and the UAV is away from its planned places."""
     model, uav = flight_model(approval_id, uav_id, flight), Uav.objects.get(pk=uav_id)
     position = LonLat(*uav.location.coords[:2])
     if model is None or (away_m := down.away_from_plan_m(model.line, position, model.rally_points)) < down.AWAY_M:
@@ -33,7 +33,7 @@ def raise_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
 
 
 def close_down_alert(*, alert: Alert, actor: User, reason: str) -> AlertNote | None:
-    """A person says what became of the UAV. None for one that is closed already. Raises ClosedByItself for any other alert."""
+    """Close the alert with a user's reason. Returns None if it is already closed. Raises ClosedByItself for any other alert."""
     if alert.code != down.CODE:
         raise ClosedByItself
     now = timezone.now()

@@ -1,4 +1,4 @@
-"""A vehicle that holds something else than what was approved must not fly: reported at once, until it is over."""
+"""Alerts of vehicles that hold an unapproved mission and must not fly: opened at once, and closed when resolved."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on
 
 
 def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, why: Sequence[Reason]) -> None:
-    """After a load was brought, or while it is."""
+    """Open or close the alert, after an upload or during it."""
     if not is_mixed:
         close_alert(uav=command.uav, code=MIXED)
         return
@@ -25,7 +25,7 @@ def raise_mission_mismatch(command: UavCommand, *, is_mixed: bool, why: Sequence
 
 
 def raise_other_list(command: UavCommand, why: Sequence[Reason] = ()) -> None:
-    """After the list on board was read before a start or resume. Without reasons it is the approved one, and the alert is over."""
+    """Open the alert after a readback before a start or resume; without reasons the list is the approved one, and the alert is closed."""
     if not why:
         close_alert(uav=command.uav, code=OTHER_LIST)
         return

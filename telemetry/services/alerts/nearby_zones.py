@@ -1,4 +1,4 @@
-"""The no-fly zones about UAVs in the air: those of now, also the ones that were saved since a mission was approved."""
+"""No-fly zones around UAVs in the air: the present ones, including those saved since the mission was approved."""
 
 import math
 import threading
@@ -13,15 +13,15 @@ from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from telemetry.alerting.surroundings import NearZone
 
-SPANS_FOR_S = 600.0  # schedules are read so far ahead, with the time of a look ahead on top
+SPANS_FOR_S = 600.0  # schedules are evaluated this far ahead, plus the prediction horizon
 LOOK_AHEAD_S = 600.0
-DEGREE_M = 110_574.0  # of latitude, on the equator: the least
-_own = threading.local()  # prepared polygons are for one thread
+DEGREE_M = 110_574.0  # of latitude at the equator, the minimum
+_own = threading.local()  # prepared polygons must stay in one thread
 
 
 @dataclass(frozen=True)
 class ZonesAbout:
-    """A table of zones, ready for a while."""
+    """A table of zones, prepared for a limited time."""
 
     table: ZoneTable
     until_s: float
@@ -41,7 +41,7 @@ class ZonesAbout:
         return cls(table, until_s, polygons, tuple(spans))
 
     def within(self, position: LonLat, reach_m: float) -> tuple[NearZone, ...]:
-        """Whose boxes come so near."""
+        """Return the zones whose boxes are within this distance."""
         box = self.table.box
         high = reach_m / DEGREE_M
         wide = high / max(math.cos(math.radians(position.lat)), 0.01)
@@ -62,7 +62,7 @@ class ZonesAbout:
 
 
 def zones_about(now_s: float) -> ZonesAbout:
-    """Costs one small query until zones change."""
+    """Return the prepared zones. Costs one small query until zones change."""
     table, known = zone_table(), getattr(_own, "zones", None)
     if known is None or known.table is not table or now_s >= known.until_s:
         known = _own.zones = ZonesAbout.of(table, now_s)

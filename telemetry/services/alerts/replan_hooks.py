@@ -1,5 +1,6 @@
-"""Alerts after which the rest of a mission is planned anew and offered: a UAV is lost, down off its plan or comes back by itself, or its
-battery is short. When that has ended, the offer is withdrawn.
+"""Alerts that trigger an offer to replan the rest of a mission; when the cause ends, the offer is withdrawn.
+
+Causes: a UAV is lost, down off plan or returns by itself, or its battery is short.
 """
 
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ COMES_DOWN = frozenset({ModeKind.RETURN, ModeKind.LAND})
 
 
 def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
-    """Mission, UAV and what was found of it; of one cause once. Safe to call again."""
+    """Offer a new plan for findings, given as mission, UAV and finding; once for each cause. Idempotent."""
     for mission_id, uav_id, finding in findings:
         code = code_of(finding)
         if code is not None:
@@ -26,9 +27,9 @@ def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
 
 
 def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
-    """Mission, UAV that flies its mission, and an alert of it that has just closed. Safe to call again.
+    """Withdraw offers for alerts just closed, given as mission, UAV that flies its mission, and alert. Idempotent.
 
-    An offer stays as long as another open alert of the UAV is a reason for it.
+    An offer stays while another open alert of the UAV justifies it.
     """
     for mission_id, uav_id, change in closed:
         code = CODES_OF.get(change.code)
@@ -38,7 +39,7 @@ def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
         reasons = [(row.uav_id, finding) for row in rows if row.uav_id is not None and code_of(finding := _finding_of(row)) is not None]
         if any(uav == uav_id and code_of(finding) == code for uav, finding in reasons):
             continue
-        if withdraw(mission_id=mission_id, code=code, uav_id=uav_id):  # it had taken the place of an offer for another UAV
+        if withdraw(mission_id=mission_id, code=code, uav_id=uav_id):  # it had replaced an offer for another UAV
             suggest_for_findings((mission_id, uav, finding) for uav, finding in reasons if uav != uav_id)
 
 
@@ -47,7 +48,7 @@ def _finding_of(alert: Alert) -> Finding:
 
 
 def code_of(finding: Finding) -> str | None:
-    """Why the rest is planned anew after this; None: it is not."""
+    """Return the code of the offer for a finding; None: no offer."""
     if finding.code == battery.CODE and (finding.level == CRITICAL or finding.details.get("route_short")):
         return BATTERY_SHORT
     if finding.code == link.CODE and finding.level == CRITICAL:

@@ -1,4 +1,4 @@
-"""Alerts' rows: written in bulk, each change counted."""
+"""Writes alert rows in bulk and counts each change."""
 
 import json
 from collections.abc import Collection, Mapping, Sequence
@@ -19,7 +19,7 @@ from telemetry.models import Alert
 from telemetry.selectors.alerts import WORST, OpenRow
 from telemetry.services.alerts.alerts import CLOSED, OPENED, step
 
-WORDS_STAND_FOR = timedelta(seconds=5)  # newer figures of the same cause are written no more often
+WORDS_STAND_FOR = timedelta(seconds=5)  # minimum interval between updates with newer values of the same cause
 WATCHED_STATES = (MissionState.DISPATCHED, MissionState.ACTIVE)
 MISSION_ENDED = "mission-ended"
 
@@ -43,7 +43,7 @@ WHERE id = ANY(%s) AND closed_at IS NULL
 
 
 def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Mapping[int, Sequence[OpenRow]], now: datetime) -> set[int]:
-    """Writes what has changed. Returns the organisations whose alerts did."""
+    """Write the changes. Returns the organisations whose alerts changed."""
     rows = {(row.uav_id, row.code, row.subject): row for of_uav in open_rows.values() for row in of_uav}
     new, renewed, closed = [], [], []
     organisations = set()
@@ -84,7 +84,7 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
 
 
 def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[int], now: datetime) -> set[int]:
-    """Unless a watch still watches their UAVs for them: this one those of `but`. Returns the organisations."""
+    """Close them unless an estimator still monitors their UAVs for them; this process monitors those of `but`. Returns the organisations."""
     is_away = Exists(Alert.objects.filter(uav=OuterRef("uav"), code=down.CODE, closed_at=None))  # none of its alerts closes
     over = Alert.objects.filter(~is_away, closed_at=None, code__in=codes, mission__isnull=False)
     over = over.exclude(mission__state__in=WATCHED_STATES)
@@ -101,12 +101,12 @@ def _close(ids: Sequence[int], reason: str, now: datetime) -> None:
 
 
 def is_worse(finding: Finding, worst: Mapping[str, Any] | None) -> bool:
-    """Tell whether it is worse than the worst that was kept of its alert."""
+    """Return whether the finding is worse than the worst one stored with its alert."""
     return worst is None or (RANK[finding.level], finding.severity) > (RANK[worst["level"]], worst["severity"])
 
 
 def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime) -> dict[str, Any]:
-    """Details of an alert with the worst that it has said, which stays; of causes whose figures cannot be compared there is none."""
+    """Return the details of an alert with its worst message so far; without one for causes whose values cannot be compared."""
     if finding.severity == 0.0:
         return finding.details
     if is_worse(finding, worst):
@@ -118,9 +118,9 @@ def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime
 
 
 def _words_to_write(row: OpenRow, change: Opened, now: datetime) -> tuple[str, Mapping[str, Any]] | None:
-    """Message and values that an open alert is to have with the details of the finding; None: nothing is written.
+    """Return message and values to write to an open alert, with the finding's details; None: nothing to write.
 
-    Where an alert keeps a level that was worse, the words that reported of it stay. What it is answered with is always that of now.
+    An alert that keeps a worse level keeps that level's message. Its acts are always the present ones.
     """
     finding = change.finding
     is_answered_otherwise = answer_of(finding.details) != row.answer

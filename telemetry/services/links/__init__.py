@@ -1,1 +1,1 @@
-"""Links to vehicles: who serves them, what they sent, and what waits for them."""
+"""Links to vehicles: leases, received data, and waiting commands."""

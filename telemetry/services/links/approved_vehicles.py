@@ -1,4 +1,4 @@
-"""What speaks against approving a mission by what its UAVs said of themselves: their kind, and items that their firmware refuses."""
+"""Reasons against approving a mission from its vehicles' data: their class, and items that their firmware refuses."""
 
 from collections.abc import Iterator
 
@@ -27,7 +27,7 @@ KINDS = {
 
 
 def reasons_of_vehicles(mission: Mission) -> list[RefusalReason]:
-    """Of UAVs that were heard by MAVLink; of others nothing is known yet, and the upload tells."""
+    """Return the reasons for UAVs with a known MAVLink link; for others the upload decides."""
     routes = [route for route in mission.routes.all() if route.geometry is not None]
     routes = [route for route in routes if route.mission_uav.uav is not None and route.mission_uav.uav.link == LinkKind.MAVLINK]
     links = UavLink.objects.in_bulk([route.mission_uav.uav_id for route in routes])
@@ -35,7 +35,7 @@ def reasons_of_vehicles(mission: Mission) -> list[RefusalReason]:
 
 
 def kind_refusal(name: str, link: UavLink) -> str:
-    """Why a UAV of this name takes no missions; empty for a multicopter, and where its kind is not known."""
+    """Return why a UAV receives no missions; empty for a multicopter or an unknown class."""
     vehicle_class = class_of(link.vehicle_type)
     if link.vehicle_type is None or vehicle_class is VehicleClass.COPTER:
         return ""
@@ -44,7 +44,7 @@ def kind_refusal(name: str, link: UavLink) -> str:
 
 
 def connection_warnings(uav: Uav, link: UavLink) -> list[str]:
-    """What whoever looks at its connection must know."""
+    """Return the warnings to show with its link."""
     reported = uav.autopilot_return if uav.link == LinkKind.MAVLINK else {}
     off_by = fence_off_by(reported.get("autopilot", ""), reported.get("parameters", {}))
     fence = _("Its autopilot ignores every fence that is sent to it: %(parameter)s.") % {"parameter": off_by} if off_by else ""
@@ -62,7 +62,7 @@ def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[RefusalR
     try:
         loads = flight_loads(frozen_route(route, mission))
     except (CannotBeFlown, NotARoute):
-        return  # which approving refuses by itself
+        return  # approval refuses these itself
     unknown = [one.item for load in loads for one in unknown_items(load.mission, autopilot_type, firmware)]
     first_of = {item.command: item.waypoint for item in reversed(unknown)}
     for command, waypoint in first_of.items():

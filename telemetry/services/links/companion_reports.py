@@ -1,4 +1,4 @@
-"""Reports that a companion computer sent over the HTTP link go into the log."""
+"""Stores reports from companion computers on the HTTP link in the log."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -18,7 +18,7 @@ USED_AGAIN = "Another record has this number in this stream: take a new stream w
 
 @dataclass(frozen=True)
 class RefusedReport:
-    """`index` is its place in the batch; `faults` are words by field."""
+    """A refused report. `index` is its place in the batch; `faults` holds a text for each field."""
 
     index: int
     faults: dict[str, str]
@@ -31,9 +31,9 @@ class TakenReports:
 
 
 def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: Sequence[Any], received_at: datetime) -> TakenReports:
-    """Stores the sound ones and names the others, so that one faulty record holds up none behind it.
+    """Store the valid reports and return the refused ones, so that one faulty report does not block the others.
 
-    `place` is where the UAV was last: longitude, latitude [deg]. `sent` is decoded JSON.
+    `place` is the UAV's last position: longitude, latitude [deg]. `sent` is decoded JSON.
     """
     read: dict[int, CompanionReport] = {}
     refused: list[RefusedReport] = []
@@ -58,7 +58,7 @@ def take_reports(*, uav_id: int, place: tuple[float, float], stream: str, sent: 
 
 
 def _numbers_used_again(uav_id: int, stream: str, records: Mapping[int, NewRecord]) -> list[int]:
-    """Of records that were measured at another time than what is stored under their number: a counter that began anew, and no replay."""
+    """Return records whose number is stored with another time of measurement: the counter restarted; it is not a repetition."""
     run = TelemetryRecord.objects.filter(stream__uav_id=uav_id, stream__link=LinkKind.HTTP, stream__key=stream)
     stored = dict(run.filter(sequence__in=[record.sequence for record in records.values()]).values_list("sequence", "measured_at"))
     return [index for index, record in records.items() if stored.get(record.sequence, record.measured_at) != record.measured_at]

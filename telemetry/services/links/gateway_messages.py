@@ -1,7 +1,7 @@
-"""What a gateway has heard goes into the database at once: records, what is known of links, texts. All of it or none.
+"""Stores what a gateway received in one transaction: records, link states, texts and sightings.
 
-The times of signatures are stored with the records of the frames that bore them: a frame whose record was lost with a gateway may come
-again, one whose record was stored may not.
+Signature timestamps are stored with the records of their frames: a frame may be repeated if its record was lost with a gateway, but not if
+it was stored.
 """
 
 from collections.abc import Sequence

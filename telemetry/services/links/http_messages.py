@@ -1,4 +1,4 @@
-"""When a UAV was last heard over HTTP, and how it does."""
+"""Last contact and state of UAVs on the HTTP link."""
 
 from datetime import datetime
 
@@ -16,16 +16,16 @@ _RECEIVED = """
 
 
 def note_received_over_http(*, uav_id: int, address: str) -> None:
-    """Nobody waits for the disk: the next request says it again."""
+    """Store the contact without waiting for the disk: the next request repeats it."""
     words = f"http {address}"[:100]
     if not prepared_rows(_RECEIVED, [words, uav_id]):
         UavLink.objects.get_or_create(uav_id=uav_id, defaults={"last_message_at": timezone.now(), "address": words})
 
 
 def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:
-    """After reports that came at this time were stored: the newest of all says how the UAV does, unless it came before.
+    """Update the UAV's state after storing reports received at this time, if the newest report is among them.
 
-    Of a UAV that is reached by MAVLink the gateway says so.
+    For UAVs with a MAVLink link the gateway does this.
     """
     newest = newest_of(uav_id)
     if newest is None or newest.received_at != received_at or not Uav.objects.filter(pk=uav_id, link=LinkKind.HTTP).exists():
@@ -40,5 +40,8 @@ def note_state_over_http(*, uav_id: int, received_at: datetime) -> None:
 
 
 def note_on_ground_over_http(*, uav_id: int) -> None:
-    """Its flight was told to be over, which not every companion computer says in a report, too. The next report says how it does again."""
+    """Mark the UAV as on the ground after its flight was reported as ended, which not every companion includes in a report.
+
+    The next report updates the state again.
+    """
     UavLink.objects.filter(uav_id=uav_id).update(is_in_air=False)

@@ -1,8 +1,8 @@
-"""Which gateway serves which UAV, and what it knows of the vehicle.
+"""Leases of UAVs by gateways, and the link states that gateways store.
 
-A gateway holds a UAV by a lease. Another may take it when the lease is out, when the holder has not heard the vehicle for a while, or when
-it bears the same name and the lease was not renewed for a while: it is the same gateway, started again. Two that run under one name, by
-mistake, do not take UAVs from each other.
+Another gateway may take a UAV when the lease has expired or when the holder has not received the vehicle for a while. One with the same
+name may also take it when the lease was not renewed for a while: it is the same gateway, restarted. Two gateways with one name by mistake
+do not take UAVs from each other.
 """
 
 import json
@@ -18,16 +18,16 @@ from telemetry.models import UavLink
 from telemetry.services.waypoints import lists_on
 from workspace.leases import from_now, is_free_for, release, renew, take
 
-NAMESAKE_S = 2.5  # a gateway that runs renews its leases more often
-UNREACHABLE_S = 5.0  # a holder that has not heard the vehicle for so long need not be waited for
+NAMESAKE_S = 2.5  # a running gateway renews its leases more often
+UNREACHABLE_S = 5.0  # if a holder has not received the vehicle for so long, another gateway need not wait for its lease to end
 
 
 @dataclass(frozen=True)
 class Lease:
-    """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink.
+    """A lease with the previous gateway's state: `signing`, `boots`, `losses` and `limits` as in UavLink.
 
-    `mode_in_air` is the one in which it saw the vehicle last, armed and in the air; empty: it did not. `mission_item` is the one that the
-    vehicle's list was at then, as the vehicle counts.
+    `mode_in_air` is the vehicle's last mode if it was armed and in the air, else empty. `mission_item` is the item at that time, as the
+    vehicle counts.
     """
 
     uav_id: int
@@ -42,9 +42,9 @@ class Lease:
 
 @dataclass(frozen=True)
 class LinkState:
-    """What a gateway knows of a vehicle; the fields are UavLink's, but for `last_message_ago_s`: clocks of gateways do not matter.
+    """State of a vehicle's link, with the fields of UavLink. `last_message_ago_s` is relative, so that gateways' clocks do not matter.
 
-    `waypoint_sequence` is worked out when it is saved.
+    `waypoint_sequence` is computed when the state is saved.
     """
 
     uav_id: int
@@ -80,7 +80,7 @@ ON CONFLICT (uav_id) DO NOTHING
 
 
 def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> list[Lease]:
-    """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
+    """Return leases of those UAVs that this gateway may serve and whose commands no other gateway delivers. holder: "name/run"."""
     with connection.cursor() as cursor:
         cursor.execute(_ADD, [sorted(uav_ids)])
     may_take = is_free_for(holder, lease_s=lease_s, namesake_s=NAMESAKE_S) | Q(last_message_at__lt=from_now(-UNREACHABLE_S))
@@ -90,7 +90,7 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
 
 
 def renew_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> set[int]:
-    """Those that are still held."""
+    """Return the UAVs still held."""
     return set(renew(UavLink.objects.filter(uav__in=uav_ids, holder=holder), lease_s=lease_s))
 
 
@@ -130,7 +130,7 @@ WHERE link.uav_id = heard.uav_id AND link.holder = %s
 
 
 def save_links(*, states: Sequence[LinkState], holder: str) -> None:
-    """Only of UAVs that the gateway still holds."""
+    """Save the states of UAVs that the gateway still holds."""
     if not states:
         return
     lists = lists_on({state.uav_id for state in states if state.mission_item is not None})

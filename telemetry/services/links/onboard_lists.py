@@ -1,4 +1,4 @@
-"""What a vehicle holds, as far as it was read back: written together with the end of the command that brought it there."""
+"""A vehicle's onboard lists by readback, written together with the end of the command that uploaded them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,9 @@ from telemetry.models import UavLink
 
 @dataclass(frozen=True)
 class LoadedLists:
-    """`sha256` is a FlightLoad's. `beside` names lists of the vehicle's own that were left beside it, by kind: fence or rally."""
+    """The onboard lists. `sha256` is a FlightLoad's. `beside` has the hashes of the vehicle's own lists kept beside it, by kind: fence or
+    rally.
+    """
 
     sha256: str
     approval: UUID
@@ -28,7 +30,7 @@ class LoadedLists:
 
 @dataclass(frozen=True)
 class Carried:
-    """A command that is carried, and by whom: what is noted with it counts only as long as nobody else carries it."""
+    """A command in delivery and its holder; updates with it are ignored once another holder has the command."""
 
     command_id: UUID
     uav_id: int
@@ -48,27 +50,27 @@ def loaded_on(uav_id: int) -> LoadedLists | None:
 
 
 class Doubt(StrEnum):
-    """Why a vehicle may hold something else than what was read back from it."""
+    """Why a vehicle may hold another list than was read back."""
 
     REBOOTED = "rebooted"
-    OTHER_STATION = "other-station"  # it has spoken with another one about its lists
+    OTHER_STATION = "other-station"  # it has exchanged mission messages with another station
     OTHER_LENGTH = "other-length"  # its list has another number of items
 
 
 def doubt_loaded(*, uav_id: int, doubt: Doubt, ago_s: float) -> None:
-    """Something was heard so many seconds ago; nothing that was read back since is doubted. A reboot says less than the others."""
+    """Mark the readback as doubtful, by an observation `ago_s` ago; a later readback is not affected. A reboot is weaker than other doubts."""
     doubted = UavLink.objects.filter(uav=uav_id, loaded_read_at__lt=Now() - timedelta(seconds=ago_s)).exclude(loaded_approval=None)
     weaker = {"", Doubt.REBOOTED} if doubt is not Doubt.REBOOTED else {""}
     doubted.filter(loaded_doubt__in=weaker).update(loaded_doubt=doubt)
 
 
 def confirm_loaded(carried: Carried, loaded: LoadedLists) -> None:
-    """It was read back once more, and is still there."""
+    """Store that another readback found the same list."""
     UavLink.objects.filter(uav=carried.uav_id, loaded_sha256=loaded.sha256).update(loaded_read_at=Now(), loaded_doubt="")
 
 
 def begin_loading(carried: Carried) -> bool:
-    """From now on nobody knows what the vehicle holds. False: another one carries the command."""
+    """Mark the onboard list as unknown during an upload. Returns False if another holder has the command."""
     with transaction.atomic():
         if not note_sent(carried.command_id, attempt=carried.attempt, holder=carried.holder):
             return False
@@ -77,7 +79,7 @@ def begin_loading(carried: Carried) -> bool:
 
 
 def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: Why = (), warnings: Why = ()) -> bool:
-    """The vehicle holds what it was to hold: `loaded`, or nothing."""
+    """Store that the vehicle holds `loaded`, or nothing. Returns False if another holder has the command."""
     with transaction.atomic():
         if not note_applied(carried.command_id, attempt=carried.attempt, holder=carried.holder, note=note, warnings=warnings):
             return False
@@ -86,7 +88,7 @@ def end_loading(carried: Carried, loaded: LoadedLists | None, *, note: Why = (),
 
 
 def fail_loading(carried: Carried, before: LoadedLists | None, code: str, why: Why) -> bool:
-    """before: what it held and holds still; None where that is not known, or nothing that was approved."""
+    """Store a failed upload. before: the approved list that the vehicle still holds; None if unknown or not approved."""
     with transaction.atomic():
         if not note_failed(carried.command_id, code, why, attempt=carried.attempt, holder=carried.holder):
             return False

@@ -1,4 +1,4 @@
-"""Vehicles that spoke to a gateway and belong to no UAV: one row a system id, so that nobody can fill the table."""
+"""Unknown vehicles seen by gateways: one row per system id, which bounds the table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ ON CONFLICT (mavlink_system_id) DO UPDATE SET heard_at = excluded.heard_at, auto
 
 @dataclass(frozen=True)
 class Sighting:
-    """`is_signed` says that it signs, not that anybody could check it."""
+    """One sighting. `is_signed`: the frame has a signature, which could not be verified."""
 
     system: int
     autopilot: str
@@ -37,7 +37,7 @@ class Sighting:
 
 
 def note_unknown_vehicles(*, sightings: Sequence[Sighting]) -> None:
-    """At most one sighting a system id. One that was adopted and is unknown again, its UAV being gone, is new; one ignored stays so."""
+    """Store sightings, one per system id. An adopted vehicle whose UAV was deleted becomes new again; an ignored one stays ignored."""
     if not sightings:
         return
     columns = ("system", "autopilot", "vehicle_type", "address", "is_signed", "last_message_at", "longitude_deg", "latitude_deg")

@@ -1,4 +1,4 @@
-"""What waits for a UAV that asks over HTTP, and what it says of it."""
+"""Commands for UAVs on the HTTP link, and their acknowledgements."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from operation.reasons import Reason, Why, english
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts.alerts import close_alert, open_alert
 
-HOLDER = "http-link"  # all processes of the link are one: a UAV may ask any of them
+HOLDER = "http-link"  # shared by all processes: a UAV may ask any of them
 LEASE_S = 30.0
 MAX_CONCURRENT = 10
 OTHER_CONTENT = "other-content"
@@ -29,7 +29,7 @@ SAYS_NOTHING = "The UAV %(uav)s does not say what it holds."
 
 @dataclass(frozen=True)
 class Acknowledgement:
-    """`content_sha256` is of what the UAV holds, as far as it is about an upload."""
+    """An acknowledgement. For an upload, `content_sha256` is the hash of what the UAV holds."""
 
     command_id: UUID
     state: CommandState
@@ -39,7 +39,7 @@ class Acknowledgement:
 
 @dataclass(frozen=True)
 class Noted:
-    """`state` is the command's afterwards; None: it is none of this UAV's."""
+    """The result of an acknowledgement. `state` is the command's state afterwards; None: not a command of this UAV."""
 
     command_id: UUID
     noted: bool
@@ -48,7 +48,7 @@ class Noted:
 
 
 def handed_to(uav_id: int, given: Given) -> Given:
-    """The same after whatever waited has been handed over: from now on it has been sent."""
+    """Mark the waiting commands as sent, and return the updated response data."""
     if not given.has_unclaimed:
         return given
     for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MAX_CONCURRENT, link=LinkKind.HTTP):
@@ -62,7 +62,7 @@ def handed_to(uav_id: int, given: Given) -> Given:
 
 
 def note_acknowledgements(*, uav_id: int, acknowledgements: Sequence[Acknowledgement]) -> list[Noted]:
-    """In their order. One that was noted before is noted again: nothing changes twice."""
+    """Store acknowledgements in order. Idempotent."""
     return [_note(uav_id, acknowledgement) for acknowledgement in acknowledgements]
 
 
@@ -98,7 +98,7 @@ def _note(uav_id: int, reported: Acknowledgement) -> Noted:
 
 
 def _note_upload(command: UavCommand, reported: Acknowledgement, holding: dict[str, Any]) -> tuple[bool, str]:
-    """The UAV is ready only when what it holds is what was approved."""
+    """Store the end of an upload. The UAV is ready only if it holds the approved content."""
     load = load_of(command)
     if reported.content_sha256 == load.content_sha256:
         noted = note_applied(command.pk, note=reported.reason, **holding)
@@ -117,7 +117,7 @@ def _note_upload(command: UavCommand, reported: Acknowledgement, holding: dict[s
 
 
 def _hold(command: UavCommand, load: ApprovedLoad | None, *, is_known: bool = True) -> None:
-    """What the UAV holds now; after a failure nobody knows, and what was told of it stays."""
+    """Store what the UAV holds. After a failed upload it is unknown, and the last reported state is kept."""
     if command.kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION}:
         return
     if load is not None or (is_known and command.kind == CommandKind.CLEAR_MISSION):

@@ -1,4 +1,4 @@
-"""Vehicles that nobody knows: an administrator says whose they are, or that nobody cares."""
+"""Unknown vehicles: an administrator adopts or ignores them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -15,16 +15,16 @@ from workspace.models import User
 
 
 class AlreadySettled(Exception):
-    """Somebody else was faster."""
+    """Another user has already settled the vehicle."""
 
 
 class NoPlace(Exception):
-    """The vehicle has not said where it is, so a new UAV needs a place or a base."""
+    """The vehicle has not reported a position, so a new UAV needs a position or a base."""
 
 
 @dataclass(frozen=True)
 class NewUav:
-    """What a UAV is made from that did not exist before. Without a place it stands where the vehicle is."""
+    """Data of a UAV to be created. Without a position it stands where the vehicle is."""
 
     name: str
     uav_type: UavType | None = None
@@ -33,12 +33,12 @@ class NewUav:
 
 @transaction.atomic
 def adopt_vehicle(*, vehicle: UnknownVehicle, actor: User, uav: Uav | NewUav) -> Uav:
-    """The UAV gets the vehicle's system id, and is told what to do by MAVLink from now on.
+    """Give a UAV the vehicle's system id; it then receives its commands by MAVLink.
 
-    Raises AlreadySettled, NoPlace, NameTaken, SystemIdTaken, or Refused where something is on its way to a UAV that is reached otherwise.
+    Raises AlreadySettled, NoPlace, NameTaken, SystemIdTaken, or Refused if commands for the UAV are under way on another link.
     """
     held = _held(vehicle, UnknownVehicleState.NEW, UnknownVehicleState.IGNORED)
-    system_id: dict[str, Any] = {"mavlink_system_id": held.mavlink_system_id, "link": LinkKind.MAVLINK}  # a gateway serves no others
+    system_id: dict[str, Any] = {"mavlink_system_id": held.mavlink_system_id, "link": LinkKind.MAVLINK}  # gateways serve only these
     if isinstance(uav, Uav):
         owner = change_uav(uav=uav, actor=actor, position=None, values=system_id)
     else:
@@ -53,7 +53,7 @@ def adopt_vehicle(*, vehicle: UnknownVehicle, actor: User, uav: Uav | NewUav) ->
 
 @transaction.atomic
 def ignore_vehicle(*, vehicle: UnknownVehicle, actor: User) -> None:
-    """It is not told of any more. Raises AlreadySettled for one that was adopted."""
+    """Hide the vehicle. Raises AlreadySettled if it was adopted."""
     held = _held(vehicle, UnknownVehicleState.NEW, UnknownVehicleState.IGNORED)
     if held.state == UnknownVehicleState.NEW:
         _settle(held, UnknownVehicleState.IGNORED, actor)
@@ -61,7 +61,7 @@ def ignore_vehicle(*, vehicle: UnknownVehicle, actor: User) -> None:
 
 @transaction.atomic
 def heed_vehicle(*, vehicle: UnknownVehicle, actor: User) -> None:
-    """Takes back that it is ignored. Raises AlreadySettled for one that was adopted."""
+    """Show an ignored vehicle again. Raises AlreadySettled if it was adopted."""
     held = _held(vehicle, UnknownVehicleState.NEW, UnknownVehicleState.IGNORED)
     if held.state == UnknownVehicleState.IGNORED:
         _settle(held, UnknownVehicleState.NEW, actor)

@@ -1,1 +1,1 @@
-"""What UAVs meet if they return or land now, and how they return safely."""
+"""Checks of returns and landings from the present position, and returns that are safe."""

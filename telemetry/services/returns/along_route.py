@@ -1,4 +1,4 @@
-"""The way home along the approved route: the list that is on board, from one of its waypoints on, and nothing else."""
+"""RTL path along the approved route: the rest of the onboard list from one of its waypoints on."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -21,12 +21,12 @@ from missions.services.commands.steering import mission_in_hand
 from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
 from telemetry.services.links.onboard_lists import LoadedLists, loaded_on
 
-FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
+FURTHER = timedelta(minutes=5)  # after the expected landing; zones in force until then count
 
 
 @dataclass(frozen=True)
 class AlongRoute:
-    """`item`: of the list on board, from 0 without home, to which it flies straight. `points` as `return_path_points` has them."""
+    """A return along the route. `item` of the onboard list, from 0 without home, is flown to directly. `points` as in `return_path_points`."""
 
     path: ReturnPath
     item: int
@@ -35,7 +35,7 @@ class AlongRoute:
 
 @dataclass(frozen=True)
 class OnBoard:
-    """A flight of an approval that a UAV was seen to hold, and nothing says that it holds another one since."""
+    """A flight of an approval that a UAV holds by its last readback, with nothing known to contradict it since."""
 
     approved: ApprovedLoad
 
@@ -44,19 +44,19 @@ class OnBoard:
         return self.approved.route.flights[self.approved.flight - 1]
 
     def waypoint_of(self, item: int) -> int | None:
-        """Sequence of the waypoint to which an item of the list, from 0 without home, belongs."""
+        """Return the sequence of an item's waypoint; items count from 0 without home."""
         items = () if self.approved.load is None else self.approved.load.mission
         return items[item].waypoint if 0 <= item < len(items) else None
 
     def item_of(self, sequence: int) -> int | None:
-        """The last item that leads to a waypoint: points between lie before it."""
+        """Return the last item of a waypoint; intermediate waypoints precede it."""
         items = () if self.approved.load is None else self.approved.load.mission
         found = [place for place, one in enumerate(items) if one.waypoint == sequence and one.command == mavlink.MAV_CMD_NAV_WAYPOINT]
         return found[-1] if found else None
 
 
 def on_board(uav: Uav) -> OnBoard | None:
-    """Of the mission that it has in hand; None where it does not surely hold a flight of its approval in force."""
+    """Return the onboard flight of its present mission; None unless it surely holds a flight of the approval in force."""
     mission = mission_in_hand(uav) if uav.link == LinkKind.MAVLINK else None
     approval = None if mission is None else approval_in_force(mission)
     if approval is None or approval.revoke_requested_at is not None:
@@ -65,7 +65,7 @@ def on_board(uav: Uav) -> OnBoard | None:
 
 
 def held_flight(approval: Approval, uav_id: int, loaded: LoadedLists | None) -> OnBoard | None:
-    """None where the UAV was not seen to hold a flight of this approval, or may hold another list since."""
+    """Return the onboard flight; None if the last readback was not of this approval, or is in doubt."""
     if loaded is None or loaded.doubt or loaded.approval != approval.pk:
         return None
     try:
@@ -76,7 +76,10 @@ def held_flight(approval: Approval, uav_id: int, loaded: LoadedLists | None) -> 
 
 
 def along_route(held: OnBoard, *, position: LonLat, height_m: float, waypoint: int | None, now: datetime) -> AlongRoute | None:
-    """From where a UAV is, height_m above its take-off and on its way to a waypoint of its route. Raises NoGraph."""
+    """Return the path from the UAV's position; None if none is clear. Raises NoGraph.
+
+    height_m is above its take-off; waypoint is the one that it flies to.
+    """
     flight = held.flight
     ahead = next((place for place, one in enumerate(flight.waypoints) if one.sequence == waypoint), None)
     if ahead is None:
@@ -96,7 +99,7 @@ def along_route(held: OnBoard, *, position: LonLat, height_m: float, waypoint: i
 
 
 def _rest(flight: Flight, ahead: int) -> timedelta:
-    """As planned, from the waypoint before on."""
+    """Return the planned duration from the previous waypoint on."""
     arrivals = [one.arrival_s for one in flight.waypoints]
     first, last = arrivals[max(ahead - 1, 0)], arrivals[-1]
     return timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s if first is None or last is None else last - first)

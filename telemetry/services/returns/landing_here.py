@@ -1,4 +1,4 @@
-"""What lies below a UAV that is told to land where it is, as far as the data tell."""
+"""What is below a UAV that would land at its position, according to the map data."""
 
 import math
 from dataclasses import dataclass
@@ -16,17 +16,17 @@ from missions.models import Uav
 from missions.services.commands.rtl_check import zones_applying
 from telemetry.selectors.present import LastReceived, PresentPosition, last_received
 
-BESIDE_M = 30.0  # from where it comes down: what wind and position errors may carry it into
+BESIDE_M = 30.0  # around the landing point: drift by wind and position error
 BELOW_M = 3.0
 SLOPE_ABOUT_M = 10.0
-STEEP_DEG = 10.0  # ArduPilot and PX4 give no limit; multicopters on skids tip over from some 15 degrees on
+STEEP_DEG = 10.0  # ArduPilot and PX4 give no limit; multicopters on skids tip over from about 15 degrees on
 MAX_ABOUT_M = 300.0
-LASTS_S = 600.0  # for so long zones count that apply from now on
+LASTS_S = 600.0  # zones in force within this time count
 
 
 @dataclass(frozen=True)
 class NearAsset:
-    """An asset and how far it is from straight below the UAV."""
+    """An asset and its horizontal distance from the UAV."""
 
     asset: int
     kind: str
@@ -36,7 +36,7 @@ class NearAsset:
 
 @dataclass(frozen=True)
 class LandingHere:
-    """`warnings` are sentences about what is in the way of a landing; `facts` about the rest. None: not known."""
+    """Result of the check. `warnings` are sentences about obstructions, `facts` about the rest. None: unknown."""
 
     uav: Uav
     present: PresentPosition | None
@@ -49,7 +49,7 @@ class LandingHere:
 
 
 def landing_here(*, uav: Uav, now: datetime) -> LandingHere:
-    """Below where it is now, and beside that as far as its position is uncertain."""
+    """Check the ground below its position and within its uncertainty."""
     (received,) = last_received([uav], now)
     present = received.present
     if present is None or present.uncertainty_m > MAX_ABOUT_M:
@@ -73,7 +73,7 @@ def landing_here(*, uav: Uav, now: datetime) -> LandingHere:
 
 
 def _height_m(received: LastReceived, present: PresentPosition) -> float | None:
-    """Above the ground below, as it measures, else by the terrain model."""
+    """Return the height above ground as measured, else by the terrain model."""
     if received.altitude_agl_m is not None and present.is_measured:
         return round(received.altitude_agl_m, 1)
     if present.altitude_relative_m is None or received.home is None:
@@ -84,7 +84,7 @@ def _height_m(received: LastReceived, present: PresentPosition) -> float | None:
 
 
 def _slope_deg(present: PresentPosition) -> float | None:
-    """The steepest fall or rise of the terrain model from straight below to any side."""
+    """Return the steepest slope of the terrain model to any side."""
     position, about_m = present.position, max(SLOPE_ABOUT_M, present.uncertainty_m)
     bearing = np.radians(np.arange(0.0, 360.0, 45.0))
     per_degree = np.array([METRES_PER_DEGREE_LON * math.cos(math.radians(position.lat)), METRES_PER_DEGREE_LAT])
@@ -96,7 +96,7 @@ def _slope_deg(present: PresentPosition) -> float | None:
 
 
 def _zones(present: PresentPosition, agl_m: float | None, now: datetime) -> tuple[str, ...]:
-    """Zones in force that it touches on its way down, by their names."""
+    """Return the names of zones in force that it touches during the descent."""
     begin_s = now.timestamp()
     near, _facts = zones_applying(zone_table(), present.places(), (begin_s, begin_s + LASTS_S))
     if not len(near):

@@ -1,4 +1,4 @@
-"""What UAVs meet if they return now, all at once: from where each is, at its autopilot's own height, beside all others in the air."""
+"""Checks the returns of several UAVs at once from their positions, at their own RTL heights, with all other UAVs in the air."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -37,13 +37,13 @@ from telemetry.services.returns.safe_returns import (
     safest_returns,
 )
 
-MAX_UNCERTAINTY_M = 300.0  # about a position from which a way home is looked at
+MAX_UNCERTAINTY_M = 300.0  # of a position, up to which its RTL path is checked
 MAX_ALONG_UNCERTAINTY_M = 15.0
 
 
 @dataclass(frozen=True)
 class MetOnReturn:
-    """Another UAV that comes too near. `vertical_m` is None where heights are not known; `in_s` from now."""
+    """A conflicting UAV. `vertical_m` is None if heights are unknown; `in_s` is from now."""
 
     uav: int
     name: str
@@ -55,10 +55,11 @@ class MetOnReturn:
 
 @dataclass(frozen=True)
 class PresentReturn:
-    """Of one UAV. check.warnings tell all that is in its way. `present` None: from all along its route, as where it is now is not known.
+    """The return of one UAV. check.warnings list all obstructions. `present` None: its position is unknown, and its whole route was
+    checked.
 
-    along: by the rest of its approved route, None where that is not clear or not known. safest: how it is best told, None where no way
-    is clear; `is_straight` of it where it is as well told to return at once.
+    along: the return by the rest of its approved route; None if not clear or unknown. safest: the best parameters of a return; None if no
+    path is clear. Its `is_straight` is True if an immediate straight return is as good.
     """
 
     check: ReturnCheck
@@ -70,7 +71,7 @@ class PresentReturn:
     battery: BatteryAtLanding
     met: tuple[MetOnReturn, ...] = ()
     along: AlongRoute | None = None
-    along_percent: float | None = None  # of its battery, left at the landing after that
+    along_percent: float | None = None  # of its battery, left after landing along the route
     safest: SafeReturn | None = None
 
     @property
@@ -80,14 +81,14 @@ class PresentReturn:
 
 @dataclass
 class _AirTraffic:
-    """The straight returns of those that are told, in their order, and what all others in the air do meanwhile."""
+    """Straight returns of the requested UAVs, in their order, and the routes of all others in the air."""
 
     returning: list[ReturningUav]
     others: list[tuple[ReturningUav, TimedRoute]] = field(default_factory=list)
 
 
 def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn]:
-    """For each of these UAVs of one organisation, as if all of them were told to return at this moment. Raises NoGraph."""
+    """Return the check of each of these UAVs of one organisation, as if all were ordered to return now. Raises NoGraph."""
     refused = {command.uav_id for command in stuck_returns() if command.kind == CommandKind.SET_RETURN_HEIGHT}
     flown = [_checked(replace(_flown(received), keeps_height=received.uav.pk in refused), now) for received in last_received(uavs, now)]
     air = _AirTraffic([one for one in flown if one.straight is not None])
@@ -140,7 +141,7 @@ def _met_words(met: MetOnReturn) -> str:
 
 
 def _flown(received: LastReceived) -> ReturningUav:
-    """Where it is and how it would return, its way home not yet looked at."""
+    """Return its position and straight return; its RTL path is not checked yet."""
     uav, present = received.uav, received.present
     mission = mission_in_hand(uav)
     place = None if mission is None else mission.mission_uavs.filter(uav=uav).first()
@@ -161,7 +162,7 @@ def _flown(received: LastReceived) -> ReturningUav:
 
 
 def _checked(one: ReturningUav, now: datetime) -> ReturningUav:
-    """With what is in its way home. One on the ground has none."""
+    """Check its RTL path. A UAV on the ground has none."""
     received, present, own = one.received, one.received.present, one.own
     if received.is_in_air is False:
         words = _("It is on the ground.")
@@ -181,7 +182,7 @@ def _checked(one: ReturningUav, now: datetime) -> ReturningUav:
 
 
 def _along(one: ReturningUav, present: PresentPosition, now: datetime) -> AlongRoute | None:
-    """Only of one that was measured: the way from an uncertain place to its route is looked at by nobody."""
+    """Return its path along the route, only from a measured position: the leg from an uncertain one cannot be checked."""
     held = on_board(one.received.uav) if present.is_measured and present.uncertainty_m <= MAX_ALONG_UNCERTAINTY_M else None
     if held is None or present.altitude_relative_m is None:
         return None
@@ -190,7 +191,7 @@ def _along(one: ReturningUav, present: PresentPosition, now: datetime) -> AlongR
 
 
 def _from_route(one: ReturningUav) -> ReturnCheck:
-    """Nobody knows where it is: from all along its route."""
+    """Return the check from its whole route, for a UAV at an unknown position."""
     if one.check.state != ReturnState.CLEAR:
         return one.check
     words = _("Position of %(uav)s too uncertain: its return path is not checked from there.") % {"uav": one.received.uav.name}
@@ -204,13 +205,13 @@ def _from_route(one: ReturningUav) -> ReturnCheck:
 def _goal(
     position: LonLat, home: LonLat, rally: Sequence[tuple[LonLat, float]], *, shuns_home: bool
 ) -> tuple[LonLat, float]:  # fmt: skip
-    """Where it flies to, and how high above its take-off it is to come there."""
+    """Return where it flies to, and its height above take-off on arrival."""
     goals = [*rally] if shuns_home and rally else [(home, 0.0), *rally]
     return min(goals, key=lambda goal: length_m(position, goal[0]))
 
 
 def _base_m(received: LastReceived, home: LonLat) -> float:
-    """Above the sea: of the ground where it took off, else as it reports; NaN where nobody knows."""
+    """Return the altitude AMSL of its take-off: of the ground, else as reported; NaN if unknown."""
     ground_m = float(ground_heights_m(np.array([home]))[0])
     if not math.isnan(ground_m):
         return ground_m
@@ -223,7 +224,7 @@ def _ground_m(goal: LonLat, base_m: float) -> float:
 
 
 def _level_m(one: ReturningUav) -> float | None:
-    """At which it flies home, above its take-off."""
+    """Return its RTL height above take-off."""
     if one.straight is None or one.received.present is None or math.isnan(one.straight.level_m):
         return None
     return one.straight.level_m - one.base_m
@@ -233,7 +234,7 @@ def _level_m(one: ReturningUav) -> float | None:
 
 
 def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[ReturningUav, TimedRoute]]:
-    """UAVs of the organisation in the air that are not told, with what they do from now on; not simulated ones beside real ones."""
+    """Return other UAVs of the organisation in the air with their routes from now on; simulated and real ones are not mixed."""
     returning_ids = {uav.pk for uav in uavs}
     organisations = {uav.organisation_id for uav in uavs}
     candidates = Uav.objects.filter(organisation__in=organisations, is_simulated__in={uav.is_simulated for uav in uavs}).exclude(
@@ -250,7 +251,7 @@ def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[ReturningUav, Time
 
 
 def _going_on(one: ReturningUav) -> TimedRoute:
-    """As it is now: on its way home, along its route, or where it is."""
+    """Return its route by its present mode: returning, along its route, or holding."""
     received, present = one.received, one.received.present
     assert present is not None  # noqa: S101 - asked by the caller
     mode = mode_kind(received.mode)
@@ -265,7 +266,7 @@ def _going_on(one: ReturningUav) -> TimedRoute:
 
 
 def _ahead(one: ReturningUav) -> list[tuple[LonLat, float, float]]:
-    """Points of its route from the waypoint on to which it flies: position, height above the sea, seconds there."""
+    """Return the remaining points of its route: position, altitude AMSL, hold seconds."""
     route = Route.objects.filter(mission=one.mission, mission_uav=one.place, geometry__isnull=False).first()
     if route is None or one.received.waypoint_sequence is None:
         return []
@@ -287,7 +288,7 @@ def _rules(one: ReturningUav, other: ReturningUav) -> SeparationRules:
 
 
 def _met(air: _AirTraffic) -> Mapping[int, list[MetOnReturn]]:
-    """By UAV: whom it meets if all that are told return at once, the nearest in time first."""
+    """Return by UAV the conflicts if all requested UAVs return at once, the earliest first."""
     found: dict[int, list[MetOnReturn]] = {one.received.uav.pk: [] for one in air.returning}
     at_once = [(one, one.straight.after(0.0)) for one in air.returning if one.straight is not None]
     pairs = [(one, other, True) for number, one in enumerate(at_once) for other in at_once[number + 1 :]]

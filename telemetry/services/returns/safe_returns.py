@@ -1,4 +1,4 @@
-"""How UAVs are told to return so that nothing is in their way and none comes near another: at which height, when, or along its route."""
+"""Safe returns of several UAVs, without obstructions and conflicts: by height, delay, or along the route."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -19,15 +19,15 @@ from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_a
 from telemetry.selectors.present import LastReceived
 from telemetry.services.returns.along_route import AlongRoute
 
-MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
+MAX_WIDENING_M = 100.0  # maximum by which uncertain positions widen the separation
 MAX_WAIT_S = 600.0
-MAX_WAIT_UNKNOWN_S = 120.0  # of a UAV of which nobody knows how long it can hold
+MAX_WAIT_UNKNOWN_S = 120.0  # for a UAV with an unknown hold time
 MAX_BATTERY_AGE_S = 30.0
 
 
 @dataclass(frozen=True)
 class BatteryAtLanding:
-    """Percent of the full battery. `unknown` is the reason why it is not known what is left at the landing; empty where it is."""
+    """Percentages of the full battery. `unknown` is the reason if the rest at landing is unknown, else empty."""
 
     left_percent: float | None = None
     home_percent: float | None = None
@@ -44,7 +44,7 @@ class BatteryAtLanding:
 
 @dataclass(frozen=True)
 class SafeReturn:
-    """A way in which nothing is in the way and no other UAV comes near: after a hold, at another height, or along the route."""
+    """Parameters of a return without obstructions and conflicts: after a hold, at another height, or along the route."""
 
     height_m: float | None = None
     wait_s: float = 0.0
@@ -57,7 +57,7 @@ class SafeReturn:
 
 @dataclass(frozen=True)
 class ReturningUav:
-    """What is known of a UAV in the air, and its straight return; None where nobody knows from or to where that leads."""
+    """A UAV in the air with its straight return; None if its position or destination is unknown."""
 
     received: LastReceived
     mission: Mission | None
@@ -68,10 +68,10 @@ class ReturningUav:
     home: LonLat | None = None
     straight: StraightReturn | None = None
     ways: WaysNow | None = None
-    keeps_height: bool = False  # it did not take another return height just now
+    keeps_height: bool = False  # a change of its return height has just failed
     along: AlongRoute | None = None
-    base_m: float = math.nan  # of its heights, above the sea
-    goal_m: float = 0.0  # how high above its take-off it is to come to where it lands
+    base_m: float = math.nan  # take-off altitude AMSL, the origin of its heights
+    goal_m: float = 0.0  # its height above take-off on arrival at its landing place
 
     @property
     def uncertainty_m(self) -> float:
@@ -79,7 +79,7 @@ class ReturningUav:
 
 
 def battery_at_landing(received: LastReceived) -> BatteryAtLanding:
-    """By what the watch has made of its reports; with the reason where that is not known."""
+    """Return the battery at landing by the estimator's forecast, or the reason why it is unknown."""
     values, forecast = {"uav": received.uav.name}, received.battery
     if received.is_in_air is False:
         return BatteryAtLanding(left_percent=received.battery_percent)
@@ -96,7 +96,7 @@ def battery_at_landing(received: LastReceived) -> BatteryAtLanding:
 
 
 def along_landing_percent(one: ReturningUav, battery: BatteryAtLanding) -> float | None:
-    """Left at the landing after a return along the route, by what the straight way home takes for each of its seconds."""
+    """Return what is left after a return along the route, by the straight return's consumption per second."""
     if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
         return None
     per_s = battery.home_percent / max(one.straight.duration_s(), 1.0)
@@ -104,10 +104,10 @@ def along_landing_percent(one: ReturningUav, battery: BatteryAtLanding) -> float
 
 
 def safest_returns(returning: Sequence[ReturningUav], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:
-    """By UAV: a return in which none comes near another; those with the least battery to spare choose first.
+    """Return by UAV a return without conflicts; UAVs with the least spare battery choose first.
 
-    others: what all others in the air do. Straight at once where that is clear; else at a height of its own, along its route, or after
-    a hold. Along its route comes last where it would land below the reserve, and is left out where the battery does not last.
+    others: routes of all others in the air. Preferred is straight at once if clear, then another height, then along the route, then a
+    delay. A return along the route that lands below the reserve comes last, and is excluded if the battery does not last.
     """
     if not returning:
         return {}
@@ -132,7 +132,7 @@ def safest_returns(returning: Sequence[ReturningUav], others: Sequence[TimedRout
 
 
 def _choices(one: ReturningUav, battery: BatteryAtLanding) -> list[tuple[SafeReturn, TimedRoute]]:
-    """Ways home with nothing in the way, as far as its battery allows, the best first."""
+    """Return its unobstructed returns within its battery, the best first."""
     if one.straight is None:
         return []
     straight, uav = one.straight, one.received.uav.name
@@ -164,7 +164,7 @@ def _along(one: ReturningUav, straight: StraightReturn, uav: str) -> list[tuple[
 
 
 def _heights(one: ReturningUav) -> list[tuple[float, StraightReturn]]:
-    """Return heights that can be set on it, at which nothing is in the way, with the return: at least the separation apart."""
+    """Return settable return heights without obstructions, with their returns; at least the vertical separation apart."""
     own, present, straight = one.own, one.received.present, one.straight
     if one.keeps_height or own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:
         return []
