@@ -1,1 +1,1 @@
-"""What the two commands ./run and ./check are made of: packages, private servers, supervision."""
+"""Implementation of ./run and ./check: packages, private servers, supervision."""

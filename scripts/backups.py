@@ -1,9 +1,9 @@
-"""What matters of one installation, in one folder, and back again: the database, the secret key, the logs of flights.
+"""Back up one installation to a folder, and restore it: the database, the secret key, the flight logs.
 
 python -m scripts.backups backup [FOLDER] [--without-key]
 python -m scripts.backups restore FOLDER [--replace]
 
-The database is DATABASE_URL's, else the private one of the state folder (SPANWISE_VAR), which is started for it if it does not run.
+The database is DATABASE_URL's, else the private one of the state folder (SPANWISE_VAR), which is started if it does not run.
 """
 
 import argparse
@@ -42,20 +42,20 @@ SELECT format('%I.%I', n.nspname, c.relname) FROM pg_class c JOIN pg_namespace n
 WHERE n.nspname = 'public' AND c.relkind IN ('r', 'p')
     AND NOT EXISTS (SELECT FROM pg_depend d WHERE d.classid = 'pg_class'::regclass AND d.objid = c.oid AND d.deptype = 'e')
 ORDER BY 1
-"""  # not those of extensions, such as PostGIS's spatial_ref_sys
+"""  # excludes extensions' tables, such as PostGIS's spatial_ref_sys
 
 
 class Refused(Exception):
-    """Nothing was done; the message says why and what to do."""
+    """Raised before anything was done; the message is the reason and the remedy."""
 
 
 @dataclass(frozen=True)
 class Database:
-    """An address as libpq takes it. The password goes by the environment: command lines can be read by others."""
+    """An address as libpq takes it. The password is passed in the environment: other users can read command lines."""
 
     address: str
     environment: dict[str, str]
-    programs: Path | None = None  # where pg_dump and pg_restore of its version are; None: the newest on this machine
+    programs: Path | None = None  # folder of its version's pg_dump and pg_restore; None: the newest on this machine
 
     def connect(self) -> psycopg.Connection[tuple[object, ...]]:
         return psycopg.connect(self.address, password=self.environment.get("PGPASSWORD"), autocommit=True)
@@ -77,7 +77,7 @@ class Database:
 
 
 def database_at(url: str, programs: Path | None = None) -> Database:
-    """Of an address as DATABASE_URL has it."""
+    """Return the database of an address as in DATABASE_URL."""
     parts = urlsplit(url)
     user, _, place = parts.netloc.rpartition("@")
     name, _, password = user.partition(":")
@@ -88,7 +88,7 @@ def database_at(url: str, programs: Path | None = None) -> Database:
 
 @contextmanager
 def database(places: Places) -> Iterator[Database]:
-    """DATABASE_URL's; else the private one, started if it does not run, and then stopped again."""
+    """Yield DATABASE_URL's database, else the private one, which is started and stopped again if it does not run."""
     if url := os.environ.get("DATABASE_URL"):
         yield database_at(url)
         return
@@ -112,14 +112,14 @@ def database(places: Places) -> Iterator[Database]:
 
 
 def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
-    """Everything into a new folder, readable by its owner alone; there whole or not at all. Raises Refused."""
+    """Write everything to a new folder, readable by its owner only; it appears complete or not at all. Raises Refused."""
     if folder.exists():
         raise Refused(f"{folder} is there already")
     draft = folder.with_name(f".{folder.name}.new")
     shutil.rmtree(draft, ignore_errors=True)
     draft.mkdir(mode=0o700, parents=True)
     with database(places) as source:
-        # What PostGIS knows of reference systems belongs to whoever made the extension: nobody else may write it.
+        # PostGIS's table of reference systems belongs to the role that created the extension; other roles may not write it.
         leave_out = f"--exclude-table-data=*.{REFERENCE_SYSTEMS}"
         source.run("pg_dump", "--format=custom", "--no-owner", "--no-acl", leave_out, f"--file={draft / DUMP}", source.address)
         migrations = _migrations(source)
@@ -128,7 +128,7 @@ def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
     if has_key:
         shutil.copy2(key, draft / KEY)
         (draft / KEY).chmod(0o600)
-    if (logs := flight_logs(places)).is_dir():  # after the database: what it names is there
+    if (logs := flight_logs(places)).is_dir():  # after the database, so that all logs that it names are included
         shutil.copytree(logs, draft / LOGS)
     manifest = {"made_at": datetime.now(UTC).isoformat(), "version": VERSION, "has_key": has_key, "migrations": migrations}
     (draft / MANIFEST).write_text(json.dumps(manifest, indent=2) + "\n")
@@ -138,7 +138,7 @@ def back_up(places: Places, folder: Path, *, with_key: bool = True) -> Path:
 
 
 def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
-    """Everything back. Raises Refused before anything is changed: of a folder that is not whole, and where there is something already."""
+    """Restore everything. Raises Refused before any change: for an incomplete folder, or where data exist already."""
     verify(folder)
     if not os.environ.get("DATABASE_URL") and Supervisor(places, prepare_sockets(places.state)).is_running():
         raise Refused(f"Spanwise runs on {places.state}: end it with ./run --stop first")
@@ -158,7 +158,7 @@ def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
         with tempfile.TemporaryDirectory(dir=places.state, prefix=".restore-") as drafts:
             statements = Path(drafts) / "database.sql"
             target.run("pg_restore", "--no-owner", "--no-acl", "--no-comments", f"--file={statements}", str(folder / DUMP))
-            # In one transaction: what was there is gone only once the backup is in its place.
+            # In one transaction: existing data are only dropped together with the restore.
             target.run(
                 "psql", "--no-psqlrc", "--quiet", "--single-transaction", "--set=ON_ERROR_STOP=1", f"--dbname={target.address}",
                 f"--command={emptying}", f"--file={statements}",
@@ -169,11 +169,11 @@ def restore(places: Places, folder: Path, *, replaces: bool = False) -> None:
     shutil.rmtree(logs, ignore_errors=True)
     if (folder / LOGS).is_dir():
         shutil.copytree(folder / LOGS, logs)
-    shutil.rmtree(places.state / "graphs", ignore_errors=True)  # unpacked from the database that was here before
+    shutil.rmtree(places.state / "graphs", ignore_errors=True)  # unpacked from the previous database
 
 
 def verify(folder: Path) -> None:
-    """Raises Refused where a file is missing, was added or is not as it was written."""
+    """Raise Refused where a file is missing, was added or differs from the manifest."""
     try:
         written = [line.split("  ", 1) for line in (folder / SUMS).read_text().splitlines()]
     except OSError as error:
@@ -198,7 +198,7 @@ def _digests(folder: Path) -> Iterator[tuple[str, str]]:
 
 
 def _migrations(source: Database) -> dict[str, str]:
-    """The last one of each app."""
+    """Return the last migration of each app."""
     with source.connect() as connection:
         if not _tables(connection):
             raise Refused("there is nothing in the database to be backed up")
@@ -210,13 +210,13 @@ def _tables(connection: psycopg.Connection[tuple[object, ...]]) -> list[str]:
 
 
 def _emptying(connection: psycopg.Connection[tuple[object, ...]]) -> str:
-    """Extensions stay: whoever restores may not be allowed to make them."""
+    """Return the statement that drops all tables. Extensions stay: the restoring role may lack the right to create them."""
     tables = _tables(connection)
     return f"DROP TABLE {', '.join(tables)} CASCADE" if tables else "SELECT 1"
 
 
 def _refuse_if_used(connection: psycopg.Connection[tuple[object, ...]]) -> None:
-    """Connections of programs that have just ended may take a moment to be gone."""
+    """Raise Refused while other clients are connected; programs that have just ended get a moment to disconnect."""
     query = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid() AND backend_type = {}"
     others = sql.SQL(query).format(sql.Literal("client backend"))
     deadline_s = time.monotonic() + GONE_WITHIN_S

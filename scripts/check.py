@@ -1,6 +1,6 @@
-"""./check: private servers, then the tests, the browser's tests and the other checks side by side, and a summary.
+"""./check: private servers, then the tests, browser tests and other checks in parallel, and a summary.
 
-All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.test_run.second_try).
+All steps run, even when one has failed. Failed waiting tests get a second try at the end (scripts.test_run.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
 python -m scripts.check --sitl BINARY [PYTEST ARGUMENT...]      (the link's scenarios on a real firmware)
@@ -45,12 +45,12 @@ def _python(*arguments: str) -> list[str]:
 
 
 def _node(script: str, *arguments: str) -> list[str]:
-    """A program of node_modules, on the Node.js that set-up has installed."""
+    """Return the command of a node_modules program, run by the Node.js that set-up has installed."""
     return [str(PROGRAMS / "node"), str(PROJECT_DIR / "node_modules" / script), *arguments]
 
 
 def _pytest(name: str, expression: str, arguments: list[str], *, lane: str = "tests", workers: int = 0, dist: str = "worksteal") -> Step:
-    """A step of pytest, which reports and has a second try of what waits."""
+    """Return a step of pytest that writes a report and retries failed waiting tests."""
     folder = state_directory() / "check" / "steps" / name.replace(" ", "-")
     folder.mkdir(parents=True, exist_ok=True)
     cache, report = folder / "cache", folder / "report.json"
@@ -74,7 +74,7 @@ def _javascript_tests() -> Iterator[Step]:
 
 
 def _sitl_tests(binary: str = "", *arguments: str) -> Step:
-    """The link's tests on a firmware, with a network of their own, as it listens on all addresses. Raises CannotStart."""
+    """Return the link's tests on a firmware, in a network namespace, as it listens on all addresses. Raises CannotStart."""
     firmware = Path(binary).resolve()
     if not (binary and firmware.is_file() and os.access(firmware, os.X_OK)):
         raise CannotStart(f"--sitl needs the program of an ArduCopter in software in the loop, not {binary!r}")
@@ -86,7 +86,7 @@ def _sitl_tests(binary: str = "", *arguments: str) -> Step:
 
 
 def steps(arguments: list[str]) -> list[Step]:
-    """The steps that these arguments ask for."""
+    """Return the steps for these arguments."""
     if arguments[:1] == ["--sitl"]:
         return [_sitl_tests(*arguments[1:])]
     is_fast, is_long = "--fast" in arguments, "--long" in arguments
@@ -116,7 +116,7 @@ def steps(arguments: list[str]) -> list[Step]:
 
 
 def _worker_queue(places: Places, sockets: Path, worker: str) -> Program:
-    """A Redis for one worker of pytest-xdist: what is published in one is heard in all its numbered databases."""
+    """Return a Redis for one worker of pytest-xdist: all numbered databases of a server share its channels."""
     folder = places.process(f"redis-{worker}")
     folder.mkdir(parents=True, exist_ok=True)
     socket = sockets / f"redis-{worker}.sock"
@@ -129,9 +129,9 @@ def _worker_queue(places: Places, sockets: Path, worker: str) -> Program:
 
 @contextmanager
 def private_servers(state: Path, *, workers: int = 0) -> Iterator[dict[str, str]]:
-    """PostgreSQL and Redis for the tests alone, with one more Redis for each worker of pytest-xdist.
+    """Start PostgreSQL and Redis for the tests only, with one more Redis for each worker of pytest-xdist.
 
-    Yields the environment that leads to them. What the environment names is used as it is.
+    Yields the environment with their addresses. Addresses that the environment already has are used unchanged.
     """
     places = prepare_state(state)
     with places.lock.open("w") as lock:
@@ -141,7 +141,7 @@ def private_servers(state: Path, *, workers: int = 0) -> Iterator[dict[str, str]
             raise CannotStart(f"another ./check is running on {state}") from None
         sockets = prepare_sockets(state)
         supervisor = Supervisor(places, sockets)
-        supervisor.stop()  # what a killed ./check has left behind
+        supervisor.stop()  # left by a killed ./check
         environment = {"SPANWISE_VAR": str(state), "CHECK_SPANWISE_VAR": str(state / "workers" / "{worker}")}
         shutil.rmtree(state / "workers", ignore_errors=True)
         servers: list[Program] = []
@@ -173,7 +173,7 @@ def private_servers(state: Path, *, workers: int = 0) -> Iterator[dict[str, str]
 
 
 def _numbered(redis_url: str) -> str:
-    """Pattern of a Redis from outside, with a numbered database for each worker."""
+    """Return the pattern of an external Redis, with a numbered database for each worker."""
     address = redis_url.rpartition("/")[0] if redis_url.count("/") > 2 else redis_url
     return f"{address}/{{number}}"
 
@@ -185,7 +185,7 @@ def _report_of(step: Step) -> Report:
 
 
 def _judged(step: Step, result: Result) -> Result:
-    """With the rule on skips, which pytest's own run has judged already."""
+    """Return the result after the rule on skips, which pytest's own run has already applied."""
     if step.report is None or step.report.suffix != ".tap":
         return result
     report = _report_of(step)
@@ -195,7 +195,7 @@ def _judged(step: Step, result: Result) -> Result:
 
 
 def with_second_try(step: Step, result: Result, environment: dict[str, str], logs: Path) -> Result:
-    """What became of a step once its few failed tests have run again alone."""
+    """Return the result of a step after its few failed tests have run again alone."""
     if step.cache is None or result.code != pytest.ExitCode.TESTS_FAILED:
         return result
     late, command = tuple(failed_tests(step.cache)), second_command(step.command, step.cache)
@@ -224,7 +224,7 @@ def _print_summary(results: list[Result], reports: list[Report], often_late: lis
 def main(arguments: list[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
-    os.environ.pop(SITL, None)  # they run by --sitl alone
+    os.environ.pop(SITL, None)  # they run only with --sitl
     state, began = state_directory() / "check", time.monotonic()
     try:
         with private_servers(state, workers=TEST_WORKERS) as environment:

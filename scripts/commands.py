@@ -1,4 +1,4 @@
-"""What each program of Spanwise is started with, by `./run` and in a container alike; where it listens is the caller's."""
+"""Start commands of the programs of Spanwise, for `./run` and containers alike; the caller adds where they listen."""
 
 import os
 import sys
@@ -7,16 +7,16 @@ from operation.json_lines import is_asked_for
 from scripts.places import PROJECT_DIR
 
 GRANIAN_LOG = PROJECT_DIR / "operation" / "granian_log.json"
-BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
+BACKLOG = "4096"  # pending connections of a program: the default limit of Linux (net.core.somaxconn)
 QUEUES = ("data", "flight", "planning", "simulation")
 
-# The C library gives each thread a pool of its own, up to eight a core, and returns little of what a pool has held once. Python's
-# threads take turns, so that two pools do.
+# The C library gives each thread a pool of its own, up to eight per core, and returns little memory of a pool. Python's threads run in
+# turn, so two pools suffice.
 MEMORY = {"MALLOC_ARENA_MAX": "2"}
 
 
 def _python(program: str, *arguments: str) -> list[str]:
-    """A module, or a file that ends in .py. Where logs are JSON, whatever it writes is."""
+    """Return the command for a module, or a file that ends in .py. With JSON logs, all of its output is JSON."""
     if is_asked_for():
         return [sys.executable, "-m", "operation.json_lines", program, *arguments]
     return [sys.executable, *([] if program.endswith(".py") else ["-m"]), program, *arguments]
@@ -28,12 +28,12 @@ def _granian(*arguments: str) -> list[str]:
 
 
 def web(*where: str) -> list[str]:
-    """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
+    """Return the command for pages and API. One process per program: of several on one socket the first to wake takes most of the work."""
     return _wsgi("config.wsgi:application", *where)
 
 
 def uav_link(*where: str) -> list[str]:
-    """The HTTP link of UAVs, which is answered however much pages ask for."""
+    """Return the command for the HTTP link of UAVs, which is independent of the load from pages."""
     return _wsgi("config.uav_link:application", *where)
 
 
@@ -44,7 +44,7 @@ def _wsgi(application: str, *where: str) -> list[str]:
 
 
 def live(*where: str) -> list[str]:
-    """Websockets."""
+    """Return the command for websockets."""
     command = ["--interface", "asginl", *where, "--workers", "1"]
     command += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8", "--respawn-failed-workers", "--respawn-interval", "0.5"]
     return _granian(*command, "config.asgi:application")
@@ -55,19 +55,19 @@ def celery(*arguments: str) -> list[str]:
 
 
 def data_processes() -> int:
-    """Two: imports of one organisation leave one to the others (config/settings.py has the same)."""
+    """Return the number of processes, by default two: imports of one organisation leave one free (config/settings.py has the same)."""
     return int(os.environ.get("SPANWISE_DATA_WORKERS", "2"))
 
 
 def worker(queue: str, processes: int) -> list[str]:
-    """Of one queue. Workers need not know of each other, and start sooner without it."""
+    """Return the command for the worker of a queue. Workers do not need each other's events, and start sooner without them."""
     arguments = ["--loglevel", os.environ.get("SPANWISE_LOG_LEVEL", "WARNING"), "--queues", queue, "--hostname", f"{queue}@%h"]
     arguments += ["--concurrency", str(processes), "--without-gossip", "--without-mingle", "--without-heartbeat"]
     return celery("worker", *arguments)
 
 
 def beat() -> list[str]:
-    """Celery's schedule: one of it everywhere, though two of it would do no harm."""
+    """Return the command for Celery's schedule: one process everywhere, though two would do no harm."""
     return celery("beat", "--loglevel", "WARNING", "--pidfile", "")
 
 

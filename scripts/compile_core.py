@@ -1,10 +1,10 @@
-"""Compile the planners' core at set-up, so that no request waits for it; does nothing where nothing has changed.
+"""Compile the planners' core at set-up, so that no request waits for it; does nothing if nothing has changed.
 
-python -m scripts.compile_core [--check]      (--check only says, by its exit code, whether there is nothing to do)
+python -m scripts.compile_core [--check]      (--check only reports by its exit code whether there is nothing to do)
 
-Where another checkout of this user has compiled the same sources, its code is copied. Else parts are compiled by several processes at a
-time. numba's folder is no place for two writers: both would give different code the same file name. So each process has a folder of its
-own, and what it adds is taken over when it is done.
+If another checkout of this user has compiled the same sources, its code is copied. Otherwise several processes compile parts in parallel.
+numba's folder does not support two writers, which would give different code the same file name. So each process has its own folder, and
+its additions are merged when it is done.
 """
 
 import importlib
@@ -26,7 +26,7 @@ SHARED_KIND = "compiled"
 
 @dataclass(frozen=True)
 class Part:
-    """Functions that are compiled by one process."""
+    """Functions that one process compiles."""
 
     name: str
     warm_up: tuple[str, ...]  # module:function; running them compiles what they call
@@ -40,12 +40,12 @@ PARTS = (
     Part("ways and energy", ("planning.solver.warm_up:rehearse_ways", "planning.trajectory.warm_up:rehearse"), after=("graph",)),
     Part("proofs", ("planning.solver.warm_up:rehearse_proof", "planning.file_plans:rehearse"), after=("search",)),
 )
-ALL = Part("whole", tuple(name for part in PARTS for name in part.warm_up))  # also compiles what two parts disagreed about
+ALL = Part("whole", tuple(name for part in PARTS for name in part.warm_up))  # also compiles what two parts compiled differently
 
 
 @dataclass
 class _Run:
-    """A part that is being compiled."""
+    """A part during its compilation."""
 
     part: Part
     folder: Path
@@ -61,7 +61,7 @@ def warm_up(part: Part) -> None:
 
 
 def compile_parts(folder: Path, processes: int) -> None:
-    """Compile all parts into a folder, so many at a time. Raises CalledProcessError."""
+    """Compile all parts into a folder with this many processes. Raises CalledProcessError."""
     waiting, done = list(PARTS), set[str]()
     running: list[_Run] = []
     with tempfile.TemporaryDirectory(prefix=".parts-", dir=folder.parent) as drafts:
@@ -96,12 +96,12 @@ def _command(part: Part) -> list[str]:
 
 
 def index_files(folder: Path) -> dict[Path, bytes]:
-    """Return the content of numba's index files, by their path below the folder. Each is of one function, and names its data files."""
+    """Return the content of numba's index files, by path below the folder. Each belongs to one function, and names its data files."""
     return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*.nbi")}
 
 
 def take_over(part: Path, before: dict[Path, bytes], folder: Path) -> None:
-    """Move the functions that a process has compiled, except those that have changed in the folder meanwhile."""
+    """Move the functions that a process has compiled into the folder, except those changed there meanwhile."""
     present = index_files(folder)
     for name, content in index_files(part).items():
         if content == before.get(name) or present.get(name) != before.get(name):
@@ -113,7 +113,7 @@ def take_over(part: Path, before: dict[Path, bytes], folder: Path) -> None:
 
 
 def remove_older(parent: Path) -> None:
-    """Remove what was compiled from older sources, except the newest, which running programs may still read."""
+    """Remove code compiled from older sources, except the newest, which running programs may still read."""
     older = sorted(parent.iterdir(), key=lambda path: path.stat().st_mtime)
     for path in older[:-1]:
         shutil.rmtree(path, ignore_errors=True)
@@ -138,7 +138,7 @@ def main(arguments: list[str]) -> int:
         new.mkdir()
         compile_parts(new, processes=max(1, os.cpu_count() or 1))
         (new / STAMP).write_text(stamp)
-        shutil.rmtree(folder, ignore_errors=True)  # what programs of this checkout have compiled for themselves meanwhile
+        shutil.rmtree(folder, ignore_errors=True)  # compiled by this checkout's programs meanwhile
         new.rename(folder)
     user_cache.publish(folder, SHARED_KIND, folder.name)
     return 0

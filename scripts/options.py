@@ -1,4 +1,4 @@
-"""The options of ./run. Needs Python alone: they are checked before anything is installed."""
+"""The options of ./run. Needs only Python: they are checked before anything is installed."""
 
 import argparse
 import errno
@@ -36,7 +36,7 @@ def _port(text: str) -> int:
 
 
 def parse(arguments: list[str], project: Path) -> argparse.Namespace:
-    """Read the command line of ./run. Ends the program on --help and on a mistake, as argparse does."""
+    """Parse the command line of ./run. Exits on --help and on an error, as argparse does."""
     parser = argparse.ArgumentParser(
         prog="./run",
         description="Start Spanwise on this machine. Installs what is missing, and loads a demo region into an empty database.",
@@ -73,7 +73,7 @@ def parse(arguments: list[str], project: Path) -> argparse.Namespace:
 
 
 def port_problem(port: int) -> str | None:
-    """Why this port cannot be used, or None."""
+    """Return why this port cannot be used, or None."""
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

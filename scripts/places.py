@@ -1,4 +1,4 @@
-"""Where one installation keeps its state: everything under its state folder, sockets in a short folder of their own."""
+"""Paths of one installation's state: everything in its state folder, sockets in a short folder of their own."""
 
 import hashlib
 import os
@@ -16,15 +16,15 @@ SOCKET_PATH_LIMIT = 107  # bytes, sun_path of Linux
 DATABASE_USER = "postgres"  # PostgreSQL refuses to run as root
 DEMO_USER = "demo"
 WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
-SERVING_PROGRAMS = (*WEB_PROGRAMS, "uav-link", "live")  # that the proxy asks
-PROGRAMS_WITH_METRICS = (  # that tell how they do, each at a socket of its own
+SERVING_PROGRAMS = (*WEB_PROGRAMS, "uav-link", "live")  # behind the proxy
+PROGRAMS_WITH_METRICS = (  # each with a metrics socket of its own
     *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator",
     "simulator", "beat",
 )  # fmt: skip
 
 
 class CannotStart(Exception):
-    """Something on this machine stands in the way; the message tells the operator what."""
+    """Raised when this machine prevents the start; the message gives the reason."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Places:
 
     @property
     def data(self) -> Path:
-        """PostgreSQL's data folder."""
+        """Return PostgreSQL's data folder."""
         inside = self.state / "postgresql"
         if os.geteuid() != 0 or (inside / "PG_VERSION").exists() or database_user_reaches(self.state):
             return inside
@@ -52,7 +52,7 @@ class Places:
 
     @property
     def generated(self) -> Path:
-        """Configuration files that are written anew at every start."""
+        """Return the folder of configuration files, which are rewritten at every start."""
         return self.state / "generated"
 
     @property
@@ -61,12 +61,12 @@ class Places:
 
     @property
     def instance(self) -> Path:
-        """What runs on this state: its port."""
+        """Return the file with the port of the running installation."""
         return self.state / "instance.json"
 
     @property
     def first_load(self) -> Path:
-        """Exists while the first data are being loaded, so that an interrupted load is taken up again."""
+        """Return the file that exists during the first load of data, so that an interrupted load is repeated."""
         return self.state / "first_load.json"
 
     @property
@@ -78,17 +78,17 @@ class Places:
         return self.state / "lock"
 
     def process(self, program: str) -> Path:
-        """The working folder of a program. It belongs to that program alone: whatever stands in it is ours to end."""
+        """Return the working folder of a program. It belongs to that program only: processes in it may be ended."""
         return self.state / "processes" / program
 
 
 def health_socket(sockets: Path, program: str) -> Path:
-    """Where a program tells how it does; the proxy makes one port of them all."""
+    """Return the metrics socket of a program; the proxy combines all of them on one port."""
     return sockets / f"{program}.told.sock"
 
 
 def database_user_id() -> int:
-    """The user id that runs PostgreSQL: our own, or that of `postgres` when we are root."""
+    """Return the user id that runs PostgreSQL: our own, or that of `postgres` when we are root."""
     if os.geteuid() != 0:
         return os.geteuid()
     try:
@@ -98,7 +98,7 @@ def database_user_id() -> int:
 
 
 def database_user_reaches(folder: Path) -> bool:
-    """True if the user that runs PostgreSQL can pass through every folder down to this one."""
+    """Whether the user that runs PostgreSQL can pass through every folder down to this one."""
     answer = subprocess.run(
         ["test", "-x", str(folder)], user=database_user_id(), group=_database_group_id(), extra_groups=[], cwd="/", check=False
     )
@@ -110,7 +110,7 @@ def _database_group_id() -> int:
 
 
 def prepare_state(state: Path) -> Places:
-    """Make the folders of a state. Raises CannotStart if this user may not write there."""
+    """Create the folders of a state. Raises CannotStart if this user may not write there."""
     places = Places(state)
     try:
         if places.lock.exists() and (owner := places.lock.stat().st_uid) != os.geteuid():
@@ -119,7 +119,7 @@ def prepare_state(state: Path) -> Places:
             folder.mkdir(parents=True, exist_ok=True)
         for folder in (places.redis, places.logs):
             folder.chmod(0o700)
-        state.chmod(0o711 if os.geteuid() == 0 else 0o700)  # as root, the database's and the proxy's users pass through it
+        state.chmod(0o711 if os.geteuid() == 0 else 0o700)  # as root: passable for the database's and the proxy's users
         places.lock.touch()
     except OSError as error:
         raise CannotStart(f"this user cannot write in {state} ({error.strerror}); choose another folder with --var") from None
@@ -127,7 +127,7 @@ def prepare_state(state: Path) -> Places:
 
 
 def _is_ours(sockets: Path, state: Path) -> bool:
-    """True for a real folder, owned by us (or by the database's user when we are root), that was made for this state."""
+    """Whether it is a real folder, owned by us (or by the database's user when we are root), that was made for this state."""
     try:
         found = sockets.lstat()
         made_for = (sockets / "state").read_text()
@@ -137,7 +137,7 @@ def _is_ours(sockets: Path, state: Path) -> bool:
 
 
 def prepare_sockets(state: Path) -> Path:
-    """The folder of this state's sockets, made where it is missing, closed to other users, and noted in the state."""
+    """Return the folder of this state's sockets, created if missing, closed to other users, and stored in the state."""
     note = state / "socket_directory"
     digest = hashlib.sha256(str(state).encode()).hexdigest()[:10]
     sockets = Path(note.read_text().strip()) if note.exists() else Path(tempfile.gettempdir()) / f"spanwise-{digest}"
@@ -149,7 +149,7 @@ def prepare_sockets(state: Path) -> Path:
         try:
             sockets.mkdir(mode=0o700)
         except FileExistsError:
-            if not _is_ours(sockets, state):  # somebody else's, whatever the reason
+            if not _is_ours(sockets, state):  # it belongs to another user or state
                 sockets = Path(tempfile.mkdtemp(prefix="spanwise-", dir=parent))
         (sockets / "state").write_text(str(state))
     sockets.chmod(0o700)

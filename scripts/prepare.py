@@ -1,7 +1,7 @@
-"""Bring a database up to the program, before the program starts: migrations, static files, data, the graph.
+"""Prepare a database for the program before it starts: migrations, static files, data, the graph.
 
 python -m scripts.prepare [--osm FILE]... [--zones FILE]...
-python -m scripts.prepare --static-files      (these alone; the other way starts it beside the rest)
+python -m scripts.prepare --static-files      (only these; the first form starts it in parallel)
 """
 
 import argparse
@@ -30,14 +30,14 @@ from scripts.progress import step
 
 def migrate() -> None:
     executor = MigrationExecutor(connection)
-    executor.check_replacements()  # one that replaces others counts as applied where all of them are
+    executor.check_replacements()  # a replacing migration counts as applied where all replaced ones are
     if executor.migration_plan(executor.loader.graph.leaf_nodes()):
         with step("Database migrations"):
             call_command("migrate", interactive=False, verbosity=0)
 
 
 def collect_static_files(places: Places) -> None:
-    """Copy and rename them, unless they are as they were the last time: looking into all of them takes seconds."""
+    """Copy and rename static files, unless they are unchanged since the last time: scanning all of them takes seconds."""
     digest = hashlib.sha256()
     for finder in get_finders():
         for name, storage in finder.list([]):
@@ -52,7 +52,7 @@ def collect_static_files(places: Places) -> None:
 
 @contextmanager
 def static_files_meanwhile() -> Iterator[None]:
-    """Collect static files in a process beside what is done meanwhile. Raises CommandError if that fails."""
+    """Collect static files in a parallel process. Raises CommandError if that fails."""
     command = [sys.executable, "-m", "scripts.prepare", "--static-files"]
     collecting = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     try:
@@ -68,12 +68,12 @@ def static_files_meanwhile() -> Iterator[None]:
 
 
 def is_without_ground() -> bool:
-    """True if nobody has brought in any asset or zone yet."""
+    """Whether there is neither an asset nor a zone yet."""
     return not any(apps.get_model("inspection", name).objects.exists() for name in ("Asset", "NoFlyZone"))
 
 
 def password_file(places: Places) -> Path:
-    """The file with the demo user's password: made at random once, readable by its owner alone."""
+    """Return the file with the demo user's password: generated once, readable by its owner only."""
     path = places.demo_password
     if not path.exists():
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -83,7 +83,7 @@ def password_file(places: Places) -> Path:
 
 
 def load_demo_region(folder: Path) -> None:
-    """Make the demo region's files and read them with the importers that read any other data."""
+    """Make the demo region's files and import them with the ordinary importers."""
     commands = [
         ("Demo region (synthetic): files", ["make_demo_region", str(folder)]),
         ("Demo region: towers, lines, railways, bridges", ["import_osm", str(folder / "demo.osm.pbf"), "--synthetic"]),
@@ -97,7 +97,7 @@ def load_demo_region(folder: Path) -> None:
 
 
 def load_own_data(osm_files: list[Path], zone_files: list[Path]) -> None:
-    """Read the operator's files; the importers say what they found, and leave alone what has not changed."""
+    """Import the operator's files; the importers report what they found, and skip unchanged files."""
     for command, paths in (("import_osm", osm_files), ("import_zones", zone_files)):
         for path in paths:
             print(f"{command} {path}", flush=True)
@@ -105,7 +105,7 @@ def load_own_data(osm_files: list[Path], zone_files: list[Path]) -> None:
 
 
 def make_demo_user(password_file: Path) -> None:
-    """The first sign-in of a database that ./run has made: an administrator, unless somebody has an account already."""
+    """Create an administrator in a new database of ./run, unless it has an account already."""
     call_command("load_demo", "--no-uavs", "--user", DEMO_USER, "--password-file", str(password_file), stdout=StringIO())
 
 
@@ -132,7 +132,7 @@ def load_data(places: Places, osm_files: list[Path], zone_files: list[Path]) -> 
     """Load the demo region into a database that is new or empty, or the operator's files, and build the graph."""
     is_demo = False
     if places.first_load.exists() or is_without_ground():
-        # Noted until all is done: a load that is interrupted is taken up again. ./run notes it before it makes a database.
+        # Exists until all is done, so that an interrupted load is repeated. ./run creates it before it creates a database.
         if not places.first_load.exists():
             places.first_load.write_text(json.dumps({"demo_user": False}))
         if json.loads(places.first_load.read_text())["demo_user"]:

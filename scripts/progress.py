@@ -1,4 +1,4 @@
-"""What a program that takes a while says meanwhile."""
+"""Progress output of slow programs."""
 
 import time
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def step(text: str) -> Iterator[None]:
-    """Say what is being done, and how long it took."""
+    """Print a step's text, and its duration or failure."""
     began = time.monotonic()
     print(f"{text} … ", end="", flush=True)
     try:

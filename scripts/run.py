@@ -1,4 +1,4 @@
-"""./run: checks its options, sets the checkout up, and hands over to scripts.start in .venv. Needs Python alone.
+"""./run: checks its options, sets the checkout up, and executes scripts.start in .venv. Needs only Python.
 
 python -m scripts.run [OPTION]...
 """
@@ -15,13 +15,13 @@ PYTHON = PROJECT_DIR / ".venv" / "bin" / "python"
 
 
 def set_up(arguments: list[str]) -> int:
-    """Check the options, then install what is missing. Returns the exit code to end with, 0 to go on."""
+    """Check the options, then install what is missing. Returns the exit code to end with, 0 to continue."""
     options = parse(arguments, PROJECT_DIR)
     os.environ["SPANWISE_VAR"] = str(options.var)
     is_start = not (options.status or options.stop)
-    if not is_start and PYTHON.exists():  # nothing new is needed to stop what runs, and compiling would keep it waiting
+    if not is_start and PYTHON.exists():  # stopping needs nothing new, and must not wait for a compiler
         return 0
-    # A state that has run before may hold the port itself; scripts.start looks into that.
+    # A running installation may use the port itself; scripts.start checks that.
     if is_start and not (options.var / "instance.json").exists() and (problem := port_problem(options.port)):
         print(problem, file=sys.stderr)
         return 1

@@ -30,7 +30,7 @@ from scripts.supervision.supervision import ProgramState, Supervisor
 READY_TIMEOUT_S = 120.0
 EXIT_NOT_RUNNING = 3
 FIRST_PROGRAMS = (*WEB_PROGRAMS, "proxy")
-LINK_PROGRAMS = ("live", "uav-link")  # of pages and of UAVs
+LINK_PROGRAMS = ("live", "uav-link")  # for pages and UAVs
 
 
 def address(port: int) -> str:
@@ -38,7 +38,7 @@ def address(port: int) -> str:
 
 
 def _instance(places: Places) -> dict[str, Any]:
-    """What was last started on this state; empty when nothing was, or it has been stopped."""
+    """Return what was last started on this state; empty when nothing was, or it has been stopped."""
     try:
         content: dict[str, Any] = json.loads(places.instance.read_text())
     except (OSError, ValueError):
@@ -53,7 +53,7 @@ def _note_instance(places: Places, *, port: int, is_serving: bool) -> None:
 
 
 def reasons_not_ready(port: int) -> list[str]:
-    """Empty when the program says that it is ready; else what is missing."""
+    """Return what is missing; empty when the program reports that it is ready."""
     host = next(
         (name.lstrip(".") for name in os.environ.get("SPANWISE_ALLOWED_HOSTS", "").split(",") if name.strip("* ")), f"127.0.0.1:{port}"
     )
@@ -97,7 +97,7 @@ class Installation:
             if self.supervisor.is_running():
                 if _instance(self.places).get("is_serving"):
                     return self._refuse_second()
-                self.supervisor.stop()  # a start that was killed half-way
+                self.supervisor.stop()  # left by an interrupted start
             return self._start_and_follow()
 
     def _refuse_second(self) -> int:
@@ -128,7 +128,7 @@ class Installation:
         return self._follow()
 
     def _stop_quietly(self) -> None:
-        """Stop all, and let no second Ctrl-C leave half of it behind."""
+        """Stop all programs, and ignore a second Ctrl-C, which would leave some of them running."""
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, signal.SIG_IGN)
         print("\nStopping … ", end="", flush=True)
@@ -176,7 +176,7 @@ class Installation:
             raise CannotStart("the data could not be prepared; the reason is above")
 
     def _start_programs(self) -> None:
-        """Start the web program and the proxy; the others once those answer, since all of them at once hold each other up."""
+        """Start the web program and the proxy first, the others once those respond: starting all at once slows each."""
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
         self.supervisor.start_programs(FIRST_PROGRAMS)
@@ -195,7 +195,7 @@ class Installation:
             time.sleep(0.05)
 
     def _not_listening(self, names: Iterable[str]) -> list[str]:
-        """A program listens once its application is loaded."""
+        """Return the programs that do not listen yet, which they do once their application is loaded."""
         return [f"{name} has not started" for name in names if not _is_listening(self.sockets / f"{name}.sock")]
 
     def _greet(self) -> None:
@@ -211,7 +211,7 @@ class Installation:
     # --- running -----------------------------------------------------------------------------------------------------------------
 
     def _follow(self) -> int:
-        """Stay until Ctrl-C, and say when a program had to be started again."""
+        """Stay until Ctrl-C, and report restarts of programs."""
         print("Ctrl-C stops it.", flush=True)
         starts = {state.name: state.started_at_s for state in self.supervisor.states()}
         try:

@@ -1,1 +1,1 @@
-"""What a container starts, and how it answers health checks."""
+"""Start commands and health checks of containers."""

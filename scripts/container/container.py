@@ -2,9 +2,9 @@
 
 web live uav-link proxy
 gateway estimator simulator · worker-data worker-flight worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
-backup [FOLDER] · restore FOLDER [--replace]     (of the database and the flights' logs; the key is the site's to keep)
+backup [FOLDER] · restore FOLDER [--replace]     (the database and flight logs; the site keeps the key itself)
 
-The image's entry point. Everything comes from the environment: docs/deployment.md. SIGTERM ends each of them softly.
+The image's entry point. All configuration comes from the environment: docs/deployment.md. SIGTERM shuts each of them down gracefully.
 """
 
 import os
@@ -27,11 +27,11 @@ SERVING = ("web", "live", "uav-link")  # behind the proxy
 METRICS = "0.0.0.0:9464"
 SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
 BACKUPS = "/var/lib/spanwise-backups"
-BY_HAND = ("manage", "backup", "restore")  # somebody reads along
+BY_HAND = ("manage", "backup", "restore")  # a user reads their output
 EXIT_WRONG = 2
 
-# What a container is told beside its command; what the environment says already is kept.
-WORKER_ENVIRONMENT = {"REMAP_SIGTERM": "SIGQUIT"}  # Celery's soft shutdown: what runs gets its seconds, then goes back to the queue
+# Environment set in addition to the command; existing values are kept.
+WORKER_ENVIRONMENT = {"REMAP_SIGTERM": "SIGQUIT"}  # Celery's soft shutdown: running work gets some seconds, then returns to the queue
 
 
 def _listening(port: int) -> tuple[str, ...]:
@@ -57,13 +57,13 @@ PROGRAMS: dict[str, Callable[[], list[str]]] = {
 
 
 def environment(program: str) -> dict[str, str]:
-    """The environment of a program: what is told, and what every container of it has."""
+    """Return the environment of a program: the given one, with defaults for every container of it."""
     usual = {"SPANWISE_PROGRAM": program, **commands.MEMORY}
     if program != "migrate":
         usual["SPANWISE_METRICS"] = METRICS
     if program.startswith("worker-"):
         usual |= WORKER_ENVIRONMENT
-        usual["PROMETHEUS_MULTIPROC_DIR"] = str(state_directory() / "metrics")  # its processes count together
+        usual["PROMETHEUS_MULTIPROC_DIR"] = str(state_directory() / "metrics")  # its processes share metrics
     return usual | os.environ
 
 
@@ -72,7 +72,7 @@ def _backups(*arguments: str) -> list[str]:
 
 
 def _with_database() -> dict[str, str]:
-    """For programs that take the address itself alone."""
+    """Return the environment for programs that take only the database's address."""
     return os.environ | {"DATABASE_URL": secret("DATABASE_URL")}
 
 
@@ -82,13 +82,13 @@ def _become(command: list[str], reported: Mapping[str, str]) -> NoReturn:
 
 
 def missing_secrets() -> list[str]:
-    """A container keeps nothing, so it makes no secret of its own: the next one would make another."""
+    """Return the required secrets that are not set. A container has no storage, so a generated secret would differ in the next one."""
     return [name for name in SECRETS if not os.environ.get(name) and not os.environ.get(f"{name}_FILE")]
 
 
 def _open_as_many_files_as_allowed() -> None:
     files, most_files = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if files < most_files:  # a thousand open pages are a thousand files
+    if files < most_files:  # a thousand open pages need a thousand files
         resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
 
 

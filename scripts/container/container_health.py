@@ -1,4 +1,4 @@
-"""Whether the program of this container does what it is there for: asked by the container engine every few seconds."""
+"""Whether the program of this container works; the container engine runs it every few seconds."""
 
 import os
 import sys
@@ -13,14 +13,14 @@ TIMEOUT_S = 5.0
 
 
 def program(command_line: bytes) -> str:
-    """Which one the container was started as, by its first process: an init, the entry point and the name."""
+    """Return the program's name from the command line of the container's first process: an init, the entry point and the name."""
     words = [word.decode(errors="replace") for word in command_line.split(b"\0")]
     names = words[words.index("spanwise") + 1 :] if "spanwise" in words else words
     return next((word for word in names if word and not word.startswith("-")), "web")
 
 
 def address(name: str) -> str:
-    """Nothing that is asked here asks the database: a database that is away ends no program."""
+    """Return the address of the health check. It does not query the database: an unavailable database must not end programs."""
     if name == "proxy":
         return f"http://127.0.0.1:{os.environ.get('SPANWISE_PROXY_PORT', '8080')}{ALIVE}"
     port = os.environ.get("SPANWISE_METRICS", ":9464").rpartition(":")[2]

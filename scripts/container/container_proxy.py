@@ -1,4 +1,4 @@
-"""nginx in a container: its configuration from the environment, a soft end on SIGTERM, a new certificate without a lost request."""
+"""nginx in a container: configuration from the environment, graceful shutdown on SIGTERM, certificate renewal without a lost request."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ NAME_SERVERS = Path("/etc/resolv.conf")
 
 
 def name_server(text: str) -> str:
-    """The first one of a resolv.conf, as nginx writes it. Empty where there is none."""
+    """Return the first name server of a resolv.conf, as nginx writes it; empty where there is none."""
     for line in text.splitlines():
         words = line.split()
         if len(words) >= 2 and words[0] == "nameserver":
@@ -31,12 +31,14 @@ def name_server(text: str) -> str:
 
 
 def site_of_environment(folder: Path) -> Site:
-    """SPANWISE_PROXY_WEB, SPANWISE_PROXY_LIVE and SPANWISE_PROXY_UAV_LINK (else web answers UAVs): addresses with
-    commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
+    """Return the site of SPANWISE_PROXY_WEB, SPANWISE_PROXY_LIVE and SPANWISE_PROXY_UAV_LINK (default: web serves UAVs).
 
-    Which name server is asked, SPANWISE_PROXY_NAME_SERVER says, else the container's own resolv.conf.
-    SPANWISE_PROXY_TRUST: the authority that the certificates of web, live and uav-link are checked by; without it they speak plain HTTP.
-    SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them TLS is spoken here, on SPANWISE_PROXY_TLS_PORT.
+    Each is a comma-separated list of addresses, or one name with SPANWISE_PROXY_RESOLVES=1. SPANWISE_PROXY_NAME_SERVER sets the name
+    server,
+    by default that of the container's resolv.conf. SPANWISE_PROXY_TRUST: the authority of the certificates of web, live and uav-link;
+    without
+    it they are reached by plain HTTP. SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them nginx serves TLS on
+    SPANWISE_PROXY_TLS_PORT.
     """
     certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")
     resolves = os.environ.get("SPANWISE_PROXY_RESOLVES", "0") == "1"
@@ -57,14 +59,14 @@ def site_of_environment(folder: Path) -> Site:
 
 
 def fingerprint(site: Site) -> tuple[int, ...]:
-    """Changes with the certificate's files, also where a platform swaps the folder that they lie in."""
+    """Return a value that changes with the certificate's files, also if a platform replaces their folder."""
     found = []
     for path in (site.certificate, site.key):
         if path is not None:
             try:
                 status = path.stat()
             except OSError:
-                return ()  # between two states
+                return ()  # during a replacement
             found += [status.st_ino, status.st_mtime_ns, status.st_size]
     return tuple(found)
 
@@ -87,8 +89,8 @@ def main() -> int:
     nginx = proxy_lines.start(command)
 
     def end(number: int, frame: FrameType | None) -> None:
-        nginx.send_signal(signal.SIGQUIT)  # takes no new requests and ends when those that it has are answered
-        hurry = threading.Timer(ENDS_WITHIN_S, nginx.terminate)  # websockets have no end of their own
+        nginx.send_signal(signal.SIGQUIT)  # accepts no new requests and exits after the current ones
+        hurry = threading.Timer(ENDS_WITHIN_S, nginx.terminate)  # websockets do not end by themselves
         hurry.daemon = True
         hurry.start()
 

@@ -1,1 +1,1 @@
-"""Tools for developers: types, texts, icons, figures of the code, releases."""
+"""Tools for developers: types, texts, icons, code metrics, releases."""

@@ -1,6 +1,6 @@
 """The TypeScript types of the API's shapes, static/js/api_types.d.ts, made from the OpenAPI document.
 
-python -m scripts.development.api_types [--check]      (--check only says whether the file is current)
+python -m scripts.development.api_types [--check]      (--check only reports whether the file is current)
 """
 
 import json
@@ -32,7 +32,7 @@ def openapi_schemas() -> dict[str, object]:
 
 
 def generated_types() -> str:
-    """Return the content of the file. Raises CalledProcessError with what the generator printed."""
+    """Return the content of the file. Raises CalledProcessError with the generator's output."""
     with tempfile.TemporaryDirectory() as folder:
         document, types = Path(folder) / "openapi.json", Path(folder) / "types.d.ts"
         document.write_text(json.dumps(openapi_schemas()))

@@ -11,7 +11,7 @@ SPRITE = ROOT / "node_modules" / ".spanwise" / "icons.svg"
 
 
 def symbol(name: str, svg: str) -> str:
-    """The drawing of one SVG file as a symbol; stroke and colour are left to the style sheet."""
+    """Return an SVG file as a symbol, without stroke and colour, which the style sheet sets."""
     view_box = re.search(r'viewBox="([^"]+)"', svg)
     drawing = re.search(r"<svg[^>]*>(.*)</svg>", svg, re.S)
     if view_box is None or drawing is None:

@@ -1,4 +1,4 @@
-"""Figures of the code base's structure: modules, folders, import chains, names, functions, sizes.
+"""Metrics of the code base's structure: modules, folders, import chains, names, functions, sizes.
 
 python -m scripts.development.house_figures [COMMIT...]      (of the working tree; commits are checked out beside it and follow as columns)
 """
@@ -22,7 +22,7 @@ APP_FOLDERS = (
     "accounts", "config", "inspection", "mavlink", "missions", "operation", "planning", "results", "simulation", "telemetry", "workspace"
 )  # fmt: skip
 PLANNER_FOLDERS = ("planning", "missions/routing", "missions/flight_plan", "missions/services")
-# The first that exists is where a plan request enters.
+# The first existing one is the entry point of a plan request.
 PLAN_ENTRIES = ("planning.planner", "missions.services.planning.planner", "missions.services.planning")
 SMALL_MODULE_LINES = 80
 MAX_FOLDER_FILES = 20
@@ -68,7 +68,7 @@ class Module:
         return self.name if self.path.name == "__init__.py" else self.name.rpartition(".")[0]
 
     def imported(self, known: frozenset[str]) -> set[str]:
-        """Names of the known modules that it imports, anywhere in its text."""
+        """Return the known modules that it imports, anywhere in its text."""
         found = set()
         for node in ast.walk(self.tree):
             if isinstance(node, ast.Import):
@@ -129,18 +129,18 @@ class CodeBase:
         return {module.name for module in self.modules if f"{module.name}.".startswith(folders)}
 
     def longest_planner_chain(self) -> int:
-        """Number of modules on the longest chain of imports among the planner's modules; a cycle counts as one."""
+        """Return the number of modules on the longest import chain of the planner; a cycle counts as one."""
         contracted = nx.condensation(self.imports.subgraph(self._planner_names()))
         return len(nx.dag_longest_path(contracted)) if contracted else 0
 
     def entered_by_a_plan(self) -> int:
-        """Number of the planner's modules that the entry of a plan request can reach."""
+        """Return the number of the planner's modules that the entry point of a plan request reaches."""
         planner = self.imports.subgraph(self._planner_names())
         entry = next(name for name in PLAN_ENTRIES if name in planner)
         return 1 + len(nx.descendants(planner, entry))
 
     def figures(self) -> dict[str, int]:
-        """The figures by what they count."""
+        """Return the metrics by name."""
         measured = [module for module in self.modules if module.lines]
         single = [
             m for m in measured if m.lines < SMALL_MODULE_LINES and self.imports.in_degree(m.name) == 1 and m.path.name != "__init__.py"

@@ -1,4 +1,4 @@
-"""The mypy plugin of django-stubs, with one fault corrected: a foreign key with a default was read as one that may be None."""
+"""The mypy plugin of django-stubs with one fix: it typed a foreign key with a default as nullable."""
 
 from django.db.models import Field, ForeignKey, ForeignObjectRel
 from mypy.options import Options

@@ -1,4 +1,4 @@
-"""Make a release: the version, the changelog's heading and a tag, in one commit. Pushing is left to you, and starts the pipeline.
+"""Make a release: the version, the changelog's heading and a tag, in one commit. You push it, which starts the pipeline.
 
 scripts/release 0.2.0 [--dry-run]
 """
@@ -10,7 +10,7 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
-PROJECT_DIR = Path(__file__).resolve().parents[2]  # needs no .venv
+PROJECT_DIR = Path(__file__).resolve().parents[2]  # works without .venv
 VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
 IN_PROJECT = re.compile(r'^version = "(?P<version>[^"]+)"$', re.MULTILINE)
 UNRELEASED = re.compile(r"^## \[(?P<name>[^\]]+)\](?P<rest>.*unreleased.*)?$", re.MULTILINE | re.IGNORECASE)
@@ -19,11 +19,11 @@ OVERLAYS = "deploy/kubernetes/overlays/*/kustomization.yaml"
 
 
 class CannotRelease(Exception):
-    """The message says what is in the way."""
+    """Raised when a release is not possible, with the reason."""
 
 
 def numbers(version: str) -> tuple[int, int, int]:
-    """Raises CannotRelease unless it is three numbers, as Semantic Versioning has them."""
+    """Return the three numbers of a semantic version. Raises CannotRelease for anything else."""
     match = VERSION.fullmatch(version)
     if match is None:
         raise CannotRelease(f"{version!r} is no version: three numbers with dots between them are")
@@ -32,7 +32,7 @@ def numbers(version: str) -> tuple[int, int, int]:
 
 
 def released_project(text: str, version: str) -> str:
-    """pyproject.toml with the new version. It goes up, or stays what it is while that was never released."""
+    """Return pyproject.toml with the new version, which may not be lower. Raises CannotRelease."""
     match = IN_PROJECT.search(text)
     if match is None:
         raise CannotRelease("pyproject.toml names no version")
@@ -42,7 +42,7 @@ def released_project(text: str, version: str) -> str:
 
 
 def released_changelog(text: str, version: str, day: str) -> str:
-    """What is not released yet gets the version and the day. Raises CannotRelease where there is nothing."""
+    """Return the changelog with version and day on its unreleased section. Raises CannotRelease where that is missing or empty."""
     heading = UNRELEASED.search(text)
     if heading is None or not (heading["rest"] or heading["name"].lower() == "unreleased"):
         raise CannotRelease("CHANGELOG.md has no heading [Unreleased]: write down first what people will notice")
@@ -57,7 +57,7 @@ def _git(*arguments: str) -> str:
 
 
 def release(version: str, *, is_dry: bool) -> list[str]:
-    """The paths that it changes, and unless it is dry the commit and the tag."""
+    """Write the release and return the changed paths; unless it is dry, also commit and tag."""
     numbers(version)
     if _git("tag", "--list", f"v{version}"):
         raise CannotRelease(f"v{version} is released already")

@@ -1,4 +1,4 @@
-"""A bill of materials (CycloneDX 1.5): what an image is made of, from what is installed.
+"""A bill of materials (CycloneDX 1.5) of an image, from its installed packages.
 
 python -m scripts.development.sbom --python --node package-lock.json --out sbom.cdx.json
 python -m scripts.development.sbom --debian LIST --add-to sbom.cdx.json          (LIST: "name version architecture" a line)
@@ -20,7 +20,7 @@ MAX_LICENCE_LENGTH = 100  # some packages put the whole text there
 
 
 def python_components() -> list[Component]:
-    """Every distribution of this Python."""
+    """Return every distribution of this Python."""
     found = []
     for distribution in distributions():
         reported = distribution.metadata
@@ -34,7 +34,7 @@ def python_components() -> list[Component]:
 
 
 def node_components(lock: Path) -> list[Component]:
-    """What pages load: packages of the lock that are no tools of developers."""
+    """Return the packages of the lock that pages load, without developer tools."""
     found = []
     for path, package in json.loads(lock.read_text())["packages"].items():
         if path and not package.get("dev"):
@@ -59,7 +59,7 @@ def _component(name: str, version: str, address: str, licence: str) -> Component
 
 
 def document(components: Iterable[Component]) -> dict[str, Any]:
-    """The whole bill, in the order of addresses."""
+    """Return the bill, sorted by address."""
     project = tomllib.loads((PROJECT_DIR / "pyproject.toml").read_text())["project"]
     whole = {component["bom-ref"]: component for component in components}
     about = {"type": "application", "name": project["name"], "version": project["version"], "bom-ref": project["name"]}

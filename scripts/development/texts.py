@@ -1,8 +1,8 @@
-"""Texts of pages and answers in other languages: which there are, and from .po to the .mo that the program reads.
+"""Translations of pages and responses: find texts, and compile .po files to the .mo files that the program reads.
 
 python -m scripts.development.texts compile     make the .mo files; ./run and ./check do it themselves
-python -m scripts.development.texts update      take new texts of the program into the .po files, and take those off that are gone
-python -m scripts.development.texts missing     name the texts that a language has not yet, those of the pages' scripts included
+python -m scripts.development.texts update      add new texts of the program to the .po files, and remove obsolete ones
+python -m scripts.development.texts missing     list texts without a translation, those of the pages' scripts included
 """
 
 import ast
@@ -135,7 +135,7 @@ def script_texts() -> list[Text]:
 
 
 def script_catalogue(language: str) -> dict[str, str | list[str]]:
-    """The pages' catalogues are modules with one object each; they are read as text, without running them."""
+    """Return the catalogue of a language, a module with one object, parsed without running it."""
     found: dict[str, str | list[str]] = {}
     for path in sorted((SCRIPTS / "locale" / language).glob("*.js")):
         body = path.read_text().split("export default", 1)[1].strip().rstrip(";")

@@ -1,1 +1,1 @@
-"""What the machine needs: system packages, Python libraries, a database cluster."""
+"""Requirements of the machine: system packages, Python libraries, a database cluster."""

@@ -1,4 +1,4 @@
-"""Making the private PostgreSQL's data folder and the database in it, and waiting for the servers."""
+"""Create the private PostgreSQL's data folder and database, and wait for the servers."""
 
 import os
 import shutil
@@ -17,7 +17,7 @@ START_TIMEOUT_S = 60.0
 
 
 def prepare_cluster(places: Places) -> bool:
-    """Make PostgreSQL's data folder if it is not there. True if it was made. An interrupted attempt leaves nothing that counts."""
+    """Create PostgreSQL's data folder if it is missing; returns whether it did. An interrupted attempt leaves nothing usable."""
     data = places.data
     if (data / "PG_VERSION").exists():
         return False
@@ -31,7 +31,7 @@ def prepare_cluster(places: Places) -> bool:
     if os.geteuid() == 0:
         os.chown(draft, user, draft.parent.stat().st_gid)
     command = [server.program("initdb"), "-D", str(draft), "-U", DATABASE_ROLE, "-A", "trust", "-E", "UTF8", "--locale=C.UTF-8"]
-    # Trust holds inside the socket folder, which no other user may enter; there is no network socket.
+    # Trust is limited to the socket folder, which other users cannot enter; there is no network socket.
     answer = subprocess.run(
         command, user=user, extra_groups=[] if os.geteuid() == 0 else None, cwd="/", capture_output=True, text=True, check=False
     )
@@ -44,7 +44,7 @@ def prepare_cluster(places: Places) -> bool:
 
 
 def wait_for_database(sockets: Path) -> None:
-    """Return once PostgreSQL takes connections; crash recovery after a kill -9 is waited for."""
+    """Return once PostgreSQL accepts connections, after crash recovery if necessary."""
     deadline = time.monotonic() + START_TIMEOUT_S
     while True:
         try:
@@ -58,7 +58,7 @@ def wait_for_database(sockets: Path) -> None:
 
 
 def wait_for_queue(sockets: Path) -> None:
-    """Return once Redis answers; loading its append-only file is waited for."""
+    """Return once Redis responds, after loading its append-only file if necessary."""
     deadline = time.monotonic() + START_TIMEOUT_S
     client = redis.Redis(unix_socket_path=str(sockets / "redis.sock"), socket_timeout=5)
     while True:

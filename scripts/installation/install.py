@@ -1,8 +1,8 @@
-"""Install what is missing: Debian packages, .venv, the pages' libraries; compile what is compiled. Needs Python alone.
+"""Install what is missing: Debian packages, .venv, the pages' libraries, the compiled core. Needs only Python.
 
 python -m scripts.installation.install run|check|check-fast|image      (scripts/setup calls it, one at a time in a checkout)
 
-Steps that do not need each other run side by side. Each says how long it took, and while they run, what is going on.
+Independent steps run in parallel. Each reports its duration, and its progress while it runs.
 """
 
 import hashlib
@@ -23,24 +23,24 @@ from scripts.installation.python_libraries import CannotInstall
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 VENV = PROJECT_DIR / ".venv"
 NODE_MODULES = PROJECT_DIR / "node_modules"
-WORTH_REPORTING_S = 5.0  # shorter than this, nobody is told beforehand
-TERMINAL_INTERVAL_S, LOG_INTERVAL_S = 0.5, 15.0  # between two words on what is going on
+WORTH_REPORTING_S = 5.0  # shorter set-ups are not announced
+TERMINAL_INTERVAL_S, LOG_INTERVAL_S = 0.5, 15.0  # between two progress lines
 
 
 @dataclass
 class Step:
-    """Something to do. Its durations were measured on two cores, with downloads."""
+    """A step. Its durations were measured on two cores, with downloads."""
 
     text: str
     about_s: float
     run: Callable[["Step"], None]
     after: list[str] = field(default_factory=list)
-    detail: str = ""  # how far it is
+    detail: str = ""  # current progress
     began_s: float = 0.0
 
 
 class Progress:
-    """Lines on the terminal or in a log."""
+    """Progress lines on the terminal or in a log."""
 
     def __init__(self, about_s: float) -> None:
         self._about_s = about_s
@@ -68,7 +68,7 @@ class Progress:
 
 
 def _digests(*names: str) -> list[str]:
-    """Lines as sha256sum prints them."""
+    """Return lines as sha256sum prints them."""
     return [f"{hashlib.sha256((PROJECT_DIR / name).read_bytes()).hexdigest()}  {name}" for name in names]
 
 
@@ -121,7 +121,7 @@ def _page_libraries_are_there(is_check: bool) -> bool:
 
 
 def _call(command: list[str], on_line: Callable[[str], None] | None = None) -> None:
-    """Run a command. Raises CannotInstall with what it said."""
+    """Run a command. Raises CannotInstall with its output."""
     environment = {**os.environ, "PATH": f"{VENV / 'bin'}:{os.environ.get('PATH', '')}"}
     with subprocess.Popen(
         command, cwd=PROJECT_DIR, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
@@ -140,7 +140,7 @@ def _install_page_libraries(is_check: bool) -> None:
     stamp.unlink(missing_ok=True)
     scope = [] if is_check else ["--omit=dev"]
     _call(["npm", "ci", *scope, "--prefer-offline", "--loglevel=error", "--ignore-scripts", "--no-audit", "--no-fund"])
-    # What pages load is served from here as /static/lib/…
+    # Libraries of pages, served from here as /static/lib/…
     for folder, names in {
         "maplibre-gl": [
             *(f"dist/maplibre-gl{part}.mjs" for part in ("", "-shared", "-worker")), "dist/maplibre-gl.css", "LICENSE.txt",
@@ -176,7 +176,7 @@ def about_s(steps: list[Step]) -> float:
 
 
 def carry_out(steps: list[Step]) -> None:
-    """Run all steps, each as soon as those before it are done. Raises what the first one that fails raises, once the others have ended."""
+    """Run all steps, each as soon as its predecessors are done. After all have ended, raises the first failure."""
     expected_s = about_s(steps)
     progress = Progress(expected_s)
     if expected_s >= WORTH_REPORTING_S:
@@ -223,7 +223,7 @@ def main(purpose: str) -> int:
 
 
 def _base_python() -> str:
-    """The Python that runs this; a .venv cannot be its own base."""
+    """Return the Python that runs this; a .venv cannot be its own base."""
     return str(getattr(sys, "_base_executable", sys.executable))
 
 

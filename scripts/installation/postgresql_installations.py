@@ -1,4 +1,4 @@
-"""Where PostgreSQL's programs are on this machine, and whether PostGIS belongs to them. Needs Python alone."""
+"""Find PostgreSQL's programs on this machine, and whether PostGIS is installed for them. Needs only Python."""
 
 import os
 import re
@@ -31,7 +31,7 @@ def _major_version(initdb: Path) -> int:
 
 
 def _shared_folders(programs: Path, version: int) -> list[Path]:
-    """Where the extensions of a server with these programs may lie, Debian's place first."""
+    """Return the possible extension folders of a server with these programs, Debian's first."""
     folders = [DEBIAN_SHARED / str(version)]
     folders += [programs.parent / "share" / name for name in (f"postgresql{version}", f"postgresql-{version}", "postgresql", "pgsql", ".")]
     if (pg_config := programs / "pg_config").is_file():
@@ -41,7 +41,7 @@ def _shared_folders(programs: Path, version: int) -> list[Path]:
 
 
 def installed_servers() -> list[PostgreSQL]:
-    """Every server of version 15 or newer: those with PostGIS first, then the newest first."""
+    """Return every server of version 15 or newer: those with PostGIS first, then the newest first."""
     folders = [entry / "bin" for entry in DEBIAN_PROGRAMS.glob("[0-9]*")]
     if found := shutil.which("initdb"):
         folders.append(Path(found).resolve().parent)
@@ -58,7 +58,7 @@ def installed_servers() -> list[PostgreSQL]:
 
 
 def server_for(data: Path) -> PostgreSQL | None:
-    """The server that can open this data folder; for a folder yet to be made, the newest that has PostGIS."""
+    """Return the server that can open this data folder; for a new folder, the newest one with PostGIS."""
     servers = [server for server in installed_servers() if server.has_postgis]
     marker = data / "PG_VERSION"
     if marker.exists():

@@ -1,6 +1,6 @@
-"""Install the hash-pinned Python libraries into .venv by uv, which shares its cache among checkouts. Needs Python alone.
+"""Install the hash-pinned Python libraries into .venv by uv, which shares its cache among checkouts. Needs only Python.
 
-Where uv comes from: .venv itself, another checkout of this user, a uv of the same version on the PATH, or the package registry through pip.
+Sources of uv: .venv itself, another checkout of this user, a uv of the same version on the PATH, or the package registry through pip.
 """
 
 import configparser
@@ -18,11 +18,11 @@ SHARED_KIND = "uv"
 
 
 class CannotInstall(Exception):
-    """A program that installs has failed; the message is what it said."""
+    """Raised when an installing program has failed, with its output."""
 
 
 def is_installed(venv: Path, wanted: list[str]) -> bool:
-    """Return whether the stamp in .venv holds these lines: the place of the checkout, and a digest of each lock."""
+    """Return whether the stamp in .venv has these lines: the path of the checkout, and a digest of each lock."""
     try:
         lines = (venv / "spanwise-stamp").read_text().splitlines()
     except OSError:
@@ -32,9 +32,9 @@ def is_installed(venv: Path, wanted: list[str]) -> bool:
 
 
 def install(venv: Path, base_python: str, lock: Path, wanted: list[str]) -> None:
-    """Make .venv where it is not of this checkout, and install a lock into it. Raises CannotInstall."""
+    """Create .venv unless it belongs to this checkout, and install a lock into it. Raises CannotInstall."""
     stamp = venv / "spanwise-stamp"
-    # Not made, half made, or made elsewhere: from the start.
+    # Missing, incomplete, or made elsewhere: create it again.
     is_ours = stamp.exists() and wanted[0] in stamp.read_text().splitlines()
     if not is_ours or subprocess.run([venv / "bin" / "python", "-c", ""], capture_output=True, check=False).returncode:
         _run([base_python, "-m", "venv", "--without-pip", "--clear", str(venv)])
@@ -43,7 +43,7 @@ def install(venv: Path, base_python: str, lock: Path, wanted: list[str]) -> None
     command = [uv, "pip", "install", "--quiet", "--no-deps", "--require-hashes", "--python", str(venv / "bin" / "python"), "-r", str(lock)]
     environment = {**os.environ, **settings_of_pip(os.environ)}
     offline = subprocess.run([*command, "--offline"], env=environment, capture_output=True, check=False)
-    if offline.returncode:  # not everything is in the cache
+    if offline.returncode:  # the cache is incomplete
         _run(command, environment)
     stamp.write_text("".join(f"{line}\n" for line in wanted))
     own = venv / "bin" / "uv"
@@ -68,7 +68,7 @@ def find_uv(venv: Path, base_python: str, lock: Path) -> str:
             shutil.copy2(Path(folder) / "shared" / "uv", own)
             if _version(str(own)) == version:
                 return str(own)
-        # pip comes with Python, goes into a place of its own, and verifies uv's digest.
+        # pip comes with Python, is installed separately, and verifies uv's digest.
         (Path(folder) / "uv.txt").write_text(f"{block[0]}\n")
         _run([base_python, "-m", "venv", f"{folder}/pip"])
         pip = [f"{folder}/pip/bin/python", "-m", "pip", "install", "--quiet", "--no-input", "--disable-pip-version-check"]
@@ -78,7 +78,7 @@ def find_uv(venv: Path, base_python: str, lock: Path) -> str:
 
 
 def settings_of_pip(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return uv's environment variables for what pip is configured with, so that a private mirror is set once; uv's own ones win.
+    """Return uv's environment variables for pip's configuration, so that a private mirror is set once; uv's own ones take precedence.
 
     pip reads its variables first, then the user's file and the machine's. Certificates are those of the system.
     """
@@ -103,7 +103,7 @@ def settings_of_pip(environment: Mapping[str, str]) -> dict[str, str]:
         "UV_SYSTEM_CERTS": "1",
         "UV_DEFAULT_INDEX": found.get("index-url", ""),
         "UV_INDEX": " ".join(extra),
-        "UV_INDEX_STRATEGY": "unsafe-best-match" if extra else "",  # as pip does; the digests decide what is taken
+        "UV_INDEX_STRATEGY": "unsafe-best-match" if extra else "",  # as pip does; the digests decide what is accepted
         "UV_FIND_LINKS": ",".join(found.get("find-links", "").split()),
         "UV_NO_INDEX": "1" if found.get("no-index", "").lower() in {"1", "true", "yes", "on"} else "",
         "UV_INSECURE_HOST": " ".join(found.get("trusted-host", "").split()),

@@ -1,4 +1,4 @@
-"""Which Debian packages are missing; root gets them installed, anybody else gets the apt line. Needs Python alone."""
+"""Find missing Debian packages; root installs them, other users get the apt command. Needs only Python."""
 
 import ctypes.util
 import os
@@ -18,7 +18,7 @@ EXIT_MISSING = 3
 FONT_FOLDERS = [Path("/usr/share/fonts"), Path("/usr/local/share/fonts")]
 POLICY_FILE = Path("/usr/sbin/policy-rc.d")
 POLICY_MARK = "# Made by Spanwise's scripts/setup for the time of one apt-get call."
-# Where Debian's older and newer releases carry another number in a package's name: how it looks, and its name in Debian 12.
+# Packages whose names contain a version: the pattern, and the name in Debian 12.
 NUMBERED = {
     "postgresql": (r"^postgresql-[0-9]+-postgis-3$", "postgresql-15-postgis-3"),
     "gdal": (r"^libgdal[0-9]+(t64)?$", "libgdal32"),
@@ -29,7 +29,7 @@ SERVICES = {"redis-server": "redis-server", "nginx-light": "nginx"}
 
 
 def find_program(name: str) -> str | None:
-    """A program's path; servers lie in sbin, which an ordinary user's PATH may lack."""
+    """Return a program's path; servers are in sbin, which may be missing from an ordinary user's PATH."""
     return shutil.which(name) or shutil.which(name, path="/usr/local/sbin:/usr/sbin:/sbin")
 
 
@@ -38,7 +38,7 @@ def _has_font(pattern: str) -> bool:
 
 
 def _available(subject: str) -> str:
-    """The newest package for a numbered subject that apt knows, else its name in Debian 12."""
+    """Return the newest package for a numbered name that apt knows, else its name in Debian 12."""
     pattern, fallback = NUMBERED[subject]
     if not shutil.which("apt-cache"):
         return fallback
@@ -59,18 +59,18 @@ def _database_packages() -> list[str]:
 
 
 def _browser_packages() -> list[str]:
-    """The shell without windows draws the tests' pages in two thirds of the time; who cannot install it may have the whole browser."""
+    """Return the headless shell, which renders test pages in two thirds of the time; without root any installed browser suffices."""
     if find_program(BROWSERS[0]) or (os.geteuid() != 0 and any(map(find_program, BROWSERS))):
         return []
     return [BROWSERS[0]]
 
 
 def missing_packages(purpose: str) -> list[str]:
-    """Names of the Debian packages that this purpose (run, check, check-fast, image) still needs."""
+    """Return the Debian packages that this purpose (run, check, check-fast, image) still needs."""
     missing = []
     if not os.environ.get("DATABASE_URL"):
         missing += _database_packages()
-    if not missing:  # Debian's PostGIS brings both libraries along
+    if not missing:  # Debian's PostGIS depends on both libraries
         missing += [
             _available(subject) for subject, library in (("gdal", "gdal"), ("geos", "geos_c")) if not ctypes.util.find_library(library)
         ]
@@ -91,7 +91,7 @@ def apt_line(packages: list[str]) -> str:
 
 @contextmanager
 def no_service_starts() -> Iterator[None]:
-    """While this lasts, no package starts a service by being installed; a machine's own policy file is left as it is."""
+    """Prevent installed packages from starting services; a machine's own policy file is left unchanged."""
     if POLICY_FILE.exists() and POLICY_MARK not in POLICY_FILE.read_text(errors="replace"):
         yield
         return
@@ -104,7 +104,7 @@ def no_service_starts() -> Iterator[None]:
 
 
 def _new_services(packages: list[str]) -> list[str]:
-    """Services that these packages will bring to a machine that has none of the kind yet."""
+    """Return the services that these packages will add to a machine without services of their kind."""
     services = [SERVICES[package] for package in packages if package in SERVICES]
     if any(re.fullmatch(r"postgresql-\d+", package) for package in packages) and not any(DEBIAN_PROGRAMS.glob("[0-9]*/bin/postgres")):
         services.append("postgresql")
@@ -112,13 +112,13 @@ def _new_services(packages: list[str]) -> list[str]:
 
 
 def _keep_from_boot(services: list[str]) -> None:
-    """Services that came with our packages are not to start with the machine: Spanwise starts its own, on its own sockets."""
+    """Disable the services of our packages at boot: Spanwise starts its own, on its own sockets."""
     if services and shutil.which("systemctl"):
         subprocess.run(["systemctl", "disable", "--quiet", *services], capture_output=True, check=False)
 
 
 def install(purpose: str) -> None:
-    """Install what is missing, as root. Raises CalledProcessError after printing apt's last words."""
+    """Install what is missing, as root. Raises CalledProcessError after printing the end of apt's output."""
     environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
     apt_get = ["apt-get", "-q", "-y", "-o", "DPkg::Lock::Timeout=300", "-o", "Dpkg::Use-Pty=0"]
     with tempfile.TemporaryFile("w+") as words, no_service_starts():
@@ -137,7 +137,7 @@ def install(purpose: str) -> None:
 
 
 def refusal(purpose: str) -> str | None:
-    """Return what to tell a user who lacks packages and may not install them; None if nothing is missing, or root may."""
+    """Return the message for a user who may not install missing packages; None if nothing is missing, or root may."""
     missing = missing_packages(purpose)
     if not missing or (os.geteuid() == 0 and shutil.which("apt-get")):
         return None

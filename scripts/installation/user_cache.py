@@ -1,7 +1,7 @@
-"""A folder of this user that checkouts on one machine share: compiled code, and the program that installs libraries.
+"""A cache folder that this user's checkouts on a machine share: compiled code, and the program that installs libraries.
 
-What lies here is executed, so the folder is used only if it belongs to this user and nobody else may write to it. An entry is a folder
-that appears complete, by one rename, and is never changed afterwards.
+Its content is executed, so the folder is used only if it belongs to this user and no other user can write to it. An entry is a folder that
+is created complete by one rename, and never changed afterwards.
 """
 
 import os
@@ -12,12 +12,12 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
-MAX_AGE_S = 60 * 86_400.0  # an entry that nobody has used for so long is removed
+MAX_AGE_S = 60 * 86_400.0  # entries unused for this long are removed
 MAX_ENTRIES = 6  # of a kind; compiled code is 25 MB
 
 
 def user_cache() -> Path | None:
-    """Return the folder, made where it is missing; None where there is no safe one, so that nothing is shared."""
+    """Return the folder, created if missing; None where no safe one is possible, so that nothing is shared."""
     try:
         base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
         folder = Path(base) / "spanwise"
@@ -25,21 +25,21 @@ def user_cache() -> Path | None:
             return None
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         found = folder.lstat()
-    except (OSError, RuntimeError):  # no home, or not ours to write in
+    except (OSError, RuntimeError):  # no home, or not writable
         return None
     is_safe = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid() and not found.st_mode & 0o022
     return folder if is_safe and os.access(folder, os.W_OK) else None
 
 
 def fetch(kind: str, name: str, target: Path) -> bool:
-    """Put a copy of an entry in place of the target; False if there is none."""
+    """Replace the target by a copy of an entry; returns False if there is none."""
     cache = user_cache()
     entry = cache / kind / name if cache else None
     if entry is None or not entry.is_dir():
         return False
     try:
         with suppress(OSError):
-            os.utime(entry)  # in use
+            os.utime(entry)  # mark it as used
         _copy(entry, target)
     except OSError:  # removed meanwhile, or the disk is full
         return False
@@ -47,7 +47,7 @@ def fetch(kind: str, name: str, target: Path) -> bool:
 
 
 def publish(source: Path, kind: str, name: str) -> None:
-    """Offer a copy of a folder to other checkouts, and remove entries of its kind that are old or too many. Failing is no fault."""
+    """Copy a folder to the cache, and remove entries of its kind that are old or too many. A failure is ignored."""
     cache = user_cache()
     if cache is None:
         return
@@ -60,7 +60,7 @@ def publish(source: Path, kind: str, name: str) -> None:
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy to a draft beside the target, then rename. Whatever the target was goes; of several copies at a time one wins."""
+    """Copy to a draft beside the target, then rename it over the target. Of several concurrent copies one wins."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".draft-", dir=target.parent) as draft:
         shutil.copytree(source, Path(draft) / "new")
@@ -70,7 +70,7 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def _prune(newest: Path) -> None:
-    """Remove entries beside this one that are unused for long or beyond the number, and drafts of interrupted copies."""
+    """Remove other entries that are unused for long or beyond the limit, and drafts of interrupted copies."""
     now = time.time()
     others = []
     for entry in newest.parent.iterdir():

@@ -1,7 +1,7 @@
-"""TLS between the proxy and the programs behind it: certificates that are renewed while a program runs.
+"""TLS between the proxy and the programs behind it, with certificates that are renewed while a program runs.
 
-The server of web and live (granian) reads a certificate when its worker starts, by the path that a symbolic link led to at first; a
-platform that renews takes that path away. So a copy is served, and whoever looks after it starts the worker again with the new one.
+The server of web and live (granian) reads a certificate when its worker starts, by the path to which a symbolic link first pointed; a
+platform that renews it removes that path. So a copy is served, and a watcher restarts the worker with the new one.
 """
 
 import os
@@ -17,26 +17,26 @@ POLL_INTERVAL_S = 30.0
 
 
 class InnerCertificate:
-    """What the environment names, and the copies of it in a folder of the program's own."""
+    """The certificate files of the environment, and their copies in the program's own folder."""
 
     def __init__(self, folder: Path, certificate: Path, key: Path) -> None:
         self.folder = folder
         self.files = {certificate: folder / "inner.crt", key: folder / "inner.key"}
 
     def arguments(self) -> list[str]:
-        """For the server's command line."""
+        """Return the arguments for the server's command line."""
         certificate, key = self.files.values()
         return ["--ssl-certificate", str(certificate), "--ssl-keyfile", str(key)]
 
     def is_renewed(self) -> bool:
-        """Whether what is named differs from the copies. A platform between two states has renewed nothing yet."""
+        """Whether the files differ from their copies; False while a platform is replacing them."""
         try:
             return any(not copy.exists() or named.read_bytes() != copy.read_bytes() for named, copy in self.files.items())
         except OSError:
             return False
 
     def copy(self) -> None:
-        """Each file is there as a whole, old or new, and the key for this user alone."""
+        """Copy each file atomically, the key readable by this user only."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for named, copy in self.files.items():
             draft = copy.with_suffix(f"{copy.suffix}.new")
@@ -46,13 +46,13 @@ class InnerCertificate:
 
 
 def inner_certificate(folder: Path) -> InnerCertificate | None:
-    """None where programs behind the proxy speak plain HTTP."""
+    """Return the certificate; None where programs behind the proxy use plain HTTP."""
     certificate, key = os.environ.get(CERTIFICATE), os.environ.get(KEY)
     return InnerCertificate(folder, Path(certificate), Path(key)) if certificate and key else None
 
 
 def look_after(found: InnerCertificate, *, pause: Callable[[float], None] = time.sleep) -> None:
-    """Beside the program that this process becomes, for as long as it lives: SIGHUP makes its server start the worker again."""
+    """Watch the certificate beside this program as long as it lives: SIGHUP makes its server restart the worker."""
     program = os.getpid()
     if os.fork():
         return

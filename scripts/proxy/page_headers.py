@@ -1,13 +1,13 @@
-"""Headers that every answer of the proxy carries, above all what a page may load."""
+"""Headers of all of the proxy's responses, above all what a page may load."""
 
 from collections.abc import Iterable
 from urllib.parse import urlsplit
 
-STRICT_TRANSPORT = "max-age=31536000; includeSubDomains; preload"  # as config/settings.py has it for the application's answers
+STRICT_TRANSPORT = "max-age=31536000; includeSubDomains; preload"  # as in config/settings.py for the application's responses
 
 
 def origins(addresses: Iterable[str]) -> list[str]:
-    """Scheme and host of tile addresses; servers that are told apart by `{s}.` are any in front of the rest."""
+    """Return scheme and host of tile addresses; a `{s}.` subdomain becomes a wildcard."""
     found = set()
     for address in addresses:
         parts = urlsplit(address)
@@ -18,7 +18,7 @@ def origins(addresses: Iterable[str]) -> list[str]:
 
 
 def content_security_policy(tile_addresses: Iterable[str] = ()) -> str:
-    """What a page may load: everything from here, and raster tiles from the hosts that the settings name."""
+    """Return what a page may load: everything from this host, and raster tiles from the hosts in the settings."""
     tiles = "".join(f" {origin}" for origin in origins(tile_addresses))
     rules = [
         "default-src 'self'",
@@ -37,7 +37,7 @@ def content_security_policy(tile_addresses: Iterable[str] = ()) -> str:
 
 
 def headers(tile_addresses: Iterable[str], *, is_https: bool = False) -> str:
-    """Headers that every answer carries. nginx inherits none into a block that adds one of its own, so each block has them all."""
+    """Return the headers of every response. nginx inherits none into a block that adds its own, so each block needs all of them."""
     transport = f'\n            add_header Strict-Transport-Security "{STRICT_TRANSPORT}" always;' if is_https else ""
     return f"""\
             add_header Content-Security-Policy "{content_security_policy(tile_addresses)}" always;

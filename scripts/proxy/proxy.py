@@ -1,4 +1,4 @@
-"""The reverse proxy (nginx): its configuration for one installation, without anything of the machine's own."""
+"""The reverse proxy (nginx): its configuration for one installation, independent of the machine's own."""
 
 import json
 import os
@@ -23,12 +23,12 @@ from scripts.proxy.proxy_site import (
 )
 
 MAX_FILES = 65_536
-FILES_BESIDE = 256  # what nginx has open beside connections
-CONNECT_S = 1  # to a program in the same house; its backlog is long
-BASE_MAP_TILES = "https://tile.openstreetmap.org/{z}/{x}/{y}.png"  # as config/settings.py has it
-MAX_BODY = "8m"  # above the application's own limit, so that it answers in its own words
+FILES_BESIDE = 256  # nginx's open files besides connections
+CONNECT_S = 1  # to a program on the same machine; its backlog is long
+BASE_MAP_TILES = "https://tile.openstreetmap.org/{z}/{x}/{y}.png"  # as in config/settings.py
+MAX_BODY = "8m"  # above the application's own limit, so that the application responds
 
-# A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
+# A machine's mime.types may be missing or old, and browsers run only modules that are sent as JavaScript.
 MEDIA_TYPES = {
     "text/html": "html",
     "text/css": "css",
@@ -54,7 +54,7 @@ COMPRESSED = (
 
 
 def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too_large: str) -> str:
-    """What nginx answers itself: where the application is away, and where a body is too large to be passed on."""
+    """Return nginx's own responses: for an unavailable application, and for a body that is too large to pass on."""
     return f"""
         location @{name}_unavailable {{
             internal;
@@ -72,7 +72,7 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
 
 
 def _too_many(headers: str) -> str:
-    """What nginx answers to an address that asks for too much."""
+    """Return nginx's response to an address that exceeds its limits."""
     return f"""
         location @api_too_many {{
             internal;
@@ -120,7 +120,7 @@ def _proxied(
 
 
 def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
-    """What /ws/ is passed on to. A socket may be silent for as long as the program that speaks on it, three times over."""
+    """Return the location of /ws/. A socket may be silent for three times the keepalive interval of its program."""
     return f"""
         location /ws/ {{
             proxy_pass {to[0]};{to[1]}
@@ -140,7 +140,7 @@ def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
 
 
 def _has_metrics(sockets: Path) -> str:
-    """A port of its own for whoever collects metrics: /web-1/metrics and so on. Never that of the pages, and only where it is wanted."""
+    """Return a server for metrics on a port of its own: /web-1/metrics and so on; only where SPANWISE_METRICS_PORT is set."""
     port = os.environ.get("SPANWISE_METRICS_PORT", "")
     if not port:
         return ""
@@ -158,7 +158,7 @@ def _has_metrics(sockets: Path) -> str:
 
 
 def _line() -> str:
-    """How a request is written down: for people, or as JSON for programs."""
+    """Return the log format of a request: for users, or as JSON for programs."""
     if not is_asked_for():
         return """'$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id'"""
     reported = {"time": "$time_iso8601", "level": "INFO", "logger": "requests", "message": "$told_request", "program": "proxy"}
@@ -168,7 +168,7 @@ def _line() -> str:
 
 
 def _file_limit() -> int:
-    """How many files nginx may have open: a connection to a browser is one, and the one behind it another."""
+    """Return how many files nginx may have open: a client connection is one, and its upstream connection another."""
     return min(MAX_FILES, resource.getrlimit(resource.RLIMIT_NOFILE)[1])
 
 
@@ -177,7 +177,7 @@ def is_https_asked_for() -> bool:
 
 
 def configuration(places: Places, sockets: Path, port: int) -> str:
-    """The text of nginx.conf for `./run`."""
+    """Return nginx.conf for `./run`."""
     return site_configuration(
         Site(
             folder=places.process("proxy"),
@@ -193,7 +193,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
 
 
 def site_configuration(site: Site, *, beside: str = "") -> str:
-    """The text of nginx.conf; `beside` are more servers in it."""
+    """Return nginx.conf; `beside` holds further servers."""
     folder = site.folder
     tiles = (os.environ.get("SPANWISE_BASE_MAP_TILES", BASE_MAP_TILES), os.environ.get("SPANWISE_SATELLITE_TILES", ""))
     headers = page_headers.headers(tiles, is_https=site.is_https)
@@ -208,7 +208,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
             "uav_link": upstream_scheme(site, site.for_uavs),
         }.items()
     )
-    # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
+    # The application uses the last address: behind a TLS proxy the one that this proxy appends would be the same for all clients.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:
         visitor = "map $remote_addr $visitor { default $remote_addr; }"
@@ -228,10 +228,10 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         unavailable="Spanwise is starting or has been stopped. Please try again in a moment.",
         too_large="This is more than Spanwise takes in one request.",
     )
-    # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
-    again = "error" if site.web[0].startswith("unix:") else "error timeout"  # a machine that has gone refuses nothing
+    # Compression makes an ETag weak, which never matches in If-Match: all edits of missions would be refused.
+    again = "error" if site.web[0].startswith("unix:") else "error timeout"  # a machine that is down refuses no connection
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
-    # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
+    # A planning request changes nothing: if its program dies, another one gets it.
     plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")
     costly = "".join(
         _proxied(kind.location, "api", headers, scheme, to=web, again=again, limits=proxy_limits.of_requests(kind)) for kind in COSTLY

@@ -1,4 +1,4 @@
-"""What nginx refuses of one address: too many requests that cost much, and too many websockets (operation/address_limits.py)."""
+"""nginx's limits per address: expensive requests, and websockets (operation/address_limits.py)."""
 
 from operation.address_limits import COSTLY, CostlyKind, operators_per_address, requests_per_minute, sockets_per_address
 from scripts.places import CannotStart
@@ -6,8 +6,8 @@ from scripts.proxy.proxy_site import error_json
 
 TOO_MANY = error_json(429, "throttled", "Too many requests from this network address; see Retry-After.")
 RETRY_AFTER_S = 5
-NETWORK_OF_IPV6 = "~*(?:^|[ ,])(?<network>(?:[0-9a-f]{1,4}:){4})[0-9a-f:]+ *$"  # what one subscriber usually has: 64 bits
-SOCKETS_ABOVE = 16  # the program refuses first, with a close code; nginx a few later, so that a page learns why
+NETWORK_OF_IPV6 = "~*(?:^|[ ,])(?<network>(?:[0-9a-f]{1,4}:){4})[0-9a-f:]+ *$"  # usual network of one subscriber: 64 bits
+SOCKETS_ABOVE = 16  # the program refuses first, with a close code; nginx a few later, so that a page gets the reason
 
 
 def _operators() -> int:
@@ -18,7 +18,7 @@ def _operators() -> int:
 
 
 def zones() -> str:
-    """The counters, keyed on the visitor's own address: the last one, which the proxy in front has added."""
+    """Return the counters, keyed on the client's own address: the last one, which the proxy in front has appended."""
     operators = _operators()
     if not operators:
         return ""
@@ -32,7 +32,7 @@ def zones() -> str:
 
 
 def of_requests(kind: CostlyKind) -> str:
-    """What a location of this kind says."""
+    """Return the limits for a location of this kind."""
     operators = _operators()
     if not operators:
         return ""

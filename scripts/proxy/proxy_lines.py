@@ -1,7 +1,7 @@
-"""nginx, whose lines are JSON: python -m scripts.proxy.proxy_lines nginx ARGUMENT...
+"""nginx with JSON logs: python -m scripts.proxy.proxy_lines nginx ARGUMENT...
 
-nginx itself writes requests as JSON (scripts/proxy/proxy.py), faults never. Signals are passed on to it. No line has what stands behind the
-question mark of an address: people put secrets there.
+nginx itself writes requests as JSON (scripts/proxy/proxy.py), but never errors. Signals are passed on to it. No line contains the query
+of an address, which may hold secrets.
 """
 
 import re
@@ -21,7 +21,7 @@ PASSED_ON = (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT, signal.SIGHUP)
 
 
 def reported(line: str) -> str:
-    """A line of nginx as it is to be written down."""
+    """Return a line of nginx as it is to be logged."""
     if is_json(line):
         return line
     line = QUERY.sub("?...", line)
@@ -34,7 +34,7 @@ def reported(line: str) -> str:
 
 
 def start(command: list[str]) -> subprocess.Popen[str]:
-    """nginx, and a thread that writes down what it says of faults."""
+    """Start nginx, and a thread that logs its errors."""
     nginx = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, errors="replace")
     threading.Thread(target=_write_down, args=[nginx.stderr or ()], name="lines of nginx", daemon=True).start()
     return nginx

@@ -1,4 +1,4 @@
-"""Where one nginx listens, and which programs it stands in front of: on one machine sockets, in containers names."""
+"""Addresses of one nginx and of the programs behind it: sockets on one machine, names in containers."""
 
 import json
 from collections.abc import Iterable
@@ -8,16 +8,16 @@ from pathlib import Path
 
 from scripts.places import CannotStart
 
-ALIVE = "/proxy-alive"  # answered by nginx itself
+ALIVE = "/proxy-alive"  # nginx itself responds
 TLS_1_2_CIPHERS = (
     "ECDHE-ECDSA-AES128-GCM-SHA256:ECDHE-RSA-AES128-GCM-SHA256:ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384:"
     "ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305"
 )
-FOR_PROGRAMS = "~^/(api/v[0-9]+|ws)/"  # they are not led from http to https: nobody would notice what they send before
+FOR_PROGRAMS = "~^/(api/v[0-9]+|ws)/"  # not redirected from http to https: an earlier leak of secrets would go unnoticed
 
 
 def error_json(status: int, code: str, message: str) -> str:
-    """Return an error that nginx answers itself, in the shape of workspace.api.errors.error_body."""
+    """Return nginx's own error in the shape of workspace.api.errors.error_body."""
     problem = {"type": f"urn:problem-type:spanwise:{code}", "title": HTTPStatus(status).phrase, "status": status, "detail": message}
     return json.dumps({"error": {"code": code, "message": message, "details": None}, **problem})
 
@@ -27,17 +27,18 @@ REFUSAL = error_json(
     "https_required",
     "Programs are answered over https alone. What was sent here could be read on its way: a token that was in it is to be revoked.",
 )
-KEPT = 1_024  # connections to web that wait for their next request: as many as may be under way at once when much is asked
-BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
+KEPT = 1_024  # idle connections to web: as many as may be busy under high load
+BACKLOG = 4_096  # connections waiting to be accepted; the default limit of Linux (net.core.somaxconn)
 
 
 @dataclass(frozen=True)
 class Site:
-    """What one nginx stands in front of.
+    """The programs behind one nginx.
 
-    `web`, `live` and `uav_link` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) they are
-    one name each, asked for again every two seconds: behind it come and go as many programs as there are. Without a certificate and with
-    `is_behind_https` somebody in front has taken the TLS off, and says so.
+    `web`, `live` and `uav_link` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) each is
+    one
+    name, resolved every two seconds to any number of programs. Without a certificate and with `is_behind_https` a proxy in front terminates
+    TLS, and reports it in a header.
     """
 
     folder: Path
@@ -50,8 +51,8 @@ class Site:
     key: Path | None = None
     listens_at_tls: str = ""
     resolver: str = ""
-    uav_link: tuple[str, ...] = ()  # where UAVs are answered; without it by web
-    trust: Path | None = None  # the authority inside: with it the programs behind are spoken to by TLS alone, each by its own name
+    uav_link: tuple[str, ...] = ()  # the programs for UAVs; by default web
+    trust: Path | None = None  # the internal authority: with it the programs are reached only by TLS, each by its own name
 
     @property
     def for_uavs(self) -> tuple[str, ...]:
@@ -63,7 +64,7 @@ class Site:
 
 
 def quoted(path: object) -> str:
-    """A path as nginx reads it; spaces are fine, a dollar sign would be a variable."""
+    """Return a path quoted for nginx; spaces are allowed, a dollar sign would be a variable."""
     text = str(path)
     if set(text) & set('"\\$\n'):
         raise CannotStart(f"nginx cannot be given the path {text!r}: it holds a quotation mark, a backslash or a dollar sign")
@@ -71,14 +72,14 @@ def quoted(path: object) -> str:
 
 
 def upstreams(site: Site) -> str:
-    """Groups with connections that are kept; of a name that is asked for again there is none."""
+    """Return the upstream groups with keep-alive connections; resolved names have no groups."""
     if site.resolver:
         return f"    resolver {site.resolver} valid=2s;\n    resolver_timeout 2s;"
 
     def servers(addresses: Iterable[str], *, mark: str = "") -> str:
         return "\n".join(f"        server {quoted(address)} max_fails=0{mark};" for address in addresses)
 
-    instead = servers(site.web, mark=" backup") if site.uav_link else ""  # a program of UAVs that is being started leaves none unanswered
+    instead = servers(site.web, mark=" backup") if site.uav_link else ""  # web serves UAVs while their program starts
 
     return f"""    upstream web {{
         least_conn;
@@ -96,7 +97,7 @@ def upstreams(site: Site) -> str:
 
 
 def certificates(site: Site) -> str:
-    """Variables: nginx reads a file that a variable names at each handshake, so that a new one takes no reload."""
+    """Return variables with the certificate's paths: nginx reads such files at each handshake, so a new one needs no reload."""
     if site.certificate is None:
         return ""
     return f"""    map $ssl_server_name $served_certificate {{ default {quoted(site.certificate)}; }}
@@ -105,7 +106,7 @@ def certificates(site: Site) -> str:
 
 
 def upstream_scheme(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
-    """How the programs at these addresses are spoken to: the scheme, and what nginx is told of TLS."""
+    """Return the scheme of the programs at these addresses, and nginx's TLS directives."""
     if site.trust is None:
         return "http", ""
     name = addresses[0].rpartition(":")[0]
@@ -121,7 +122,7 @@ def upstream_scheme(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
 
 
 def entrances(site: Site) -> str:
-    """Where this server listens; with a certificate the plain port leads to the one with TLS."""
+    """Return the listen directives; with a certificate the plain port redirects to the TLS port."""
     plain = f"listen {site.listens_at} backlog={BACKLOG};"
     names = (
         f"        set $web {site.web[0]};\n        set $live {site.live[0]};\n        set $uav_link {site.for_uavs[0]};\n"
@@ -129,7 +130,7 @@ def entrances(site: Site) -> str:
         else ""
     )
     if site.certificate is None:
-        # Whoever took the TLS off says how the visitor came; what says nothing comes from inside.
+        # The proxy that terminates TLS reports the client's scheme; a request without the header comes from inside.
         led = refused_or_led() if site.is_behind_https else ""
         return f"        {plain}\n{led}{names}"
     return f"""        listen {site.listens_at_tls} ssl http2 backlog={BACKLOG};
@@ -145,14 +146,14 @@ def entrances(site: Site) -> str:
 
 
 def came_over_http() -> str:
-    """A variable: what becomes of a request whose visitor came without TLS, as the one in front says."""
+    """Return a variable: the treatment of a request whose client came without TLS, as reported by the proxy in front."""
     return f"""    map $uri $without_tls {{ "{FOR_PROGRAMS}" refused; default led; }}
     map $http_x_forwarded_proto $over_http {{ "http" $without_tls; default ""; }}
 """
 
 
 def refused_or_led() -> str:
-    """Pages lead to https, the addresses of programs say that they do not."""
+    """Return the rules: pages are redirected to https, requests of programs are refused."""
     return f"""        if ($over_http = led) {{ return 308 https://$host$request_uri; }}
         if ($over_http = refused) {{ rewrite ^ /.over-http last; }}
         location = /.over-http {{ internal; default_type application/json; return 403 '{REFUSAL}'; }}
@@ -160,7 +161,7 @@ def refused_or_led() -> str:
 
 
 def plain_server(site: Site) -> str:
-    """The port without TLS beside the one with it: a way there, and an answer to whoever looks whether the proxy lives."""
+    """Return the server for the port without TLS: redirects, and a response for health checks of the proxy."""
     if site.certificate is None:
         return ""
     return f"""

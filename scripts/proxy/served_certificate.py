@@ -1,7 +1,7 @@
-"""The certificate that the proxy serves: a copy, taken as a whole once certificate and key fit each other.
+"""The proxy's certificate: a copy, replaced as a whole once certificate and key match.
 
-nginx reads it at each handshake. So a new one takes no reload, which would close connections that somebody is about to use, and no
-visitor meets half of one.
+nginx reads it at each handshake. So a new one needs no reload, which would close connections about to be used, and clients never get a
+mismatched pair.
 """
 
 import shutil
@@ -12,7 +12,7 @@ CERTIFICATE, KEY = "tls.crt", "tls.key"
 
 
 class ServedCertificate:
-    """Of the files that somebody else renews, copies in a folder of the proxy's own."""
+    """Copies, in the proxy's own folder, of certificate files that are renewed elsewhere."""
 
     def __init__(self, folder: Path, certificate: Path, key: Path) -> None:
         self._folder = folder
@@ -20,8 +20,8 @@ class ServedCertificate:
         self._in_use = folder / "in-use"
         self._turn = 0
         self._served: Path | None = None
-        self._before: Path | None = None  # a handshake may be reading it still
-        shutil.rmtree(folder, ignore_errors=True)  # of a proxy before this one
+        self._before: Path | None = None  # a handshake may still be reading it
+        shutil.rmtree(folder, ignore_errors=True)  # left by an earlier proxy
         folder.mkdir(mode=0o700, parents=True)
 
     @property
@@ -33,7 +33,7 @@ class ServedCertificate:
         return self._in_use / KEY
 
     def take(self) -> bool:
-        """Whether what is named is served from now on. Not while certificate and key do not fit, as between two states."""
+        """Serve the current files; returns False while certificate and key do not match, as during a replacement."""
         self._turn += 1
         place = self._folder / str(self._turn)
         place.mkdir(mode=0o700)

@@ -1,1 +1,1 @@
-"""Programs that run together: how each is started, watched and stopped."""
+"""Starting, supervising and stopping the programs of an installation."""

@@ -1,4 +1,4 @@
-"""Running processes as /proc shows them: which of them stand in a folder of ours, and ending those."""
+"""Running processes from /proc: finding those with one of our working folders, and ending them."""
 
 import os
 import signal
@@ -7,12 +7,12 @@ import time
 from collections.abc import Iterable
 from pathlib import Path
 
-# What our programs run as. A shell that somebody has opened in one of the folders is not among them.
+# Executables of our programs. A user's shell in one of the folders does not count.
 OUR_PROGRAMS = ("postgres", "redis-server", "redis-check-rdb", "nginx", "python")
 
 
 def is_alive(pid: int) -> bool:
-    """False for a process that is gone and for one that is dead but not yet collected by its parent."""
+    """Whether the process exists and is not a zombie."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text()
     except OSError:
@@ -21,7 +21,7 @@ def is_alive(pid: int) -> bool:
 
 
 def processes_in(folders: Iterable[Path]) -> list[int]:
-    """Process ids of our programs whose working folder is one of these."""
+    """Return the process ids of our programs whose working folder is one of these."""
     wanted = {str(folder) for folder in folders}
     found = []
     for entry in Path("/proc").iterdir():
@@ -37,7 +37,7 @@ def processes_in(folders: Iterable[Path]) -> list[int]:
 
 
 def end_processes(folders: Iterable[Path], *, first_signal: signal.Signals = signal.SIGTERM, patience_s: float = 10.0) -> int:
-    """End our programs that stand in these folders, by kill -9 once patience is over. Returns how many there were."""
+    """End our programs in these folders, by SIGKILL after patience_s. Returns how many there were."""
     folders = list(folders)
     seen: set[int] = set()
     deadline = time.monotonic() + patience_s
@@ -55,7 +55,7 @@ def end_processes(folders: Iterable[Path], *, first_signal: signal.Signals = sig
 
 
 def end_session(process: subprocess.Popen[bytes], *, within_s: float) -> None:
-    """Of a process with a session of its own: it may stop what it has started first, and is killed with its children if it does not."""
+    """Interrupt a process with a session of its own, so that it can stop its children; after within_s kill all of them."""
     if process.poll() is not None:
         return
     process.send_signal(signal.SIGINT)

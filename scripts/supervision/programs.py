@@ -1,4 +1,4 @@
-"""The programs of one installation: what each is started with, in which order, and how it is stopped."""
+"""The programs of one installation: start commands, order, and how they are stopped."""
 
 import os
 import sys
@@ -27,7 +27,7 @@ class Program:
     environment: dict[str, str] = field(default_factory=dict)
 
     def start_command(self) -> list[str]:
-        """The command as the supervisor runs it: through scripts.supervision.start_program, which clears up after a killed instance."""
+        """Return the supervisor's command, through scripts.supervision.start_program, which cleans up after a killed instance."""
         options = [str(self.folder), "--stop-signal", self.stop_signal]
         if self.user:
             options += ["--user", self.user]
@@ -41,7 +41,7 @@ SERVERS = ("postgresql", "redis")
 
 
 def database_server(places: Places, sockets: Path, *, is_durable: bool = True) -> Program:
-    """PostgreSQL on a unix socket. A server for tests alone need not wait for the disk."""
+    """Return PostgreSQL on a unix socket. A server for tests does not wait for the disk."""
     data = places.data
     server = server_for(data)
     if server is None:
@@ -65,7 +65,7 @@ def database_server(places: Places, sockets: Path, *, is_durable: bool = True) -
 
 
 def queue_server(places: Places, sockets: Path) -> Program:
-    """Redis on a unix socket, with its append-only file."""
+    """Return Redis on a unix socket, with its append-only file."""
     settings = {
         "port": "0",
         "unixsocket": str(sockets / "redis.sock"),
@@ -83,7 +83,7 @@ def queue_server(places: Places, sockets: Path) -> Program:
 
 
 def _worker(places: Places, queue: str, processes: int) -> Program:
-    # QUIT is Celery's soft shutdown: running tasks get CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT, then go back to the queue.
+    # QUIT is Celery's soft shutdown: running tasks get CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT, then return to the queue.
     name = f"worker-{queue}"
     return Program(name, PROGRAM_STAGE, commands.worker(queue, processes), places.process(name), stop_signal="QUIT", patience_s=20)
 
@@ -94,32 +94,32 @@ def _web(places: Places, name: str, socket: Path) -> Program:
 
 
 def _gateway(places: Places) -> Program:
-    """Where vehicles connect. It waits for a port that another installation on the machine holds."""
+    """Return the MAVLink gateway. It waits for a port that another installation on the machine uses."""
     return Program("gateway", PROGRAM_STAGE, commands.management("run_gateway"), places.process("gateway"), patience_s=12)
 
 
 def _estimator(places: Places) -> Program:
-    """Where UAVs are between their reports. Another one beside it takes over when it is gone."""
+    """Return the estimator, which computes UAV positions between reports. A second one takes over when it fails."""
     return Program("estimator", PROGRAM_STAGE, commands.management("run_estimator"), places.process("estimator"), patience_s=12)
 
 
 def _simulator(places: Places) -> Program:
-    """Where simulated UAVs fly in real time."""
+    """Return the simulator, which flies simulated UAVs in real time."""
     return Program("simulator", PROGRAM_STAGE, commands.management("run_simulator"), places.process("simulator"), patience_s=12)
 
 
 def _reported(places: Places, sockets: Path, program: Program) -> Program:
-    """The same program, which tells how it does. Workers have several processes, which count together in a folder."""
+    """Return the program with metrics. A worker has several processes, which share a metrics folder."""
     environment = {"SPANWISE_PROGRAM": program.name, "SPANWISE_METRICS": f"unix:{health_socket(sockets, program.name)}"}
     if program.name.startswith("worker-"):
         environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
-        environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
+        environment["REMAP_SIGTERM"] = "SIGQUIT"  # TERM acts like QUIT on a worker
     memory = {name: os.environ.get(name, usual) for name, usual in commands.MEMORY.items()}
     return replace(program, environment=program.environment | memory | environment)
 
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:
-    """Every process of Spanwise itself."""
+    """Return every process of Spanwise itself."""
     return [
         _reported(places, sockets, program) if program.name in PROGRAMS_WITH_METRICS else program for program in _programs(places, sockets)
     ]

@@ -1,10 +1,10 @@
-"""Become one of the supervised programs: end what an earlier instance left behind, follow the supervisor into death, exec.
+"""Become one of the supervised programs: end leftovers of an earlier instance, exit with the supervisor, exec.
 
 python -m scripts.supervision.start_program FOLDER [--user NAME] [--stale FILE]... [--stop-signal NAME] -- COMMAND...
 
-A server that is ended by kill -9 leaves its workers behind, with the port or the data folder still in their hands; they are
-found by their working folder, which belongs to this program alone. Should the supervisor itself be killed, the kernel asks the
-program to stop (PR_SET_PDEATHSIG), so that nothing lives on without it.
+A server ended by SIGKILL leaves its workers behind, which still hold the port or the data folder; they are found by their working
+folder, which belongs to this program only. If the supervisor itself is killed, the kernel sends the program its stop signal
+(PR_SET_PDEATHSIG), so that nothing outlives it.
 """
 
 import argparse
@@ -21,7 +21,7 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def remove_stale_lock(path: Path) -> None:
-    """Remove a lock file of a server that is gone. Its process id may be in use again, so the server's own test is not enough."""
+    """Remove a lock file of a dead server. Its process id may be in use again, so the server's own test is not sufficient."""
     try:
         path.unlink()
     except FileNotFoundError:
@@ -62,7 +62,7 @@ def main() -> None:
     if os.getppid() != supervisor:
         raise SystemExit("the supervisor has gone")
     files, most_files = resource.getrlimit(resource.RLIMIT_NOFILE)
-    if files < most_files:  # a thousand open pages are a thousand files
+    if files < most_files:  # a thousand open pages need a thousand files
         resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
     os.execvp(options.command[0], options.command)  # noqa: S606 - no shell, the command is the supervisor's
 

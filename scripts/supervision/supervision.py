@@ -1,4 +1,4 @@
-"""The supervisor (supervisord): its configuration, starting it, talking to it, stopping it with everything it runs."""
+"""The supervisor (supervisord): configuration, start, calls, and shutdown with all of its programs."""
 
 import http.client
 import os
@@ -39,7 +39,7 @@ class _UnixConnection(http.client.HTTPConnection):
 
 
 class _UnixTransport(xmlrpc.client.Transport):
-    """XML-RPC over a unix socket, with an end to waiting: the supervisor's own transport waits for ever for one that hangs."""
+    """XML-RPC over a unix socket with a timeout: the supervisor's own transport has none."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()
@@ -50,7 +50,7 @@ class _UnixTransport(xmlrpc.client.Transport):
 
 
 def configuration(places: Places, sockets: Path, programs: Iterable[Program]) -> str:
-    """The text of supervisord.conf. A percent sign is doubled, as its parser wants; it reads the name of a log file twice."""
+    """Return supervisord.conf. A percent sign is doubled for its parser, twice in the name of a log file."""
     lines = [
         "[unix_http_server]",
         f"file={sockets / 'supervisor.sock'}",
@@ -99,7 +99,7 @@ def _environment(variables: dict[str, str]) -> str:
 
 @dataclass(frozen=True)
 class ProgramState:
-    """What the supervisor says of one program."""
+    """State of one program, as the supervisor reports it."""
 
     name: str
     state: str
@@ -109,7 +109,7 @@ class ProgramState:
 
 
 def serves(socket_file: Path) -> bool:
-    """Whether a program accepts connections there. Granian's sockets do from when its worker has loaded the application on."""
+    """Whether a program accepts connections there. Granian's sockets do once its worker has loaded the application."""
     with socket.socket(socket.AF_UNIX) as caller:
         caller.settimeout(CALL_TIMEOUT_S)
         return caller.connect_ex(str(socket_file)) == 0
@@ -132,7 +132,7 @@ class Supervisor:
             return False
 
     def is_alive(self) -> bool:
-        """True while its process is there, answering or not."""
+        """Whether its process exists, responsive or not."""
         return bool(processes_in([self.places.process("supervisor")]))
 
     def start(self, programs: list[Program]) -> None:
@@ -168,7 +168,7 @@ class Supervisor:
             self._call().startProcess(name, False)
 
     def states(self) -> list[ProgramState]:
-        """The programs' states; empty when the supervisor is not there."""
+        """Return the programs' states; empty when the supervisor does not run."""
         try:
             rows: list[dict[str, Any]] = self._call().getAllProcessInfo()
         except (OSError, http.client.HTTPException, xmlrpc.client.Error):
@@ -176,7 +176,7 @@ class Supervisor:
         return [ProgramState(row["name"], row["statename"], row["description"], row["start"], row["pid"]) for row in rows]
 
     def states_as_served(self) -> list[ProgramState]:
-        """The programs' states, where one that the proxy asks runs only once it serves: until then it starts."""
+        """Return the programs' states, in which one behind the proxy is starting until it serves."""
         return [
             replace(state, state="STARTING", description="does not serve yet")
             if state.state == "RUNNING" and state.name in SERVING_PROGRAMS and not serves(self.sockets / f"{state.name}.sock")
@@ -185,7 +185,7 @@ class Supervisor:
         ]
 
     def end_leftovers(self) -> None:
-        """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""
+        """End what a killed supervisor left behind. The kernel has signalled its programs; they get their time to stop."""
         end_processes([self.places.process("supervisor")], patience_s=TIMEOUT_WITH_SUPERVISOR_S)
         end_processes([self.places.data], first_signal=signal.SIGINT, patience_s=15.0)  # PostgreSQL's fast shutdown
         others = [entry for entry in (self.places.state / "processes").glob("*") if entry.is_dir()]
@@ -196,7 +196,7 @@ class Supervisor:
         deadline = time.monotonic() + STOP_TIMEOUT_S
         names = [state.name for state in self.states()]
         try:
-            # A shutdown alone stops one program after the other; these are stopped at once, each group together.
+            # A shutdown stops one program after the other; here each group is stopped in parallel.
             for group in ([name for name in names if name not in SERVERS], [name for name in names if name in SERVERS]):
                 for name in group:
                     self.stop_program(name)
@@ -204,13 +204,13 @@ class Supervisor:
                     time.sleep(0.05)
             self._call().shutdown()
         except (OSError, http.client.HTTPException, xmlrpc.client.Error):
-            pass  # not there, or on its way out already
+            pass  # not there, or already stopping
         else:
             while self.is_alive() and time.monotonic() < deadline:
                 time.sleep(0.05)
         self.end_leftovers()
 
     def stop_program(self, name: str) -> None:
-        """Ask it to end, and return at once; it is not started again."""
+        """Stop a program without waiting; it is not started again."""
         with suppress(xmlrpc.client.Fault):  # it was not running
             self._call().stopProcess(name, False)

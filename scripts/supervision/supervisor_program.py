@@ -1,4 +1,4 @@
-"""supervisord that goes on where nothing can be written: on a full disk it would end over its own words about lines that it cannot keep.
+"""supervisord for a full disk: unmodified it would exit on messages about lines that it cannot write.
 
 python -m scripts.supervision.supervisor_program [OPTION OF supervisord]...
 """
@@ -11,7 +11,7 @@ from supervisor.supervisord import main
 
 
 class Forgiving:
-    """A stream whose words may be lost."""
+    """A stream that ignores write errors."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream

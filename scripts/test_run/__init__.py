@@ -1,1 +1,1 @@
-"""How ./check runs its steps and judges what the tests report."""
+"""Running the steps of ./check, and applying the rules to test reports."""

@@ -1,6 +1,6 @@
-"""Runs steps: those of one lane one after the other, the lanes side by side. All run, even when one has failed.
+"""Run steps: those of one lane in sequence, the lanes in parallel. All run, even when one has failed.
 
-What a step prints goes to a file and is shown in the order of the steps, while it is written where it is the step's turn.
+A step's output goes to a file and is shown in the order of the steps, live for the step whose turn it is.
 """
 
 import os
@@ -28,7 +28,7 @@ class Step:
     command: list[str]
     lane: str = "checks"
     environment: dict[str, str] = field(default_factory=dict)
-    cache: Path | None = None  # pytest's, of a step that has a second try
+    cache: Path | None = None  # pytest's, of a step with a second try
     report: Path | None = None  # written by scripts.test_run.plugin, or in TAP where it ends in .tap
 
 
@@ -39,12 +39,12 @@ class Result:
     name: str
     code: int
     duration_s: float
-    late: tuple[str, ...] = ()  # tests that passed only the second time
+    late: tuple[str, ...] = ()  # tests that passed only on the second try
 
 
 @dataclass
 class _Run:
-    """A step and what has become of it."""
+    """A step and its process."""
 
     step: Step
     log: Path
@@ -74,7 +74,7 @@ class _Run:
 
 
 def _advance(runs: list[_Run], environment: dict[str, str]) -> None:
-    """Note what has ended, and start the next step of each lane that is free."""
+    """Record ended steps, and start the next step of each free lane."""
     for run in runs:
         run.note_end()
     busy = {run.step.lane for run in runs if run.process is not None and run.result is None}
@@ -85,7 +85,7 @@ def _advance(runs: list[_Run], environment: dict[str, str]) -> None:
 
 
 def _shown(runs: list[_Run]) -> Iterator[None]:
-    """Print what the steps write, in their order; yields while the step whose turn it is has not ended."""
+    """Print the steps' output in order; yields while the step whose turn it is has not ended."""
     for run in runs:
         print(f"\n── {run.step.name} {'─' * max(0, shutil.get_terminal_size((100, 24)).columns - len(run.step.name) - 4)}", flush=True)
         while run.process is None:
@@ -93,7 +93,7 @@ def _shown(runs: list[_Run]) -> Iterator[None]:
         with run.log.open("rb") as written:
             is_over = False
             while not is_over:
-                is_over = run.result is not None  # before the last look, or its last words were lost
+                is_over = run.result is not None  # before the last read, or its last lines would be lost
                 while part := written.read(65_536):
                     sys.stdout.buffer.write(part)
                 sys.stdout.flush()
@@ -102,7 +102,7 @@ def _shown(runs: list[_Run]) -> Iterator[None]:
 
 
 def run_all(to_run: list[Step], environment: dict[str, str], logs: Path) -> list[Result]:
-    """Run the steps and return how each ended; their output is kept in the folder `logs`."""
+    """Run the steps and return their results; their output is kept in the folder `logs`."""
     logs.mkdir(parents=True, exist_ok=True)
     runs = [_Run(step, logs / f"{number}.log") for number, step in enumerate(to_run)]
     with ExitStack() as ending:

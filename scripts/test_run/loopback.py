@@ -1,4 +1,4 @@
-"""Brings up the loopback interface of a network namespace that was just made, then becomes the program that it is given.
+"""Bring up the loopback interface of a new network namespace, then exec the given program.
 
 unshare --net python -m scripts.test_run.loopback PROGRAM [ARGUMENT...]
 """
@@ -14,7 +14,7 @@ REQUEST = struct.Struct("16sh14x")
 
 
 def bring_up(interface: bytes = b"lo") -> None:
-    """Raises OSError where that is not allowed."""
+    """Bring up an interface. Raises OSError where that is not permitted."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
         _name, flags = REQUEST.unpack(fcntl.ioctl(asked, GET_FLAGS, REQUEST.pack(interface, 0)))
         fcntl.ioctl(asked, SET_FLAGS, REQUEST.pack(interface, flags | UP))

@@ -1,4 +1,4 @@
-"""The plugin of pytest in ./check: servers of its own for each worker of pytest-xdist, and the report with the rule on skips.
+"""The pytest plugin of ./check: separate servers for each worker of pytest-xdist, and the report with the rule on skips.
 
 ./check names it in PYTEST_PLUGINS, so it is loaded before the settings are read.
 """
@@ -20,7 +20,7 @@ DATABASE_FIXTURES = {"db", "transactional_db", "django_db_setup"}
 
 
 def use_own_servers(environment: "os._Environ[str] | dict[str, str]") -> None:
-    """Fill in the patterns for this worker; its database is named by pytest-django."""
+    """Fill in the patterns for this worker; pytest-django names its database."""
     worker = environment.get("PYTEST_XDIST_WORKER")
     for name in WORKER_VARIABLES:
         if worker and (pattern := environment.get(f"CHECK_{name}")):
@@ -32,7 +32,7 @@ use_own_servers(os.environ)
 
 
 def kind_of(item: pytest.Item) -> str:
-    """`browser`, `database` or `unit`."""
+    """Return `browser`, `database` or `unit`."""
     if item.get_closest_marker("browser"):
         return "browser"
     uses_database = item.get_closest_marker("django_db") or DATABASE_FIXTURES & set(getattr(item, "fixturenames", ()))
@@ -40,10 +40,10 @@ def kind_of(item: pytest.Item) -> str:
 
 
 def waiting_first(items: Sequence[Item], is_waiting: Sequence[bool], workers: int) -> list[Item]:
-    """The items in an order in which each worker's part of them, all of about one length, begins with a share of those that wait.
+    """Return the items in an order in which each worker's part, of about equal length, begins with a share of the waiting ones.
 
-    pytest-xdist's `worksteal` cuts the list into such parts. While the browser tests keep the cores busy the others wait; what computes
-    comes after them, and no worker waits alone at the end.
+    pytest-xdist's `worksteal` cuts the list into such parts. Waiting tests run while the browser tests keep the cores busy; computing ones
+    follow, and no worker waits alone at the end.
     """
     waiting = [item for item, waits in zip(items, is_waiting, strict=True) if waits]
     computing = [item for item, waits in zip(items, is_waiting, strict=True) if not waits]
@@ -57,13 +57,13 @@ def waiting_first(items: Sequence[Item], is_waiting: Sequence[bool], workers: in
 
 
 def reason_of(report: pytest.TestReport | pytest.CollectReport) -> str:
-    """Reason of a skip, without the word that pytest puts before it."""
+    """Return the reason of a skip, without pytest's prefix."""
     where = report.longrepr
     return str(where[2] if isinstance(where, tuple) else where).removeprefix("Skipped: ")
 
 
 class Reporter:
-    """Writes the report, and fails the run in which a test was skipped that may not be, or in which no test ran."""
+    """Writes the report, and fails a run in which a test was skipped without permission, or no test ran."""
 
     def __init__(self, path: Path, project: Path) -> None:
         self.path, self.allowed, self.report = path, allowed_skips(project), Report()

@@ -1,6 +1,6 @@
-"""Report of one run of tests: how many ran by kind, each skip with its reason, and the rule on skips.
+"""Report of one test run: tests by kind, each skip with its reason, and the rule on skips.
 
-The reasons that a test may be skipped for are in pyproject.toml, [tool.spanwise.tests.allowed_skips]: a regular expression, and why.
+Permitted reasons of skips are in pyproject.toml, [tool.spanwise.tests.allowed_skips]: a regular expression, and why.
 """
 
 import json
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 FORBIDDEN_SKIPS = 8  # exit code, beside those of pytest (0 to 5)
-NO_TESTS = 5  # as pytest says it
+NO_TESTS = 5  # pytest's own exit code
 KINDS = ("unit", "database", "browser", "javascript")
 TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TOD[O])\b ?(?P<reason>.*)$", re.MULTILINE)
 TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
@@ -20,18 +20,18 @@ TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
 
 @dataclass
 class Report:
-    """Number of tests that ran by kind, and the reason of each skipped one by its name."""
+    """Number of tests by kind, and the reason of each skipped one by its name."""
 
     ran: Counter[str] = field(default_factory=Counter)
     skipped: dict[str, str] = field(default_factory=dict)
 
     def forbidden(self, allowed: Iterable[str]) -> dict[str, str]:
-        """Skips whose reason begins with none of the allowed patterns."""
+        """Return the skips whose reason matches no allowed pattern."""
         patterns = list(allowed)
         return {name: reason for name, reason in self.skipped.items() if not any(re.match(pattern, reason) for pattern in patterns)}
 
     def judge(self, code: int, allowed: Iterable[str]) -> int:
-        """Exit code of the run: a failure where a test was skipped that may not be, or where no test ran."""
+        """Return the exit code: a failure where a test was skipped without permission, or no test ran."""
         if code in (0, 1) and self.forbidden(allowed):
             return FORBIDDEN_SKIPS
         return NO_TESTS if code == 0 and not self.ran.total() else code
@@ -41,13 +41,13 @@ class Report:
 
 
 def allowed_skips(project: Path) -> list[str]:
-    """Return the patterns of the reasons that tests may be skipped for."""
+    """Return the patterns of permitted reasons for skips."""
     settings = tomllib.loads((project / "pyproject.toml").read_text())
     return list(settings.get("tool", {}).get("spanwise", {}).get("tests", {}).get("allowed_skips", {}))
 
 
 def read_report(path: Path) -> Report:
-    """Report that a run of pytest wrote; an empty one if it did not get that far."""
+    """Return the report of a pytest run; an empty one if it did not get that far."""
     try:
         kept = json.loads(path.read_text())
     except OSError:
@@ -56,7 +56,7 @@ def read_report(path: Path) -> Report:
 
 
 def read_tap(path: Path) -> Report:
-    """Report of `node --test` in the Test Anything Protocol. What is only to do counts as skipped."""
+    """Return the report of `node --test` in the Test Anything Protocol. To-do tests count as skipped."""
     try:
         text = path.read_text()
     except OSError:

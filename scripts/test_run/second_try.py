@@ -1,8 +1,8 @@
-"""The second try of tests that wait for pages, programs and radio: when a few of them fail beside everything else, they run again alone.
+"""The second try of tests that wait for pages, programs and radio: a few that fail under load run again alone.
 
-On a machine with other work a page or a program can be late for reasons of its own. What fails twice has failed, and so has a run in
-which many tests fail. What passed only the second time is named and kept in a file, and the third time in 20 runs is a failure.
-Tests that compute have no second try: what they find once is found.
+On a busy machine a page or a program can be late. A test that fails twice has failed, as has a run in which many tests fail. A test that
+passes only on the second try is reported and recorded in a file, and the third such pass in 20 runs is a failure.
+Computing tests have no second try, as their result is final.
 """
 
 import json
@@ -12,7 +12,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 MAX_SECOND_TRIES = 5
-WAITING_TESTS = (  # for other processes, more than they compute
+WAITING_TESTS = (  # which mostly wait for other processes
     "tests/browser/",
     "tests/config/test_drained_workers.py",
     "tests/deploy/",
@@ -34,12 +34,12 @@ MAX_LATE_PASSES = 2  # of one test in the counted runs
 
 
 def cache_arguments(cache: Path) -> list[str]:
-    """For pytest: in this folder it keeps the names of what failed, and only those of this run."""
+    """Return pytest's arguments to record the failed tests of only this run in a folder."""
     return ["-o", f"cache_dir={cache}", "--cache-clear"]
 
 
 def failed_tests(cache: Path) -> list[str]:
-    """Names of the tests that failed in the run whose cache this is."""
+    """Return the tests that failed in the run whose cache this is."""
     try:
         return list(json.loads((cache / "v" / "cache" / "lastfailed").read_text()))
     except OSError:
@@ -47,7 +47,7 @@ def failed_tests(cache: Path) -> list[str]:
 
 
 def second_command(command: list[str], cache: Path, waiting: tuple[str, ...] = WAITING_TESTS) -> list[str] | None:
-    """The same run with the failed tests alone, one at a time; None where nothing failed, too much did, or a test that does not wait."""
+    """Return the same run with only the failed tests, one at a time; None where none or too many failed, or one that does not wait."""
     failed = failed_tests(cache)
     if not 0 < len(failed) <= MAX_SECOND_TRIES or not all(name.startswith(waiting) for name in failed):
         return None
@@ -57,12 +57,12 @@ def second_command(command: list[str], cache: Path, waiting: tuple[str, ...] = W
 
 
 def late_passes_file(state: Path) -> Path:
-    """File of the late passes, a line of JSON for each run; CI names one that it keeps from run to run."""
+    """Return the file of late passes, a line of JSON per run; CI names one that persists between runs."""
     return Path(os.environ.get("SPANWISE_LATE_PASSES") or state / "late_passes.jsonl")
 
 
 def note_late_passes(path: Path, late: Iterable[str]) -> list[str]:
-    """Add a run to the file, and return the tests that now have passed late too often in the counted runs."""
+    """Add a run to the file, and return the tests that have passed late too often in the counted runs."""
     now = sorted(late)
     try:
         earlier = [json.loads(line) for line in path.read_text().splitlines() if line]
