@@ -1,3 +1,3 @@
-"""A UAV that is not there: it flies the very mission in JSBSim, and speaks MAVLink like any other."""
+"""Simulated UAVs: they fly missions in JSBSim and use MAVLink like real UAVs."""
 
 from simulation import reasons as reasons

@@ -1,4 +1,4 @@
-"""Registers the app with Django, what it asks of a mission before it is approved, and what it adds to event logs."""
+"""Registers the app with Django, its checks before approval, and its event sources."""
 
 from django.apps import AppConfig
 

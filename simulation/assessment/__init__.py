@@ -1,1 +1,1 @@
-"""From flown states to an assessment: pass, pass with warnings or fail, per route and target, each with its reasons."""
+"""Assessment of flown states: pass, pass with warnings or fail, by route and target, with reasons."""

@@ -1,4 +1,4 @@
-"""How near two UAVs of one mission came to each other, at the same moment in the air."""
+"""Closest points of approach of UAVs of one mission, at the same moment in the air."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from simulation.assessment.flown import AssessedRoute, FloatArray, FlownTrack, I
 
 @dataclass(frozen=True)
 class ClosestApproach:
-    """The moment at which two UAVs, by their places in the mission, were nearest to each other."""
+    """The closest point of approach of two UAVs, identified by their places in the mission."""
 
     uavs: tuple[int, int]
     beside_m: float
@@ -26,7 +26,7 @@ class ClosestApproach:
 
 
 def closest_approaches_of(routes: Sequence[AssessedRoute], *, step_s: float) -> list[ClosestApproach]:
-    """One for each pair that was in the air at the same time; the tracks are read every step_s of the mission's time."""
+    """Return one for each pair that was in the air at the same time. Tracks are sampled every step_s of mission time."""
     frame = frame_of(routes)
     if frame is None:
         return []
@@ -46,7 +46,7 @@ def closest_approaches_of(routes: Sequence[AssessedRoute], *, step_s: float) -> 
 
 
 def _by_step(route: AssessedRoute, frame: LocalFrame, step_s: float, ends_s: float) -> tuple[IntArray, FloatArray]:
-    """Numbers of the steps at which it was in the air, ascending, and east, north, up [m] at each; who hovers stays until the end."""
+    """Return the steps at which it was in the air, ascending, and east, north, up [m] at each. A hovering UAV stays until the end."""
     steps, places = [], []
     for track in route.tracks:
         if not len(track):

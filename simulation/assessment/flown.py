@@ -1,4 +1,4 @@
-"""What a simulated UAV did, as the assessment reads it: one row for each moment."""
+"""Flown tracks as input of the assessment: one row for each moment."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,9 +19,9 @@ NO_WAYPOINT = -1
 
 class TrackEnding(StrEnum):
     LANDED = "landed"
-    HOVERING = "hovering"  # after its last waypoint, as it was planned
+    HOVERING = "hovering"  # after its last waypoint, as planned
     CRASHED = "crashed"
-    UNFINISHED = "unfinished"  # longer than anybody would wait
+    UNFINISHED = "unfinished"  # not finished within the time limit
     REFUSED = "refused"  # it did not take off
 
 
@@ -31,11 +31,11 @@ class FlownTrack:
 
     t_s             seconds after the mission's departure
     position        (n, 2), lon, lat [deg]
-    amsl_m          above sea level, or above the assumed flat ground where no terrain is known
-    relative_m      above where this flight took off
+    amsl_m          AMSL, or above the assumed flat ground without terrain data
+    relative_m      above this flight's take-off
     battery_percent, used_wh
-    waypoint        sequence of the waypoint of the route that is flown to, NO_WAYPOINT before and after
-    is_coming_down  whether it is on its own way to the ground
+    waypoint        sequence of the route's waypoint that it flies to, NO_WAYPOINT before and after
+    is_coming_down  whether it descends to land
     attitude_deg    (n, 3), roll right wing down, pitch nose up, heading from true north
     """
 
@@ -62,7 +62,7 @@ class FlownTrack:
 
 @dataclass(frozen=True, eq=False)
 class FlownFlight:
-    """A flight of a route with what was flown of it; None for one that never began, as the one before it failed."""
+    """A flight of a route with its track; None if it never began, because the previous flight failed."""
 
     flight: Flight
     track: FlownTrack | None
@@ -70,7 +70,7 @@ class FlownFlight:
 
 @dataclass(frozen=True, eq=False)
 class AssessedRoute:
-    """A UAV's whole route. `uav` is its place in the mission; reserve_percent is what its plan leaves in the battery."""
+    """A UAV's whole route. `uav` is its place in the mission; reserve_percent is the reserve of its plan."""
 
     uav: int
     name: str
@@ -86,7 +86,7 @@ class AssessedRoute:
 
 
 def frame_of(routes: Sequence[AssessedRoute]) -> LocalFrame | None:
-    """One flat frame for all of them; None where nothing was flown."""
+    """Return one flat frame for all routes; None if nothing was flown."""
     flown = [track.position for route in routes for track in route.tracks if len(track)]
     if not flown:
         return None

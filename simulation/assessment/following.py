@@ -1,4 +1,4 @@
-"""How a flight kept to its route, and which of its targets it reached."""
+"""How closely a flight followed its route, and which targets it reached."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from simulation.assessment.flown import AssessedRoute, FloatArray, FlownTrack, I
 
 @dataclass(frozen=True)
 class Error:
-    """Root mean square and greatest [m], of so many moments; None where there was none."""
+    """Root mean square and maximum error [m]; None without samples."""
 
     rms_m: float | None
     max_m: float | None
@@ -26,7 +26,7 @@ class Following:
 
 
 def following_of(route: AssessedRoute) -> Following:
-    """Of all flights between their first and their last waypoint; the columns up and down are left out."""
+    """Return the errors of all flights between their first and last waypoint, without take-off and landing."""
     across, height, flown_to = [], [], []
     for flown in route.flights:
         if flown.track is not None and len(flown.track):
@@ -46,10 +46,10 @@ def following_of(route: AssessedRoute) -> Following:
 
 
 def errors_along(flight: Flight, track: FlownTrack) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Metres across and in height of each moment on a leg, and the waypoint that was flown to; all (k,), none below 0.
+    """Return metres across and in height for each moment on a leg, and the waypoint flown to; all (k,), not negative.
 
-    A leg is straight in place and height. A moment belongs to the leg that leads to the waypoint flown to; on a corner that is cut it
-    is measured from the leg before, too, and the nearer one counts: nobody flies round a corner without a radius.
+    A leg is straight in position and height. A moment belongs to the leg that ends at the waypoint flown to. It is also measured from the
+    previous leg, and the smaller error counts, as corners are flown with a radius.
     """
     first = flight.waypoints[0]
     frame = LocalFrame.around(*first.position)
@@ -74,7 +74,7 @@ def _from_leg(flown: FloatArray, relative_m: FloatArray, line: FloatArray, level
     nearest = start + share[:, None] * along
     across_m = np.hypot(*(flown - nearest).T)
     at_m = level_m[to - 1] + share * (level_m[to] - level_m[to - 1])
-    # A leg that only climbs has any height between its ends.
+    # On a vertical leg any height between its ends is correct.
     low, high = np.minimum(level_m[to - 1], level_m[to]), np.maximum(level_m[to - 1], level_m[to])
     is_column = squared < 1.0
     height_m = np.where(is_column, np.maximum(np.maximum(low - relative_m, relative_m - high), 0.0), np.abs(relative_m - at_m))
@@ -87,10 +87,10 @@ def _error(metres: FloatArray) -> Error:
 
 @dataclass(frozen=True)
 class AssessedVisit:
-    """What was flown of one waypoint.
+    """The visit of one waypoint.
 
-    closest_m is in place and height, None where nothing was flown; at_s when that was, after the mission's departure; late_s is that less
-    the planned time, None where none was planned. held_s counts the moments within `within_m`.
+    closest_m is the distance in position and height, None if nothing was flown. at_s is its time after the mission's departure. late_s is
+    at_s minus the planned time, None without one. held_s is the time within `within_m`.
     """
 
     waypoint: FrozenWaypoint
@@ -103,7 +103,7 @@ class AssessedVisit:
 
 
 def visits_of(route: AssessedRoute, *, within_m: float) -> list[AssessedVisit]:
-    """Of every waypoint of the route at which a UAV flies, in its order."""
+    """Return the visit of every waypoint of the route, in order."""
     found = []
     for number, flown in enumerate(route.flights):
         for waypoint in flown.flight.waypoints:
@@ -137,13 +137,13 @@ def _visit(waypoint: FrozenWaypoint, number: int, track: FlownTrack | None, with
 
 
 def _about(track: FlownTrack, sequence: int) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """From the leg to the waypoint to the one after it: a route may pass a place twice. Without such legs it was never on its way there."""
+    """Return the rows from the leg to the waypoint to the leg after it, as a route may pass a place twice; none without such legs."""
     own: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (track.waypoint == sequence) | (track.waypoint == sequence + 1)
     return own if (track.waypoint == sequence).any() else np.zeros(len(track), dtype=bool)
 
 
 def _between(places: np.ndarray[tuple[int, ...], np.dtype[np.float64]], nearest: int) -> tuple[float, float]:
-    """The nearest that the straight lines beside a moment come to the origin, and how far along the one after it that is."""
+    """Return the smallest distance of the segments beside a row to the origin, and its place along the next segment."""
     best, share = float(np.sqrt((places[nearest] ** 2).sum())), 0.0
     for other in (nearest - 1, nearest + 1):
         if not 0 <= other < len(places):

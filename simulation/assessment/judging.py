@@ -1,4 +1,4 @@
-"""All of a rehearsed mission under one set of conditions, held against the limits: a level, and the reasons for it."""
+"""Assesses a rehearsed mission under one set of conditions against the limits: a level, and its reasons."""
 
 import math
 from collections.abc import Callable, Iterator, Sequence
@@ -17,13 +17,13 @@ from simulation.assessment.limits import AssessmentFinding, AssessmentLimits, Fa
 from simulation.assessment.obstacles import Approach, Standing, ZoneApproach, lowest_of, nearest_standing, zone_approaches
 
 APPROACH_STEP_S = 0.2
-AS_PLANNED = 1.05  # of the planned energy
-NEAR_ZONES = 5  # of a route that are told of
+AS_PLANNED = 1.05  # factor on the planned energy
+NEAR_ZONES = 5  # reported for a route
 GroundHeights = Callable[[FloatArray], FloatArray]
 
 
 def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> AssessmentFinding | None:
-    """The strongest mean wind at the heights of a route, where it is more than can be flown: it is said before all that follows."""
+    """Return the strongest mean wind at the heights of a route, if it exceeds the airspeed limit. Known before the flight."""
     heights_m = {waypoint.altitude_agl_m for waypoint in route.waypoints}
     speed_mps, agl_m = max(((math.hypot(*conditions.wind_at(agl_m)), agl_m) for agl_m in heights_m), default=(0.0, 0.0))
     if speed_mps <= max_airspeed_mps:
@@ -34,7 +34,7 @@ def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airsp
 
 @dataclass(frozen=True)
 class FlightEnergy:
-    """One flight: watt-hours used, and percent left at its end; lowest_percent on the way."""
+    """One flight: watt-hours used, percent left at its end, and the minimum on the way."""
 
     flight: int
     used_wh: float
@@ -43,7 +43,7 @@ class FlightEnergy:
 
 
 def energy_of(route: AssessedRoute) -> list[FlightEnergy]:
-    """Of the flights that were flown."""
+    """Return the energy of each flown flight."""
     return [
         FlightEnergy(
             number,
@@ -58,9 +58,9 @@ def energy_of(route: AssessedRoute) -> list[FlightEnergy]:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """What flights are held against. ground_amsl_m takes (n, 2) lon, lat and gives (n,) metres, NaN where it is not known.
+    """Surroundings to assess flights against. ground_amsl_m takes (n, 2) lon, lat and returns (n,) metres, NaN if unknown.
 
-    departs_s: the mission's departure, seconds since the epoch; None for any time.
+    departs_s: the mission's departure [Unix s]; None: any time.
     """
 
     zones: ZoneTable
@@ -71,7 +71,7 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class TargetAssessment:
-    """One target. `closest_m` is the worst of its waypoints; at_s when the first was reached; battery left then."""
+    """One target. `closest_m` is the worst of its waypoints; at_s is when the first was reached, battery_percent the charge then."""
 
     target: int
     level: Level
@@ -86,7 +86,7 @@ class TargetAssessment:
 
 @dataclass(frozen=True)
 class RouteAssessment:
-    """One UAV's route."""
+    """Assessment of one UAV's route."""
 
     uav: int
     name: str
@@ -102,7 +102,7 @@ class RouteAssessment:
     zones: tuple[ZoneApproach, ...]
     lowest: Approach | None
     obstacle: Approach | None
-    widest_waypoint_m: float | None  # the worst of all waypoints: how near it was passed
+    widest_waypoint_m: float | None  # largest distance at which any waypoint was passed
     targets: tuple[TargetAssessment, ...]
 
 
@@ -117,7 +117,7 @@ class Assessment:
 def judge(
     routes: Sequence[AssessedRoute], around: Surroundings, limits: AssessmentLimits, *, known: Sequence[AssessmentFinding] = ()
 ) -> Assessment:
-    """known: findings that were there before the flight, such as a wind that the airframe cannot fly in."""
+    """Return the assessment. known: findings from before the flight, such as a wind above the airframe's limit."""
     closest_approaches = closest_approaches_of(routes, step_s=APPROACH_STEP_S)
     findings = [*known, *_of_closest_approaches(closest_approaches, limits)]
     assessments = []
@@ -216,7 +216,7 @@ def _of_endings(route: AssessedRoute) -> Iterator[AssessmentFinding]:
 def _of_energy(
     route: AssessedRoute, energy: Sequence[FlightEnergy], visits: Sequence[AssessedVisit], limits: AssessmentLimits
 ) -> Iterator[AssessmentFinding]:
-    """What is short is told of the route, and of the last target of the flight: without it the battery would have lasted longer."""
+    """Report a shortfall for the route and for the flight's last target, as omitting that one would have saved energy."""
     for one in energy:
         facts: Facts = {
             "name": route.name, "flight": one.flight + 1, "flights": len(route.flights), "percent": one.left_percent,
@@ -230,7 +230,7 @@ def _of_energy(
 
 
 def _is_as_planned(route: AssessedRoute, energy: Sequence[FlightEnergy]) -> bool:
-    """Whether it took no more than planned: then what it leaves is what its operator has seen on the plan."""
+    """Return whether it used no more than planned, so that the operator has seen the remaining charge in the plan."""
     return route.planned_wh is not None and sum(one.used_wh for one in energy) <= AS_PLANNED * route.planned_wh
 
 
@@ -266,7 +266,7 @@ def _of_visits(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: As
 
 
 def _of_times(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
-    """The waypoint farthest from its time."""
+    """Report the waypoint with the largest deviation from its time."""
     late = max((visit for visit in visits if visit.late_s is not None), key=lambda visit: abs(visit.late_s or 0.0), default=None)
     if late is not None and late.late_s is not None and abs(late.late_s) > limits.late_warn_s:
         code = "late" if late.late_s > 0 else "early"
@@ -275,7 +275,7 @@ def _of_times(route: AssessedRoute, visits: Sequence[AssessedVisit], limits: Ass
 
 
 def _nearest_zones(route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings) -> list[ZoneApproach]:
-    """The nearest that any flight of the route came to each zone, the nearest first."""
+    """Return the closest approach of the route's flights to each zone, the nearest first."""
     found: dict[int, ZoneApproach] = {}
     for flown, ground_m in zip(route.flights, grounds, strict=True):
         if flown.track is None:
@@ -301,7 +301,7 @@ def _zone_finding(route: AssessedRoute, zone: ZoneApproach, limits: AssessmentLi
 def _nearest(
     route: AssessedRoute, grounds: Sequence[FloatArray], around: Surroundings, limits: AssessmentLimits
 ) -> tuple[Approach | None, tuple[Approach | None, Approach | None]]:
-    """The lowest, and the nearest to what stands: on the way, and in the columns."""
+    """Return the lowest height, and the closest approaches to obstacles: en route, and in the columns of take-off and landing."""
 
     def nearer(one: Approach | None, other: Approach | None) -> Approach | None:
         return min((known for known in (one, other) if known is not None), key=lambda known: known.away_m, default=None)
@@ -340,7 +340,7 @@ def _of_standing(
 
 
 def _of_closest_approaches(closest_approaches: Sequence[ClosestApproach], limits: AssessmentLimits) -> Iterator[AssessmentFinding]:
-    """Each is told of both UAVs."""
+    """Report each for both UAVs."""
     for closest in closest_approaches:
         is_hit = closest.away_m < limits.apart_fail_m
         if not is_hit and not (closest.beside_m < limits.apart_warn_beside_m and closest.height_m < limits.apart_warn_height_m):

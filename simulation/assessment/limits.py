@@ -1,4 +1,4 @@
-"""What a flight is held against. Each limit has a source, which is shown beside the figures."""
+"""Limits of the assessment. Each has a source, shown beside the values."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
@@ -10,7 +10,7 @@ from planning.rules import FlightRules, SeparationRules
 
 @dataclass(frozen=True)
 class AssessmentLimits:
-    """`..._warn_...` is worth a warning, `..._fail_...` a fail."""
+    """`..._warn_...` are limits for a warning, `..._fail_...` for a fail."""
 
     waypoint_warn_m: float = 2.0
     waypoint_fail_m: float = 10.0
@@ -34,7 +34,7 @@ class AssessmentLimits:
 
     @classmethod
     def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_beside_m: float, zone_height_m: float) -> "AssessmentLimits":
-        """As the settings have them: a rehearsal is held against what the plan was made by."""
+        """Return the limits by the settings, so that a rehearsal is assessed by the rules of its plan."""
         return cls(
             late_warn_s=separation.time_s,
             zone_beside_m=max(zone_beside_m - TRACKING_M, 0.0),
@@ -46,8 +46,8 @@ class AssessmentLimits:
         )
 
 
-TRACKING_M = 2.0  # how far a UAV in simulated turbulence may stray from its line: the bar of the flight model
-REPORTED_SHORT_M = 5.0  # by which a flown line comes short of a planned clearance: tracking, and 2 m that plans round by
+TRACKING_M = 2.0  # deviation of a UAV from its line in simulated turbulence: the tolerance of the flight model
+REPORTED_SHORT_M = 5.0  # by which a flown line may fall short of a planned clearance: tracking, and 2 m of simplification in plans
 SOURCES: Mapping[str, str] = {
     "waypoint_warn_m": "acceptance radius of the simulated autopilot",
     "waypoint_fail_m": "PX4, NAV_ACC_RAD, default",
@@ -72,7 +72,7 @@ SOURCES: Mapping[str, str] = {
 
 
 def limits_to_json(limits: AssessmentLimits) -> dict[str, dict[str, float | str]]:
-    """By name, each with its value and its source."""
+    """Return the limits by name, each with its value and source."""
     return {name: {"value": value, "source": SOURCES[name]} for name, value in asdict(limits).items()}
 
 
@@ -89,9 +89,9 @@ Facts = dict[str, Fact]
 
 @dataclass(frozen=True)
 class AssessmentFinding:
-    """One thing that speaks against a flight. `code` names the sentence that `facts` are put into.
+    """A reason for a warning or a fail. `code` selects the sentence into which `facts` are inserted.
 
-    uav: the UAV's place in the mission; target: the target's place in the operator's list, from 0, where it is about one.
+    uav: the UAV's place in the mission; target: the target's place in the operator's list, from 0, if it concerns one.
     """
 
     level: Level
@@ -102,7 +102,7 @@ class AssessmentFinding:
 
 
 def worst(levels: Iterable[Level]) -> Level:
-    """The level of all of them together; nothing found is a pass."""
+    """Return the worst level; a pass without findings."""
     return max(levels, key=SEVERITY.__getitem__, default=Level.PASS)
 
 

@@ -1,4 +1,4 @@
-"""How near a flight came to obstacles and to zones."""
+"""Closest approach of a flight to obstacles and zones."""
 
 import math
 from dataclasses import dataclass
@@ -11,14 +11,14 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.zones.reach import HeightLimits, ZoneTable
 from simulation.assessment.flown import BoolArray, FloatArray, FlownFlight, FlownTrack
 
-LOOK_M = 60.0  # across the ground: what is farther is not told of
+LOOK_M = 60.0  # horizontal; approaches beyond it are not reported
 
 
 @dataclass(frozen=True, eq=False)
 class Standing:
-    """k spans from top to top; what stands alone is one from its place to its place. Wires hang no higher than straight between.
+    """k spans from top to top; a single object has equal ends. Wires are assumed straight between the tops, their highest position.
 
-    start, end (k, 2) lon, lat [deg]; start_top_m, end_top_m (k,) above sea level, or above the assumed flat ground.
+    start, end (k, 2) lon, lat [deg]; start_top_m, end_top_m (k,) AMSL, or above the assumed flat ground.
     """
 
     start: FloatArray
@@ -32,7 +32,7 @@ class Standing:
 
 @dataclass(frozen=True)
 class Approach:
-    """The nearest moment: metres, when, and to which waypoint it was flying. is_column: right over where it takes off or lands."""
+    """The closest moment: distance, time, and the waypoint flown to. is_column: above its take-off or landing place."""
 
     away_m: float
     t_s: float
@@ -42,7 +42,7 @@ class Approach:
 
 
 def lowest_of(flown: FlownFlight, ground_amsl_m: FloatArray, *, column_m: float) -> Approach | None:
-    """The least height above the ground, but for the columns of take-off and landing; None where the ground is not known there."""
+    """Return the lowest height above ground outside the columns of take-off and landing; None if the ground is unknown there."""
     track = flown.track
     if track is None:
         return None
@@ -51,9 +51,9 @@ def lowest_of(flown: FlownFlight, ground_amsl_m: FloatArray, *, column_m: float)
 
 
 def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float) -> tuple[Approach | None, Approach | None]:
-    """The nearest to a tower or wire on the way, and in the columns of take-off and landing; None for farther than LOOK_M.
+    """Return the closest approaches to a tower or wire, en route and in the columns of take-off and landing; None beyond LOOK_M.
 
-    What stands is a wall from the ground to its top, as sags are not known: over it the way up counts, beside it the way across.
+    As sags are unknown, an obstacle is a wall from the ground to its top: above it the vertical distance counts, beside it the horizontal.
     """
     track = flown.track
     if track is None or not len(standing) or not track.is_in_air.any():
@@ -81,7 +81,7 @@ def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float)
 
 
 def in_columns(flown: FlownFlight, column_m: float) -> BoolArray:
-    """(n,): whether a moment is over where the flight takes off, or where it came down."""
+    """Return (n,) whether each moment is above the flight's take-off or landing place."""
     track = flown.track
     assert track is not None  # noqa: S101 - callers look
     ends = [np.array(flown.flight.take_off.position)]
@@ -112,14 +112,15 @@ def _approach(track: FlownTrack, row: int, away_m: float, *, is_column: bool) ->
     return Approach(away_m, float(track.t_s[row]), int(track.waypoint[row]), LonLat(lon, lat), is_column)
 
 
-NEAR_DEG = 0.02  # some 2 km: farther zones are not told of
+NEAR_DEG = 0.02  # some 2 km: zones beyond it are not reported
 
 
 @dataclass(frozen=True)
 class ZoneApproach:
-    """The nearest that a flight came to a zone while it was in force.
+    """The closest approach of a flight to a zone in force.
 
-    beside_m is across the ground, 0 over, under or in it; height_m how far below or above its limits, 0 within them. Both 0: in it.
+    beside_m is the horizontal distance, 0 above, below or inside it. height_m is the distance below or above its limits, 0 within them.
+    Both are 0 inside the zone.
     """
 
     zone: int
@@ -139,10 +140,10 @@ class ZoneApproach:
 
 
 def zone_approaches(track: FlownTrack, ground_amsl_m: FloatArray, table: ZoneTable, departs_s: float | None) -> list[ZoneApproach]:
-    """The nearest moment of each zone near the flight, the nearest zone first.
+    """Return the closest approach to each zone near the flight, the nearest zone first.
 
-    ground_amsl_m (n,): below each moment, NaN where it is not known. departs_s: the mission's departure, seconds since the epoch; None:
-    it may fly at any time, so every zone is taken to be in force.
+    ground_amsl_m (n,): below each moment, NaN if unknown. departs_s: the mission's departure [Unix s]; None: it may fly at any time, so
+    every zone counts as in force.
     """
     rows = np.flatnonzero(track.is_in_air)
     if not len(rows) or not len(table):
@@ -177,7 +178,7 @@ def zone_approaches(track: FlownTrack, ground_amsl_m: FloatArray, table: ZoneTab
 
 
 def _in_force(table: ZoneTable, t_s: FloatArray, departs_s: float | None) -> BoolArray:
-    """(zones, n): whether each is in force, as its schedule states, at each moment."""
+    """Return (zones, n) whether each zone is in force at each moment, by its schedule."""
     if departs_s is None:
         return np.ones((len(table), len(t_s)), dtype=bool)
     moments = departs_s + t_s
@@ -189,7 +190,7 @@ def _in_force(table: ZoneTable, t_s: FloatArray, departs_s: float | None) -> Boo
 
 
 def _outside_m(limits: HeightLimits, amsl_m: FloatArray, agl_m: FloatArray) -> FloatArray:
-    """(n,): how far below the lower or above the upper limit; a limit that cannot be compared reaches everywhere."""
+    """Return (n,) the distance below the lower or above the upper limit; a limit that cannot be compared is unbounded."""
     below = np.zeros(len(amsl_m))
     above = np.zeros(len(amsl_m))
     if (height_m := _height(limits.lower_reference, amsl_m, agl_m)) is not None and limits.lower_m is not None:

@@ -1,4 +1,4 @@
-"""An assessment as it is kept and answered: plain values, with the codes and facts that sentences are made from."""
+"""Assessments as stored and returned: plain values, with the codes and facts of their sentences."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -30,7 +30,7 @@ def finding_to_json(finding: AssessmentFinding) -> dict[str, Any]:
 
 
 def track_to_json(tracks: Sequence[FlownTrack]) -> list[dict[str, Any]]:
-    """One object for each flight, columns of the same length, a row a second and the last one."""
+    """Return one object for each flight, with columns of equal length: one row per second, and the last."""
     return [_track(track) for track in tracks]
 
 

@@ -1,1 +1,1 @@
-"""A simulated UAV, step by step: the aircraft, its autopilot and mission executive, wind, battery and faults."""
+"""A simulated UAV, advanced in steps: aircraft, autopilot and mission, wind, battery and faults."""

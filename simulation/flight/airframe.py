@@ -1,4 +1,4 @@
-"""The airframes that can be flown: each is a JSBSim model file and a row here."""
+"""Airframes: each is a JSBSim model file and an entry here."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -10,15 +10,15 @@ AS_PLANNED = FlightRules()
 
 @dataclass(frozen=True, slots=True)
 class Airframe:
-    """What the autopilot has to know of a model file; the file has the physics, and names the source of each figure.
+    """Data of a model file for the autopilot. The file has the physics, and the source of each value.
 
-    max_airspeed_mps       what plans may count on; the tilt limit leaves some more, for gusts
-    max_speed_mps          over ground, whatever a mission asks for
-    climb_mps, descent_mps as plans count on, and as an operator sets the autopilot; each airframe can do more
-    acceleration_mps2      along a straight leg, speeding up and slowing down
-    corner_mps2            across, in the rounded corner before a waypoint that is passed; ArduCopter's is twice its WPNAV_ACCEL of 2.5
+    max_airspeed_mps       that plans may use; the tilt limit leaves some more for gusts
+    max_speed_mps          over ground, regardless of the mission
+    climb_mps, descent_mps as in plans, and as an operator sets the autopilot; each airframe can do more
+    acceleration_mps2      along a straight leg, accelerating and braking
+    corner_mps2            lateral, in the rounded corner before a passed waypoint; ArduCopter's is twice its WPNAV_ACCEL of 2.5
     empty_cell_v, full_cell_v, resistance_ohm
-                           the battery's open voltage between 0 and 100 %, and what a current takes of it
+                           the battery's open-circuit voltage at 0 and 100 %, and its internal resistance
     """
 
     code: str
@@ -68,7 +68,7 @@ AIRFRAMES = {
 
 
 class OwnAction(StrEnum):
-    """What the autopilot does without being told."""
+    """Actions of the autopilot without an order."""
 
     NONE = "none"
     HOLD = "hold"
@@ -78,13 +78,15 @@ class OwnAction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Heights are metres above the take-off, shares percent of a full battery. `return_adds_to_rally_point`: over a rally point the
-    height of returns counts from that point's own height, as PX4 has it; else the higher of both is flown, as ArduPilot does.
+    """Settings of the autopilot. Heights are metres above the take-off, shares are percent of a full battery.
 
-    Defaults as PX4 v1.15 has them where it has them: MIS_TAKEOFF_ALT 2.5, RTL_RETURN_ALT 60 (30 here: UAVs inspect low), RTL_MIN_DIST 10
-    (0 here, with RTL_CONE_ANG 0: it climbs however near home it is), BAT_LOW_THR 15 %, BAT_CRIT_THR 7 %, NAV_ACC_RAD 10 (2 here: a target
-    is to be passed), COM_DISARM_PRFLT 10 s. Its own answer to a low battery is a warning (COM_LOW_BAT_ACT 0); here it returns and then
-    lands, as those who fly over people set it.
+    `return_adds_to_rally_point`: the RTL height is measured from a rally point's own height, as PX4 does; else the higher of both is flown,
+    as ArduPilot does.
+
+    Defaults are those of PX4 v1.15 where it has them: MIS_TAKEOFF_ALT 2.5, RTL_RETURN_ALT 60 (30 here: inspections fly low), RTL_MIN_DIST
+    10 (0 here, with RTL_CONE_ANG 0: it climbs at any distance from home), BAT_LOW_THR 15 %, BAT_CRIT_THR 7 %, NAV_ACC_RAD 10 (2 here: a
+    target is to be passed), COM_DISARM_PRFLT 10 s. PX4's default action on a low battery is a warning (COM_LOW_BAT_ACT 0); here it returns
+    and then lands, the usual setting for flights over people.
     """
 
     take_off_height_m: float = 2.5

@@ -1,4 +1,4 @@
-"""The autopilot: it carries out a manoeuvre, looks after battery, position and ground, and commands the loops inside the model."""
+"""The autopilot: carries out a manoeuvre, monitors battery, position and ground, and commands the control loops of the model."""
 
 import math
 
@@ -12,12 +12,12 @@ from simulation.flight.mission import MissionManoeuvre
 from simulation.flight.plant import GUIDANCE_STEP_S, CameApart
 from simulation.flight.states import FlightMode, Severity
 
-STRENGTH = {FlightMode.RETURN: 1, FlightMode.LAND: 2}  # what is under way is not given up for less
-SETTLES_S = 2.0  # on the ground, until the model rests
+STRENGTH = {FlightMode.RETURN: 1, FlightMode.LAND: 2}  # a present action is not replaced by a weaker one
+SETTLES_S = 2.0  # on the ground, until the model is at rest
 
 
 class Failsafes:
-    """Each speaks and acts once, until what it is about is well again."""
+    """Failsafes; each reports and acts once until its cause is gone."""
 
     def __init__(self) -> None:
         self._battery_level = 0
@@ -25,7 +25,7 @@ class Failsafes:
         self._has_acted_on_gps = False
 
     def step(self, context: ManoeuvreContext, mode: FlightMode, battery_percent: float, *, is_gps_lost: bool) -> Manoeuvre | None:
-        """What to do from now on; None: as before."""
+        """Return a new manoeuvre; None: no change."""
         manoeuvre = self._gps(context, mode, is_gps_lost=is_gps_lost)
         return self._battery(context, mode, battery_percent) or manoeuvre
 
@@ -78,7 +78,7 @@ def _manoeuvre(action: OwnAction) -> Manoeuvre | None:
 
 
 class Autopilot:
-    """`revision` counts what has changed."""
+    """The autopilot. `revision` counts its changes."""
 
     def __init__(self, body: Body, context: ManoeuvreContext) -> None:
         self.body, self.context = body, context
@@ -112,11 +112,11 @@ class Autopilot:
 
     @property
     def now_s(self) -> float:
-        """Simulated seconds since the start."""
+        """Return the simulated seconds since the start."""
         return self._ticks * GUIDANCE_STEP_S
 
     def step(self) -> None:
-        """0.04 s of simulated time."""
+        """Advance 0.04 s of simulated time."""
         self._ticks += 1
         self.revision += 1
         context = self.context
@@ -135,7 +135,7 @@ class Autopilot:
         self._touch()
 
     def _is_parked(self) -> bool:
-        """Disarmed and at rest on the ground: time passes, and nothing moves."""
+        """Return whether it is disarmed and at rest on the ground: then only time advances."""
         if self.context.is_armed or self.context.is_in_air:
             self._rest_ticks = 0
             return False
@@ -186,7 +186,7 @@ class Autopilot:
         self.body.plant.fly((north, east, -up), (a_north, a_east, -a_up), self._heading_rad)
 
     def _wait_on_ground(self) -> None:
-        """Armed, and not off the ground: not for long."""
+        """Disarm after a time if it is armed and has not taken off."""
         self._armed_ticks += 1
         if self._armed_ticks * GUIDANCE_STEP_S > self.context.settings.disarm_on_ground_s and not (
             self.manoeuvre.lifts_off and not self.manoeuvre.is_done
@@ -202,7 +202,7 @@ class Autopilot:
             context.flown_m += math.hypot(context.velocity[0], context.velocity[1]) * GUIDANCE_STEP_S
 
     def _touch(self) -> None:
-        """Off the ground, onto it, or into it."""
+        """Detect take-off, landing and impact."""
         context, body = self.context, self.body
         if not context.is_in_air:
             if context.is_armed and body.above_standing_m > STEADY_M:
@@ -227,7 +227,7 @@ class Autopilot:
         self.body.plant.set_armed(False)
         self.body.plant.set_grounded(True)
         context.events.append(LandedAt(self.now_s, self.body.position))
-        self.manoeuvre.step(context)  # a mission's last item is told before the motors are
+        self.manoeuvre.step(context)  # a mission reports its last item before the motors stop
         self.disarm()
 
     def disarm(self) -> None:

@@ -1,4 +1,4 @@
-"""The aircraft itself: in its air, over its ground, on its battery, with what it knows of its place."""
+"""The aircraft: in its air, over its ground, with its battery and its estimated position."""
 
 import math
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ from simulation.flight.course import Vector
 from simulation.flight.faults import Weather
 from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, GroundElevation, Motion, Plant
 
-DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
-WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
-CATCH_UP_S = 1.0  # until a new fix is believed
+DRIFT_MPS = 0.3  # per axis, drawn when the fix is lost: the error of dead reckoning by compass, airspeed and tilt with an estimated wind
+WANDER_MPS = 0.03  # change of the drift in the first second; grows with the square root of time
+CATCH_UP_S = 1.0  # until a new fix is used
 MIN_V = 1.0
-VERTICAL_SHARE = 0.25  # near the ground gusts have little room to go up and down
+VERTICAL_SHARE = 0.25  # near the ground vertical gusts are weaker
 KELVIN = 273.15
-OFF_GROUND_M = 0.3  # above standing: from here on it flies
-STEADY_M = 0.2  # above standing: from here on the loops may integrate
+OFF_GROUND_M = 0.3  # above its standing height: in the air
+STEADY_M = 0.2  # above its standing height: integrators of the control loops start
 NEAR_GROUND_M = 0.5
 OVERTURNED_RAD = math.radians(60.0)
-HARD_DOWN_MPS, HARD_ALONG_MPS = 3.0, 2.5  # what the legs bear
-GROUND_EACH_M = 1.0  # the ground is asked for its height each time so far has been flown
+HARD_DOWN_MPS, HARD_ALONG_MPS = 3.0, 2.5  # that the legs withstand
+GROUND_EACH_M = 1.0  # flown distance after which the ground height is read again
 LOW_M, LOW_GROUND_EACH_M = 15.0, 0.2
-SEEDS_APART = 2_654_435_761  # keeps the draws of gusts, drift and turbulence apart (Knuth's multiplier)
+SEEDS_APART = 2_654_435_761  # separates the seeds of gusts, drift and turbulence (Knuth's multiplier)
 
 
 class Navigation:
-    """`error_m` is what its position is off to east and north."""
+    """Position estimate; `error_m` is its error to east and north."""
 
     def __init__(self, seed: int) -> None:
         self._random = Random(seed)
@@ -56,7 +56,7 @@ class Navigation:
 
 @dataclass(frozen=True, slots=True)
 class Battery:
-    """`left_wh` at the moment when `used_wh` was drawn; what is drawn after that comes off it."""
+    """A battery with `left_wh` at the time when `used_wh` had been used; later use reduces it."""
 
     airframe: Airframe
     left_wh: float
@@ -73,25 +73,25 @@ class Battery:
         return 100.0 * self.left_after(used_wh) / self.airframe.battery_wh
 
     def with_left(self, left_wh: float, used_wh: float) -> "Battery":
-        """Weakened, or exchanged, at this moment."""
+        """Return a weakened or replaced battery, from this moment on."""
         return Battery(self.airframe, min(left_wh, self.airframe.battery_wh), used_wh)
 
     def under_load(self, used_wh: float, power_w: float) -> tuple[float, float]:
-        """Volts and amperes: an open voltage that falls with the charge, less what the current takes of it."""
+        """Return volts and amperes: the open-circuit voltage falls with the charge, and with the current."""
         airframe = self.airframe
         share = self.left_after(used_wh) / airframe.battery_wh
         open_v = airframe.cells * (airframe.empty_cell_v + (airframe.full_cell_v - airframe.empty_cell_v) * share)
-        # P = U I and U = open - R I: the root with the small current; beyond the greatest power the voltage breaks down to half.
+        # P = U I and U = open - R I: the root with the small current. Above the maximum power the voltage falls to half.
         under_root = max(open_v**2 - 4.0 * airframe.resistance_ohm * power_w, 0.0)
         volts = max(0.5 * (open_v + under_root**0.5), MIN_V)
         return volts, power_w / volts
 
 
 class Gusts:
-    """Each step the air's velocity beside its mean, north, east and down [m/s], with the given deviation and time constant.
+    """Gusts: the air's velocity relative to its mean, north, east and down [m/s], at each step, with given deviation and time constant.
 
     The process is exact for any step (G. E. Uhlenbeck, L. S. Ornstein, On the Theory of the Brownian Motion, 1930): its deviation does not
-    depend on how finely it is stepped.
+    depend on the step.
     """
 
     def __init__(self, seed: int) -> None:
@@ -114,7 +114,7 @@ class Gusts:
 
 
 class SurroundingAir:
-    """`wind_ned_mps` is the velocity of the air at the UAV, without what Dryden turbulence adds to it."""
+    """The air around the UAV. `wind_ned_mps` is its velocity without the Dryden turbulence of JSBSim."""
 
     def __init__(self, plant: Plant, weather: Weather, *, ground_m: float, seed: int) -> None:
         self._plant = plant
@@ -141,7 +141,7 @@ class SurroundingAir:
 
 
 class Contact(StrEnum):
-    """Of a UAV in the air with the ground."""
+    """Contact of a UAV in the air with the ground."""
 
     NONE = "none"
     SOFT = "soft"
@@ -150,7 +150,7 @@ class Contact(StrEnum):
 
 
 class Body:
-    """Vectors are metres to east, north and up of where it stood first."""
+    """The aircraft. Vectors are metres to east, north and up of its starting place."""
 
     def __init__(
         self,
@@ -195,7 +195,7 @@ class Body:
         return self.motion.east_mps, self.motion.north_mps, -self.motion.down_mps
 
     def believed(self) -> Vector:
-        """Where it takes itself to be."""
+        """Return its estimated position."""
         east_m, north_m = self._level(self.position)
         off_east_m, off_north_m = self._navigation.error_m
         return east_m + off_east_m, north_m + off_north_m, self.motion.altitude_amsl_m - self.home_amsl_m
@@ -210,21 +210,21 @@ class Body:
         self._navigation.step(GUIDANCE_STEP_S, is_gps_lost=is_gps_lost)
 
     def advance(self) -> None:
-        """One guidance step. Raises CameApart, and is then where it was before."""
+        """Advance one guidance step. Raises CameApart, and keeps the previous state then."""
         self._before = self.motion
         self.motion = self.plant.advance()
         self._survey()
 
     def park(self) -> None:
-        """One guidance step in which nothing moves and the avionics are on."""
+        """Advance one guidance step without motion; the avionics draw power."""
         self._parked_j += self.motion.power_w * GUIDANCE_STEP_S
 
     def stop(self) -> None:
-        """For good, where it is."""
+        """Stop for good at its position."""
         self.motion = self.motion._replace(north_mps=0.0, east_mps=0.0, down_mps=0.0, power_w=0.0)
 
     def _survey(self) -> None:
-        """The ground below, asked for each time that some way has been flown; unknown ground is as it was before."""
+        """Read the ground height after each flown distance; unknown ground keeps the previous height."""
         position = self.position
         (east_m, north_m), (at_east_m, at_north_m) = self._level(position), self._level(self._ground_at)
         if math.hypot(east_m - at_east_m, north_m - at_north_m) <= (GROUND_EACH_M if self.agl_m > LOW_M else LOW_GROUND_EACH_M):
@@ -247,7 +247,7 @@ class Body:
 
     @property
     def impact_mps(self) -> float:
-        """How fast it was before the legs took it up."""
+        """Return its speed before the legs absorbed it."""
         return math.hypot(self._before.east_mps, self._before.north_mps, self._before.down_mps)
 
     # --- its battery ---------------------------------------------------------------------------------------------------------------

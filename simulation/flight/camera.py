@@ -1,10 +1,10 @@
-"""Photos by order, by time or by distance."""
+"""Photos on request, at time intervals or at distances."""
 
 from simulation.flight.orders import TakePhotos
 
 
 class Camera:
-    """`number` photos have been taken since the start."""
+    """The camera; `number` counts the photos since the start."""
 
     def __init__(self) -> None:
         self.number = 0
@@ -21,7 +21,7 @@ class Camera:
         self._order = None
 
     def is_due(self, now_s: float, flown_m: float) -> bool:
-        """Whether a photo is taken now; it is counted then."""
+        """Return whether a photo is taken now, and count it."""
         order = self._order
         if order is None:
             return False

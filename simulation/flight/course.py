@@ -1,7 +1,7 @@
-"""The way through a run of waypoints as lines and rounded corners, and how fast each bit of it may be flown.
+"""Course through waypoints as lines and rounded corners, with the speed limit of each piece.
 
-Lengths are metres in the east/north/up frame of the home. A corner is rounded by an arc that leaves the waypoint by at most
-`corner_m`; so sharp a turn is flown slowly, a slight one fast, and a reversal stands still on the spot.
+Lengths are metres in the east/north/up frame of the home. A corner is an arc that passes the waypoint within `corner_m`. Sharp turns are
+thus flown slowly and slight ones fast; a reversal stops at the waypoint.
 """
 
 import math
@@ -10,15 +10,15 @@ from dataclasses import dataclass, replace
 
 Vector = tuple[float, float, float]
 
-CORNER_M = 1.3  # how far inside a waypoint the corner may be cut; ArduCopter's WPNAV_RADIUS is 2 m, PX4's NAV_ACC_RAD 10 m
-STRAIGHT_RAD = 1e-3  # less of a turn is none
-REVERSAL_RAD = math.radians(150.0)  # more of a turn is made standing
+CORNER_M = 1.3  # how far inside a waypoint a corner may pass; ArduCopter's WPNAV_RADIUS is 2 m, PX4's NAV_ACC_RAD 10 m
+STRAIGHT_RAD = 1e-3  # smaller turns are straight
+REVERSAL_RAD = math.radians(150.0)  # larger turns are made at a stop
 MIN_LEG_M = 0.05
 
 
 @dataclass(frozen=True, slots=True)
 class Via:
-    """A point to fly to, at this speed over ground; `mark` is what is told when it is passed."""
+    """A point to fly to, at this ground speed. `mark` is reported when it is passed."""
 
     place: Vector
     speed_mps: float
@@ -27,7 +27,7 @@ class Via:
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimits:
-    """What the airframe may do on its way."""
+    """Limits of the airframe."""
 
     climb_mps: float
     descent_mps: float
@@ -37,7 +37,7 @@ class SpeedLimits:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A line (radius 0) or an arc: `along` is its direction at its beginning, `inward` points to an arc's centre."""
+    """A line (radius 0) or an arc. `along` is its direction at the start; `inward` points to an arc's centre."""
 
     start: Vector
     along: Vector
@@ -45,11 +45,11 @@ class Piece:
     radius_m: float
     length_m: float
     fastest_mps: float
-    end_mps: float  # no faster than this at its end
-    mark: int | None  # told when half of an arc, or the end of a line, is passed
+    end_mps: float  # maximum speed at its end
+    mark: int | None  # reported at the middle of an arc, or at the end of a line
 
     def at(self, s_m: float) -> tuple[Vector, Vector, float]:
-        """Place, direction, and curvature [1/m] after `s_m` metres."""
+        """Return place, direction and curvature [1/m] after `s_m` metres."""
         if self.radius_m == 0.0:
             (x, y, z), (u, v, w) = self.start, self.along
             return (x + u * s_m, y + v * s_m, z + w * s_m), self.along, 0.0
@@ -61,7 +61,7 @@ class Piece:
         return place, (cos * u + sin * a, cos * v + sin * b, cos * w + sin * c), 1.0 / self.radius_m
 
     def bend(self, s_m: float) -> Vector:
-        """Unit vector to the centre of the arc after `s_m` metres."""
+        """Return the unit vector to the arc's centre after `s_m` metres."""
         turned = s_m / self.radius_m
         sin, cos = math.sin(turned), math.cos(turned)
         (u, v, w), (a, b, c) = self.along, self.inward
@@ -79,7 +79,7 @@ class _Leg:
 
 @dataclass(frozen=True, slots=True)
 class _Corner:
-    """Between two legs: what it takes of both, and how fast it is flown. Radius 0: no arc."""
+    """Between two legs: the length that it takes from both, and its speed. Radius 0: no arc."""
 
     taken_m: float
     radius_m: float
@@ -88,10 +88,10 @@ class _Corner:
 
 
 def course(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> tuple[Piece, ...]:
-    """From `start` through all of `vias`, to a stand at the last. Points on one spot are passed together, and all their marks told."""
+    """Return the course from `start` through all `vias` to a stop at the last. Coincident points are passed together, with all their marks."""
     legs = _legs(start, vias, speed_limits)
     pieces: list[Piece] = []
-    cut_m = 0.0  # what the corner before has taken of this leg
+    cut_m = 0.0  # length of this leg that the previous corner uses
     for number, leg in enumerate(legs):
         follows = legs[number + 1] if number + 1 < len(legs) else None
         corner = None if follows is None else _corner(leg, follows, speed_limits)
@@ -138,7 +138,7 @@ def _corner(leg: _Leg, follows: _Leg, speed_limits: SpeedLimits) -> _Corner:
     if turn > REVERSAL_RAD or leg.length_m == 0.0:
         return _Corner(0.0, 0.0, 0.0, turn)
     tangent = math.tan(turn / 2.0)
-    # As wide as the speed needs, and as the waypoint and the legs leave room for.
+    # As wide as the speed needs, and as the waypoint and the legs permit.
     radius_m = min(
         CORNER_M / (1.0 / math.cos(turn / 2.0) - 1.0),
         slower_mps**2 / speed_limits.corner_mps2,
@@ -157,7 +157,7 @@ def _ahead(start: Vector, along: Vector, by_m: float) -> Vector:
 
 
 def _slowed_in_time(pieces: Sequence[Piece], deceleration_mps2: float) -> tuple[Piece, ...]:
-    """With the speed at the end of each piece so low that all that follows can be flown as slowly as it must."""
+    """Limit the end speed of each piece so that braking suffices for all following pieces."""
     slowed: list[Piece] = []
     after_mps = 0.0
     for piece in reversed(pieces):

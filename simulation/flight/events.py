@@ -1,4 +1,4 @@
-"""What happened in a flight, in the order it happened; times are simulated seconds since the start."""
+"""Events of a flight in chronological order; times are simulated seconds since the start."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from simulation.flight.states import FlightMode, Severity
 
 @dataclass(frozen=True, slots=True)
 class ItemReached:
-    """A mission item is done; `index` is its place in the list as it was loaded."""
+    """A mission item is done; `index` is its place in the loaded list."""
 
     at_s: float
     index: int
@@ -24,7 +24,7 @@ class MissionEnded:
 
 @dataclass(frozen=True, slots=True)
 class ModeChanged:
-    """`is_own`: by the UAV itself, not by an order."""
+    """`is_own`: changed by the UAV, not by an order."""
 
     at_s: float
     mode: FlightMode
@@ -33,7 +33,7 @@ class ModeChanged:
 
 @dataclass(frozen=True, slots=True)
 class PhotoTaken:
-    """Photo number `number` since the start, counted from 1, with where the camera looked."""
+    """Photo `number` since the start, counted from 1, with its position and heading."""
 
     at_s: float
     number: int
@@ -45,7 +45,7 @@ class PhotoTaken:
 
 @dataclass(frozen=True, slots=True)
 class StatusTextSent:
-    """A text for the operator."""
+    """A status text for the operator."""
 
     at_s: float
     text: Reason | str
@@ -69,7 +69,7 @@ class TookOff:
 
 @dataclass(frozen=True, slots=True)
 class LandedAt:
-    """Where the legs touched the ground for good."""
+    """The place of a landing."""
 
     at_s: float
     position: LonLat

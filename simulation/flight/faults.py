@@ -1,4 +1,4 @@
-"""What goes wrong: a value that can be replaced in flight."""
+"""Faults and weather: values that can be replaced in flight."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -8,7 +8,7 @@ from typing import Any
 from planning.energy.conditions import Conditions
 
 MAX_GUSTS_MPS = 15.0
-MAX_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe
+MAX_TURBULENCE_MPS = 40.0  # at 20 ft: 45 knots are severe in MIL-F-8785C
 GUST_TIME_S = 3.0
 MOTORS = 4
 FAULTS = frozenset({"link_lost_for_s", "gps_lost_for_s", "battery_wh_left", "motor_failed", "stuck_item", "clock_offset_s"})
@@ -17,16 +17,16 @@ LASTING = ("link_lost", "gps_lost")
 
 
 class ImpossibleWeather(ValueError):
-    """Gusts or turbulence that cannot be."""
+    """Gusts or turbulence out of range."""
 
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """Wind by height and temperature as a mission's conditions have them, and what the air does around its mean.
+    """Wind by height and temperature as in a mission's conditions, with gusts and turbulence.
 
-    gusts_mps              standard deviation of gusts to north and to east; a quarter of it up and down
-    gust_time_s            how long a gust lasts: the time constant of a Gauss-Markov process
-    turbulence_mps_at_20ft the wind at 20 ft that makes Dryden turbulence as MIL-F-8785C has it; 0: none
+    gusts_mps              standard deviation of gusts to north and to east; a quarter of it vertically
+    gust_time_s            duration of a gust: the time constant of a Gauss-Markov process
+    turbulence_mps_at_20ft wind at 20 ft of Dryden turbulence by MIL-F-8785C; 0: none
     """
 
     conditions: Conditions = field(default_factory=Conditions)
@@ -46,19 +46,19 @@ def _check(name: str, value: float, least: float, most: float) -> None:
 
 
 class ImpossibleFault(ValueError):
-    """A fault that this UAV cannot have."""
+    """A fault that is impossible for this UAV."""
 
 
 @dataclass(frozen=True, slots=True)
 class Faults:
-    """Times are simulated seconds since the start.
+    """Faults. Times are simulated seconds since the start.
 
-    link_lost_until_s   nothing is sent or heard until then; the link is the endpoint's matter
-    gps_lost_until_s    no fix until then: the UAV goes by dead reckoning, which drifts
-    battery_wh_left     what the battery holds from now on, less what is drawn from then; None: as it was
-    motor_failed        index of a rotor that stands still, 0 to 3
+    link_lost_until_s   nothing is sent or received until then; applied by the endpoint
+    gps_lost_until_s    no fix until then: dead reckoning, which drifts
+    battery_wh_left     charge from now on, reduced by later use; None: unchanged
+    motor_failed        index of a stopped rotor, 0 to 3
     stuck_item          index of a mission item that is never done
-    clock_offset_s      added to the UAV's own idea of the time of day; the endpoint's matter
+    clock_offset_s      added to the UAV's time of day; applied by the endpoint
     """
 
     link_lost_until_s: float = 0.0
@@ -87,11 +87,11 @@ Changed = Callable[[Faults, float], Faults]
 
 
 class WrongFaults(ValueError):
-    """Faults that no UAV can be given."""
+    """The description of faults is invalid."""
 
 
 def faults_from(reported: Any) -> Changed:
-    """From the faults before and simulated seconds to those from now on; what is not told stays as it is. Raises WrongFaults."""
+    """Return a function from previous faults and simulated seconds to the new faults. Omitted faults stay unchanged. Raises WrongFaults."""
     if not isinstance(reported, Mapping) or not reported.keys() <= FAULTS:
         raise WrongFaults(f"only {', '.join(sorted(FAULTS))} can be told")
     values: dict[str, Any] = {name: _value(name, value) for name, value in reported.items()}

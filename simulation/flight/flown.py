@@ -1,4 +1,4 @@
-"""A flight from arming to its end, as fast as the processor can."""
+"""Flies a mission from arming to its end, as fast as the processor permits."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,7 +9,7 @@ from simulation.flight.events import Crashed, Event
 from simulation.flight.states import FlightMode, MissionItemState, OrderRefused, SimulatedState
 from simulation.flight.uav import SimulatedUav
 
-MAX_DURATION_S = 4 * 3_600.0  # no battery of ours lasts so long
+MAX_DURATION_S = 4 * 3_600.0  # longer than any battery lasts
 SETTLES_S = 2.0  # after the last item, until it hovers there
 
 
@@ -17,12 +17,12 @@ class Ending(StrEnum):
     LANDED = "landed"
     HOVERING = "hovering"
     CRASHED = "crashed"
-    FLYING = "flying"  # its time was up
+    FLYING = "flying"  # the time limit was reached
     REFUSED = "refused"  # it did not take off
 
 
 class FlightSample(NamedTuple):
-    """Where it truly was. Heights above the take-off and above the ground below; the battery in percent."""
+    """True position. Heights are above the take-off and above ground; the battery is in percent."""
 
     at_s: float
     lon: float
@@ -34,7 +34,7 @@ class FlightSample(NamedTuple):
 
 @dataclass(frozen=True)
 class FlownFlightLog:
-    """`samples` begin with the arming. `end` is the state at the end; `refusal` why it did not take off."""
+    """Log of a flight. `samples` begin at arming, `end` is the final state, and `refusal` is why it did not take off."""
 
     ending: Ending
     samples: tuple[FlightSample, ...]
@@ -52,9 +52,9 @@ class FlownFlightLog:
 
 
 def fly_mission(uav: SimulatedUav, *, longest_s: float = MAX_DURATION_S, sample_steps: int = 1) -> FlownFlightLog:
-    """Arm, fly the mission that was loaded, until it stands on the ground, hovers after its last item, or has crashed.
+    """Arm and fly the loaded mission until it has landed, hovers after its last item, or has crashed.
 
-    A sample each `sample_steps` steps of 0.04 s. It ends for each mission: one that never comes to an end empties the battery.
+    Samples every `sample_steps` steps of 0.04 s. Terminates for every mission: an endless one empties the battery.
     """
     outcome = uav.set_mode(FlightMode.MISSION)
     if outcome.is_done:

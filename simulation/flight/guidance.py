@@ -1,4 +1,4 @@
-"""From where the UAV is and what it is to follow to velocities and accelerations for the loops inside the model."""
+"""Guidance: computes velocities and accelerations for the model's control loops from the UAV's position and its course."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -9,17 +9,17 @@ from simulation.flight.airframe import Airframe
 from simulation.flight.course import Piece, SpeedLimits, Vector
 
 NEAR_ENOUGH_M = 0.01
-MIN_SPEED_MPS = 0.1  # so that an end is reached and not only approached
+MIN_SPEED_MPS = 0.1  # so that an end is reached, not only approached
 STILL: Vector = (0.0, 0.0, 0.0)
 GATE_LEASH_M = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class SpeedLimiterRules:
-    """The reference slows from `lag_m` behind it on and waits at `most_lag_m`; likewise beside it.
+    """The reference slows down when the UAV lags by `lag_m` and waits at `most_lag_m`; likewise for lateral distance.
 
-    `effort` is the share of the horizontal acceleration that is asked for; above `high_effort` the speed falls by up to `fall_per_s` of
-    itself a second, below `low_effort` it comes back by `rise_per_s`.
+    `effort` is the used share of the horizontal acceleration. Above `high_effort` the speed falls by up to `fall_per_s` of itself per
+    second; below `low_effort` it recovers by `rise_per_s`.
     """
 
     lag_m: float = 0.8
@@ -40,7 +40,7 @@ class SpeedLimiter:
         self._share = 1.0
 
     def step(self, dt_s: float, *, lag_m: float, beside_m: float, effort: float) -> float:
-        """The share of its speed that the reference may go, 0 to 1."""
+        """Return the share of its speed that the reference may use, 0 to 1."""
         rules = self._rules
         self._effort += min(dt_s / rules.effort_time_s, 1.0) * (min(effort, 2.0) - self._effort)
         if self._effort > rules.high_effort:
@@ -53,12 +53,14 @@ class SpeedLimiter:
 
 
 def _falling(value: float, begins: float, ends: float) -> float:
-    """1 up to `begins`, 0 from `ends` on."""
+    """Return 1 up to `begins`, 0 from `ends` on, linear between."""
     return min(max((ends - value) / (ends - begins), 0.0), 1.0)
 
 
 class Reference:
-    """`place`, `along`, `speed_mps` and `gain_mps2` (of that speed) after each step; `is_at_end` once it stands at the last point."""
+    """Reference point on a course. `place`, `along`, `speed_mps` and `gain_mps2` (its derivative) are updated by each step; `is_at_end` is
+    set when it stops at the last point.
+    """
 
     def __init__(self, pieces: Sequence[Piece], speed_mps: float, acceleration_mps2: float) -> None:
         self._pieces = pieces
@@ -70,7 +72,7 @@ class Reference:
         self.place, self.along, self._curve = pieces[0].at(0.0) if pieces else ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0)
 
     def step(self, dt_s: float, share: float) -> list[int]:
-        """On by one step, at this share of the speed that may be flown. Returns the marks that were passed."""
+        """Advance one step at this share of the permitted speed. Returns the passed marks."""
         marks: list[int] = []
         if self.is_at_end:
             self.speed_mps, self.gain_mps2 = 0.0, 0.0
@@ -80,7 +82,7 @@ class Reference:
         in_time_mps = math.sqrt(piece.end_mps**2 + 2.0 * self._acceleration_mps2 * max(left_m, 0.0))
         wanted_mps = max(min(piece.fastest_mps * share, in_time_mps), min(MIN_SPEED_MPS, share * MIN_SPEED_MPS))
         change_mps = self._acceleration_mps2 * dt_s
-        # It slows as hard as the course asks for: it was drawn so that this is no more than what is gained each second.
+        # Braking follows the course, whose deceleration limit equals the acceleration limit.
         speed_mps = (
             min(wanted_mps, self.speed_mps + change_mps)
             if wanted_mps > self.speed_mps
@@ -108,7 +110,7 @@ class Reference:
         return marks
 
     def acceleration(self, lead_s: float) -> Vector:
-        """What the course asks for [m/s²]: to the side as it will in `lead_s`, since an attitude takes that long, and along it now."""
+        """Return the acceleration of the course [m/s²]: lateral as in `lead_s`, the time to change attitude, and along it now."""
         gain = self.gain_mps2
         u, v, w = self.along
         number, s_m = self._number, self._s_m + self.speed_mps * lead_s
@@ -129,7 +131,7 @@ class Reference:
 
 @dataclass(frozen=True, slots=True)
 class GuidanceRules:
-    """`pull_per_s`: m/s of correction for each metre off the reference, up to `most_pull_mps`; likewise up and down."""
+    """`pull_per_s`: m/s of correction per metre from the reference, up to `most_pull_mps`; likewise vertically."""
 
     pull_per_s: float = 1.2
     most_pull_mps: float = 3.0
@@ -137,7 +139,7 @@ class GuidanceRules:
     most_lift_mps: float = 1.5
     lead_s: float = 0.3
     slow_landing_mps: float = 0.6
-    landing_slope_per_s: float = 0.18  # m/s for each metre above ground: the last 8 m take the 11 s that plans count
+    landing_slope_per_s: float = 0.18  # m/s per metre above ground: the last 8 m take 11 s, as in plans
 
 
 class GuidanceCommand(NamedTuple):
@@ -149,17 +151,17 @@ class GuidanceCommand(NamedTuple):
 
 
 class Gate(NamedTuple):
-    """Where a mark is, and how near it counts as passed."""
+    """Place of a mark, and the radius within which it counts as passed."""
 
     place: Vector
     radius_m: float
 
 
 class Guidance:
-    """Follows a course, holds a place, or descends over one. `marks` are those that the UAV itself has passed in the last step.
+    """Follows a course, holds a place, or descends above one. `marks` are those that the UAV passed in the last step.
 
-    A mark is passed when the reference has been there and the UAV within the gate's radius of it. Until then the reference waits a little
-    way beyond: no waypoint is left out because the wind blew the UAV past it.
+    A mark is passed when the reference has passed it and the UAV has been within the gate's radius. Until then the reference waits shortly
+    beyond it, so that no waypoint is missed when wind drives the UAV past it.
     """
 
     def __init__(self, airframe: Airframe, rules: GuidanceRules | None = None, speed_limiter: SpeedLimiterRules | None = None) -> None:
@@ -181,7 +183,7 @@ class Guidance:
         return SpeedLimits(airframe.climb_mps, airframe.descent_mps, airframe.acceleration_mps2, airframe.corner_mps2)
 
     def follow(self, pieces: Sequence[Piece], velocity: Vector, gates: Mapping[int, Gate] | None = None) -> None:
-        """`velocity` is what the UAV has; `gates` are those of the marks."""
+        """Follow a course. `velocity` is the UAV's; `gates` are those of the marks."""
         along = pieces[0].along if pieces else STILL
         speed_mps = max(sum(one * other for one, other in zip(velocity, along, strict=True)), 0.0)
         self._reference = Reference(pieces, speed_mps, self._airframe.acceleration_mps2)
@@ -193,17 +195,17 @@ class Guidance:
         self._reference, self._place, self._is_descending = None, place, False
 
     def descend(self, place: Vector) -> None:
-        """Down to the ground over this place."""
+        """Descend to the ground above this place."""
         self._reference, self._place, self._is_descending = None, place, True
 
     @property
     def goal(self) -> Vector:
-        """Where it will stand in the end."""
+        """Return the place where it will stop."""
         return self._place
 
     @property
     def is_at_end(self) -> bool:
-        """The reference stands where the course ends."""
+        """Return whether the reference has stopped at the end of the course."""
         return self._reference is None or (self._reference.is_at_end and not self._pending)
 
     def step(self, dt_s: float, here: Vector, *, above_m: float, effort: float) -> GuidanceCommand:

@@ -1,4 +1,4 @@
-"""What a manoeuvre sees of the UAV and may do with it."""
+"""Context of a manoeuvre: the UAV's state and its controls."""
 
 import math
 from dataclasses import dataclass, field
@@ -19,9 +19,9 @@ from simulation.flight.states import RallyPoint, Severity
 
 @dataclass
 class ManoeuvreContext:
-    """Vectors are metres to east, north and up of the home; `here` is where the UAV takes itself to be.
+    """Vectors are metres to east, north and up of the home; `here` is the UAV's estimated position.
 
-    `looks_at` and `heading_deg` override the heading along the course, the first before the second.
+    `looks_at` and `heading_deg` override the heading along the course; `looks_at` has precedence.
     """
 
     airframe: Airframe
@@ -51,7 +51,7 @@ class ManoeuvreContext:
         self.events.append(StatusTextSent(self.now_s, text, severity))
 
     def level_of(self, position: LonLat) -> tuple[float, float]:
-        """East and north of home [m]."""
+        """Return east and north of home [m]."""
         east_m = (position.lon - self.home.lon) * self.frame.metres_per_degree_east
         return east_m, (position.lat - self.home.lat) * self.frame.metres_per_degree_north
 
@@ -60,7 +60,7 @@ class ManoeuvreContext:
         return LonLat(lon, self.home.lat + place[1] / self.frame.metres_per_degree_north)
 
     def vector_of(self, place: OrderPlace) -> Vector:
-        """Where a mission's place is; what it leaves open is where the UAV is."""
+        """Return the place of an order; open values are those of the UAV."""
         east_m, north_m = self.here[:2] if place.position is None else self.level_of(place.position)
         if place.height_m is None:
             return east_m, north_m, self.here[2]
@@ -72,19 +72,19 @@ class ManoeuvreContext:
         return east_m, north_m, place.height_m + (ground_m - self.home_amsl_m if math.isfinite(ground_m) else 0.0)
 
     def nearest_rally_point(self) -> Vector:
-        """Where a return leads: home, or the rally point that is nearer; its height is the point's own."""
+        """Return the destination of RTL: home or a nearer rally point, with the point's own height."""
         points = [(*self.level_of(rally_point.position), rally_point.height_relative_m) for rally_point in self.rally_points]
         return min([(0.0, 0.0, 0.0), *points], key=lambda point: math.dist(point[:2], self.here[:2]))
 
     def fly_through(self, vias: list[Via], gates: dict[int, Gate] | None = None) -> None:
-        """From here through these points to a stand at the last."""
+        """Fly from here through these points to a stop at the last."""
         self.guidance.follow(course(self.here, vias, self.guidance.speed_limits), self.velocity, gates)
 
     def fly_to(self, place: Vector) -> None:
         self.fly_through([Via(place, self.speed_mps)])
 
     def stand(self) -> None:
-        """Where the UAV comes to a stand when it brakes now."""
+        """Brake, and hold where the UAV comes to a stop."""
         east, north, up = self.velocity
         speed_mps = math.sqrt(east * east + north * north + up * up)
         if speed_mps < 0.5:
@@ -95,5 +95,5 @@ class ManoeuvreContext:
         self.fly_through([Via((x + east * way, y + north * way, z + up * way), speed_mps)])
 
     def is_there(self, within_m: float) -> bool:
-        """It stands where the course ended."""
+        """Return whether it has stopped at the end of the course."""
         return self.guidance.is_at_end and math.dist(self.guidance.goal, self.here) < within_m

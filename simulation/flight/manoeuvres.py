@@ -1,4 +1,4 @@
-"""What the UAV is doing: holding, taking off, flying somewhere, returning, landing. A mission is one more, made of these."""
+"""Manoeuvres: hold, take-off, go to, circle, return and land. A mission is another one, composed of these."""
 
 import math
 from typing import Protocol
@@ -7,16 +7,16 @@ from simulation.flight.course import Vector, Via
 from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.states import FlightMode
 
-INSIDE_M = 0.1  # by which the chords may lie inside the circle
+INSIDE_M = 0.1  # how far the chords may lie inside the circle
 MAX_RAD = math.radians(15.0)  # of one chord
 AT_HEIGHT_M = 0.5
 OVER_PLACE_M = 0.5
 
 
 def around(centre: Vector, start: Vector, turns: float, radius_m: float) -> list[Vector]:
-    """From the point nearest to `start`, at the height of the centre, clockwise from above, with a radius below 0 the other way.
+    """Return the points of a circle, clockwise from above from the point nearest to `start`; a negative radius turns the other way.
 
-    The first point is also the only one where there is nothing to turn.
+    The points are at the height of the centre. Without turns the result is the first point only.
     """
     radius = abs(radius_m)
     begin = math.atan2(start[0] - centre[0], start[1] - centre[1])
@@ -29,9 +29,9 @@ def around(centre: Vector, start: Vector, turns: float, radius_m: float) -> list
 
 
 class Manoeuvre(Protocol):
-    """`begin` once, then `step` before each step of guidance; `is_done` when there is nothing more to do.
+    """Call `begin` once, then `step` before each guidance step; `is_done` when complete.
 
-    `is_landing`: the ground is to be touched. `lifts_off`: it can begin on the ground.
+    `is_landing`: ground contact is intended. `lifts_off`: it can begin on the ground.
     """
 
     mode: FlightMode
@@ -47,7 +47,7 @@ class Manoeuvre(Protocol):
 
 
 class Hold:
-    """Stands where it comes to a stand."""
+    """Stops and holds."""
 
     mode = FlightMode.HOLD
     lifts_off = False
@@ -62,7 +62,7 @@ class Hold:
 
 
 class TakeOffManoeuvre:
-    """Straight up to a height above home; done there."""
+    """Climbs vertically to a height above home."""
 
     mode = FlightMode.TAKE_OFF
     lifts_off = True
@@ -85,7 +85,7 @@ class TakeOffManoeuvre:
 
 
 class GoTo:
-    """To a place, and stays there."""
+    """Flies to a place and holds there."""
 
     mode = FlightMode.GO_TO
     lifts_off = False
@@ -103,7 +103,7 @@ class GoTo:
 
 
 class Around:
-    """To the nearest point of a circle, so many times around its centre, and to a stand; see circle.around."""
+    """Flies to the nearest point of a circle, the given turns around its centre, and stops; see `around`."""
 
     mode = FlightMode.GO_TO
     lifts_off = False
@@ -121,7 +121,7 @@ class Around:
 
 
 class Land:
-    """Flies over the place at the height it has, or stays over where it is, and descends to the ground. Touching it ends the manoeuvre."""
+    """Flies above the place at its present height, or stays above its position, and descends. Ground contact ends the manoeuvre."""
 
     mode = FlightMode.LAND
     lifts_off = False
@@ -146,7 +146,7 @@ class Land:
 
 
 class Return:
-    """Up to the height of returns, at that height home or to the rally point that is nearer, and down. Near there it does not climb."""
+    """Climbs to the RTL height, flies home or to a nearer rally point, and lands. Near the destination it does not climb."""
 
     mode = FlightMode.RETURN
     lifts_off = False

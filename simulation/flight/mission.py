@@ -1,4 +1,4 @@
-"""A mission as a manoeuvre: the orders of its items, one run between two stops after the other."""
+"""A mission as a manoeuvre: the orders of its items, flown in runs between two stops."""
 
 from simulation.flight import orders as flown
 from simulation.flight.course import Via
@@ -8,9 +8,9 @@ from simulation.flight.manoeuvre_context import ManoeuvreContext
 from simulation.flight.manoeuvres import Around, Land, Manoeuvre, Return, TakeOffManoeuvre
 from simulation.flight.states import FlightMode
 
-MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed nearer
+MIN_RADIUS_M = 1.0  # corners are rounded: a waypoint is not always passed closer
 STOPPED_WITHIN_M = 0.5
-MAX_ORDERS_A_STEP = 50  # a list may jump in a circle without flying anywhere
+MAX_ORDERS_A_STEP = 50  # a list may loop by jumps without flying
 
 
 class MissionManoeuvre:
@@ -25,7 +25,7 @@ class MissionManoeuvre:
         self._jumped: dict[int, int] = {}
         self._part: Manoeuvre | None = None
         self._waits_until_s: float | None = None
-        self._run_end: int | None = None  # the item at which this run comes to a stand
+        self._run_end: int | None = None  # the item at which this run stops
         self._stuck: int | None = None
 
     @property
@@ -33,7 +33,7 @@ class MissionManoeuvre:
         return self._part is not None and self._part.is_landing
 
     def begin(self, context: ManoeuvreContext) -> None:
-        """From where the UAV is; what was under way before is begun again, looking where the items before it had it look."""
+        """Begin at the UAV's position. An interrupted item is started again, with the view direction of the items before it."""
         self._part, self._waits_until_s, self._run_end = None, None, None
         looks = [order for order in self.orders[: self.index] if isinstance(order, flown.LookAt)]
         if looks:
@@ -43,13 +43,13 @@ class MissionManoeuvre:
 
     def step(self, context: ManoeuvreContext) -> None:
         if self._stuck != context.faults.stuck_item and self._run_end is not None:
-            self._run_end = None  # to be flown from here anew, with another end
+            self._run_end = None  # flown again from here, with another end
         for _ in range(MAX_ORDERS_A_STEP):
             if self.is_done or not self._advances(context):
                 return
 
     def _advances(self, context: ManoeuvreContext) -> bool:
-        """Go on with the order in hand; whether the next can be begun in this very step."""
+        """Advance the present order; return whether the next can begin in this step."""
         if self.index >= len(self.orders):
             self.is_done = True
             context.events.append(MissionEnded(context.now_s))
@@ -100,11 +100,11 @@ class MissionManoeuvre:
             return False
         self._part = None
         if isinstance(part, TakeOffManoeuvre) and not isinstance(self.orders[self.index], flown.TakeOffOrder):
-            return True  # what was begun on the ground is flown to now
+            return True  # an item begun on the ground is now flown to
         return self._reached(context)
 
     def _begin_run(self, context: ManoeuvreContext) -> None:
-        """Through all waypoints up to the next at which it stops, with the speeds that are set on the way."""
+        """Fly through all waypoints up to the next stop, with the speeds set in between."""
         vias, gates = [], {}
         self._stuck = context.faults.stuck_item
         speed_mps, end = context.speed_mps, self.index
@@ -145,7 +145,7 @@ class MissionManoeuvre:
         return self._reached(context)
 
     def _pass(self, context: ManoeuvreContext, mark: int) -> None:
-        """All items up to this one are done, those for which it does not stop among them; then the ones that follow it at once."""
+        """Complete all items up to this one, including those without a stop, then immediate items that follow."""
         while self.index <= mark:
             self._do(context, self.orders[self.index])
             if not self._reached(context):
@@ -164,7 +164,7 @@ class MissionManoeuvre:
             context.heading_deg = order.heading_deg
 
     def _do(self, context: ManoeuvreContext, order: flown.Order) -> None:
-        """What takes no time."""
+        """Carry out an order that takes no time."""
         if isinstance(order, flown.SetSpeed):
             context.speed_mps = min(order.speed_mps, context.airframe.max_speed_mps)
         elif isinstance(order, flown.LookAt):

@@ -1,4 +1,4 @@
-"""Mission items as orders that can be flown: read once, when a list is loaded."""
+"""Mission items as orders that can be flown, parsed when a list is loaded."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ _TERRAIN = {mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRA
 
 
 class Above(StrEnum):
-    """What a height counts from."""
+    """Reference of a height."""
 
     SEA = "sea"
     HOME = "home"
@@ -30,7 +30,7 @@ class Above(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class OrderPlace:
-    """`position` None: where the UAV is; `height_m` None: as high as it is."""
+    """A place. `position` None: the UAV's position; `height_m` None: its height."""
 
     position: LonLat | None
     height_m: float | None
@@ -44,7 +44,7 @@ class TakeOffOrder:
 
 @dataclass(frozen=True, slots=True)
 class FlyTo:
-    """`hold_s` is stood there, inf: for good; `radius_m` 0: as the settings have it; `heading_deg` None: along the course."""
+    """`hold_s` is the hold there, inf: for good; `radius_m` 0: by the settings; `heading_deg` None: along the course."""
 
     place: OrderPlace
     hold_s: float
@@ -54,7 +54,7 @@ class FlyTo:
 
 @dataclass(frozen=True, slots=True)
 class FlyAround:
-    """So many turns around a place; a negative radius is against the clock's hands."""
+    """Turns around a place; a negative radius is counter-clockwise."""
 
     place: OrderPlace
     turns: float
@@ -98,7 +98,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class TakePhotos:
-    """`count` 0: until told to stop; by time if `interval_s` is above 0, by way if `distance_m` is."""
+    """`count` 0: until stopped; by time if `interval_s` is positive, by distance if `distance_m` is."""
 
     count: int
     interval_s: float = 0.0
@@ -112,7 +112,7 @@ class StopPhotos:
 
 @dataclass(frozen=True, slots=True)
 class Jump:
-    """To the item with this index, so many times; -1: for ever."""
+    """Jump to the item with this index, `times` times; -1: for ever."""
 
     index: int
     times: int
@@ -120,7 +120,7 @@ class Jump:
 
 @dataclass(frozen=True, slots=True)
 class Nothing:
-    """An item that this UAV takes and has nothing to do for: servos, gimbals, markers."""
+    """An item that is accepted without effect: servos, gimbals, markers."""
 
 
 Order = TakeOffOrder | FlyTo | FlyAround | LandAt | ReturnHome | Wait | SetSpeed | LookAt | Turn | TakePhotos | StopPhotos | Jump | Nothing
@@ -128,7 +128,7 @@ NOTHING = Nothing()
 
 
 class CannotFly(ValueError):
-    """An item that cannot be flown; `index` is its place in the list, `parameter` 1 to 7 which of its fields, 0: its command."""
+    """An item that cannot be flown. `index` is its place in the list, `parameter` its field from 1 to 7; 0: its command."""
 
     def __init__(self, index: int, code: str, words: str, parameter: int = 0) -> None:
         super().__init__(f"Item {index}: {words}")
@@ -164,7 +164,7 @@ _IGNORED = frozenset(
 
 
 def orders(items: Sequence[MissionItem], *, is_home_first: bool) -> tuple[Order, ...]:
-    """One for each item. `is_home_first`: item 0 is home, as ArduPilot has it, and nothing to fly. Raises CannotFly."""
+    """Return one order for each item. `is_home_first`: item 0 is home and not flown, as on ArduPilot. Raises CannotFly."""
     if len(items) > MAX_ITEMS:
         raise CannotFly(MAX_ITEMS, "too-many", f"{len(items)} items; at most {MAX_ITEMS} are kept.")
     read = tuple(NOTHING if is_home_first and index == 0 else _order(index, item) for index, item in enumerate(items))

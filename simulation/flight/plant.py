@@ -1,4 +1,4 @@
-"""The flight model in the units of the house: placed on the ground, stepped, read and written; what is not a number stops it."""
+"""The flight model in SI units: placed on the ground, stepped, read and written; NaN stops it."""
 
 import math
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ ROTORS = 4
 AXES = ("thrust", "roll", "pitch", "yaw")
 FOOT_M = 0.3048
 GUIDANCE_STEP_S = 0.04
-PHYSICS_HZ = (250, 125, 100)  # below 100 Hz the legs' springs are not followed any more
+PHYSICS_HZ = (250, 125, 100)  # below 100 Hz the springs of the legs are not resolved
 J_PER_WH = 3600.0
-MAX_HEIGHT_M = 20_000.0  # above it, or under the ground, the model has come apart
+MAX_HEIGHT_M = 20_000.0  # above it, or as deep below ground, the model has diverged
 _READ = (
     "position/long-gc-deg",
     "position/lat-geod-deg",
@@ -38,7 +38,7 @@ _READ = (
     "battery/used-j",
     "battery/power-w",
 )
-_VELOCITY = slice(3, 6)  # of these, in feet a second
+_VELOCITY = slice(3, 6)  # of these, in feet per second
 _SET_POINTS = (
     "setpoint/north-mps",
     "setpoint/east-mps",
@@ -51,14 +51,14 @@ _SET_POINTS = (
 
 
 class GroundElevation(Protocol):
-    """Anything that knows how high the ground lies above sea level [m]; NaN where it does not."""
+    """Returns the ground height AMSL [m]; NaN if unknown."""
 
     def elevation_m(self, position: LonLat) -> float: ...
 
 
 @dataclass(frozen=True, slots=True)
 class FlatGround:
-    """The same height everywhere."""
+    """Ground of constant height."""
 
     height_m: float = 0.0
 
@@ -70,13 +70,13 @@ MODELS = Path(__file__).resolve().parent.parent / "aircraft_models"
 
 
 def flight_model(code: str, step_s: float, seed: int) -> jsbsim.FGFDMExec:
-    """The model of an airframe, not yet placed anywhere. Raises ValueError where its file cannot be loaded."""
+    """Return the model of an airframe, without a position. Raises ValueError if its file cannot be loaded."""
     jsbsim.set_logger(jsbsim.DefaultLogger(jsbsim.LogLevel.ERROR))
     model = jsbsim.FGFDMExec(str(MODELS))
     model.set_debug_level(0)
     model.set_aircraft_path(str(MODELS))
     model.set_systems_path(str(MODELS / "systems"))
-    model.set_dt(step_s)  # before the model is loaded: its filters and integrals take the step that is set then
+    model.set_dt(step_s)  # before loading: filters and integrators take the step that is set then
     if not model.load_model(code):
         raise ValueError(f"The airframe {code!r} has no model file that can be loaded.")
     model["simulation/randomseed"] = seed % 2**31
@@ -88,9 +88,9 @@ def flight_model(code: str, step_s: float, seed: int) -> jsbsim.FGFDMExec:
 
 @lru_cache
 def mixer_of(code: str) -> tuple[tuple[float, ...], ...]:
-    """Thrust of each rotor [N] for a newton of thrust, and for a newton metre about each axis: (axes, rotors).
+    """Return the thrust of each rotor [N] per newton of thrust and per newton metre about each axis: (axes, rotors).
 
-    The inverse of what the rotors do where the model file puts them.
+    It is the inverse of the rotors' effect at their places in the model file.
     """
     root = ElementTree.parse(MODELS / code / f"{code}.xml").getroot()  # noqa: S314 - our own file
     figures = {(node.text or "").strip(): node.get("value") for node in root.findall("./system/property")}
@@ -114,7 +114,7 @@ def mixer_of(code: str) -> tuple[tuple[float, ...], ...]:
 
 
 class Motion(NamedTuple):
-    """The state of the model: degrees, metres above sea level, m/s to north, east and down, radians, radians a second."""
+    """State of the model: degrees, metres AMSL, m/s to north, east and down, radians, radians per second."""
 
     lon_deg: float
     lat_deg: float
@@ -134,11 +134,11 @@ class Motion(NamedTuple):
 
 
 class CameApart(ArithmeticError):
-    """The model's state is not a number any more."""
+    """The model has diverged: its state is NaN or out of range."""
 
 
 class Plant:
-    """One aircraft. `altitude_amsl_m` is what JSBSim calls the height above sea level, with the ground's as it is given."""
+    """One aircraft. `altitude_amsl_m` is JSBSim's height above sea level, as is the ground height."""
 
     def __init__(self, airframe: Airframe, home: LonLat, *, ground_m: float, heading_deg: float, seed: int, physics_hz: int = 250) -> None:
         if physics_hz not in PHYSICS_HZ:
@@ -167,7 +167,7 @@ class Plant:
         return node
 
     def advance(self) -> Motion:
-        """One guidance step of 0.04 s. Raises CameApart."""
+        """Advance one guidance step of 0.04 s. Raises CameApart."""
         run = self._run
         try:
             for _ in range(self._steps):
@@ -181,13 +181,13 @@ class Plant:
         values = [node.get_double_value() for node in self._read]
         values[_VELOCITY] = [speed * FOOT_M for speed in values[_VELOCITY]]
         motion = Motion._make(values)
-        # One sum is not a number if any of its parts is not; infinities do not cancel out unseen, either.
+        # The sum is NaN if any part is; infinities cannot cancel out unnoticed.
         if not math.isfinite(sum(motion)) or not abs(motion.altitude_amsl_m) < MAX_HEIGHT_M:
             raise CameApart("the state of the model is not a number")
         return motion
 
     def fly(self, velocity: tuple[float, float, float], acceleration: tuple[float, float, float], heading_rad: float) -> bool:
-        """Set-points to north, east and down [m/s, m/s²]. What is not a number is not taken: the ones before stay."""
+        """Set the set-points to north, east and down [m/s, m/s²]. Returns False and keeps the previous ones if a value is NaN or infinite."""
         values = (*velocity, *acceleration, heading_rad)
         if not math.isfinite(sum(values)):
             return False
@@ -205,18 +205,18 @@ class Plant:
         self._terrain.set_double_value(ground_m / FOOT_M)
 
     def set_wind(self, north_mps: float, east_mps: float, down_mps: float) -> None:
-        """The velocity of the air."""
+        """Set the velocity of the air."""
         for node, value in zip(self._wind, (north_mps, east_mps, down_mps), strict=True):
             node.set_double_value(value / FOOT_M)
 
     def set_turbulence(self, wind_at_20ft_mps: float) -> None:
-        """Dryden turbulence of MIL-F-8785C; at these heights the wind at 20 ft alone says how strong it is."""
+        """Set the Dryden turbulence of MIL-F-8785C, whose strength at these heights depends only on the wind at 20 ft."""
         self._model["atmosphere/turb-type"] = 3 if wind_at_20ft_mps > 0.0 else 0
         self._model["atmosphere/turbulence/milspec/windspeed_at_20ft_AGL-fps"] = wind_at_20ft_mps / FOOT_M
         self._model["atmosphere/turbulence/milspec/severity"] = 3
 
     def set_temperature(self, warmer_k: float) -> None:
-        """Than the standard atmosphere."""
+        """Set the difference from the standard atmosphere."""
         self._model["atmosphere/delta-T"] = warmer_k * 1.8
 
     def fail_motor(self, index: int | None) -> None:

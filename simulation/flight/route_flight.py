@@ -1,4 +1,4 @@
-"""A route file flown alone: its track, how far beside the route, what it took, and whether it can be flown."""
+"""Flies a single route file: its track, deviation and energy, and whether it can be flown."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,16 +24,16 @@ from simulation.flight.uav import SimulatedUav
 MAX_WAYPOINTS = 9_000
 HEIGHTS_M = (1.0, 5_000.0)
 SPEEDS_MPS = (0.2, 50.0)
-MAX_LEG_M = 200_000.0  # beyond any battery of ours
+MAX_LEG_M = 200_000.0  # beyond the range of any battery
 
 
 class InvalidRoute(ValueError):
-    """A route file that cannot be flown as it stands; the message names the entry."""
+    """A route file that cannot be flown; the message names the entry."""
 
 
 @dataclass(frozen=True)
 class RouteFile:
-    """Heights count from the ground at the first waypoint."""
+    """A route. Heights are above the ground at the first waypoint."""
 
     positions: tuple[LonLat, ...]
     altitudes_relative_m: tuple[float, ...]
@@ -41,7 +41,7 @@ class RouteFile:
 
 
 def read_route(value: Any) -> RouteFile:
-    """Of `{"waypoints": [{"position": [lon, lat], "altitude_relative_m"}], "speed_mps"}`. Raises InvalidRoute."""
+    """Parse `{"waypoints": [{"position": [lon, lat], "altitude_relative_m"}], "speed_mps"}`. Raises InvalidRoute."""
     if not isinstance(value, Mapping):
         raise InvalidRoute("The route is not an object with waypoints and speed_mps.")
     waypoints = value.get("waypoints")
@@ -66,7 +66,7 @@ def read_route(value: Any) -> RouteFile:
 
 
 def items_of(route: RouteFile) -> tuple[MissionItem, ...]:
-    """Take-off at the first waypoint's ground, all waypoints, landing at the last."""
+    """Return take-off below the first waypoint, all waypoints, and landing below the last."""
     waypoints = tuple(
         FrozenWaypoint(number, position, WaypointKind.PASS, height_m, height_m)
         for number, (position, height_m) in enumerate(zip(route.positions, route.altitudes_relative_m, strict=True))
@@ -86,7 +86,7 @@ def _position(value: Any, place: str) -> LonLat:
 def _number(value: Any, place: str, least: float, most: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidRoute(f"{place} must be a number.")
-    if not least <= value <= most:  # also of NaN; whole numbers may have hundreds of digits
+    if not least <= value <= most:  # also for NaN; integers may have hundreds of digits
         raise InvalidRoute(f"{place} must be from {least:g} to {most:g}, not {_shown(value)}.")
     return float(value)
 
@@ -99,17 +99,17 @@ def _shown(value: float) -> str:
 
 
 FloatArray = NDArray[np.float64]
-TRACK_STEPS = 5  # a line of the track each 0.2 s
+TRACK_STEPS = 5  # one row of the track every 0.2 s
 MAX_BESIDE_M = 5.0
 MAX_LANDING_M = 2.0
-MIN_RESERVE_PERCENT = 20.0  # as plans keep it by default
+MIN_RESERVE_PERCENT = 20.0  # the default reserve of plans
 
 
 def cross_track_m(track: FloatArray, legs: NDArray[np.int64], waypoints: Sequence[LonLat]) -> FloatArray:
-    """Distance of each point of the track from the leg that it was on, or from the one before or after, whichever is nearest [m].
+    """Return the distance of each track point from its leg, or from the previous or next leg, whichever is nearest [m].
 
-    track (n, 2), lon lat [deg]; legs (n,): how many waypoints had been passed before, at least 1, so that leg k leads from waypoint k - 1
-    to waypoint k. A leg is the straight line between its waypoints in longitude and latitude, and no longer than that. Returns shape (n,).
+    track (n, 2), lon lat [deg]. legs (n,): number of waypoints passed before, at least 1, so that leg k leads from waypoint k - 1 to
+    waypoint k. A leg is the straight line between its waypoints in longitude and latitude, without extension. Returns shape (n,).
     """
     nearest = np.full(len(track), np.inf)
     for leg in np.unique(legs):
@@ -134,7 +134,7 @@ def _beside_m(points: FloatArray, start: LonLat, end: LonLat) -> FloatArray:
 
 @dataclass(frozen=True)
 class RouteFlight:
-    """`cross_track_m` (n,) of each step between the first and the last waypoint."""
+    """`cross_track_m` (n,) is that of each step between the first and last waypoint."""
 
     flown: FlownFlightLog
     cross_track_m: np.ndarray[Any, np.dtype[np.float64]]
@@ -159,7 +159,7 @@ class RouteFlight:
 def fly_route(
     route: RouteFile, airframe: Airframe, *, weather: Weather, seed: int, battery_percent: float = 100.0, physics_hz: int = 250
 ) -> RouteFlight:
-    """Over flat ground, from a take-off under the first waypoint to a landing under the last."""
+    """Fly over flat ground, from a take-off below the first waypoint to a landing below the last."""
     items = items_of(route)
     uav = SimulatedUav(airframe, route.positions[0], weather=weather, seed=seed, battery_percent=battery_percent, physics_hz=physics_hz)
     refused = uav.load(items)
@@ -174,7 +174,7 @@ def fly_route(
 
 
 def _beside(flown: FlownFlightLog, route: RouteFile, passed_s: list[float]) -> np.ndarray[Any, np.dtype[np.float64]]:
-    """From when the first waypoint was passed to when the last was, or to the end of a flight that did not come so far."""
+    """Return the deviation from the passing of the first waypoint to that of the last, or to the end of an incomplete flight."""
     if not passed_s:
         return np.zeros(0)
     times = np.array([sample.at_s for sample in flown.samples])
@@ -231,7 +231,7 @@ def _reasons(
 
 
 def _strongest_wind(weather: Weather, route: RouteFile) -> tuple[float, float]:
-    """The strongest steady wind at the heights of the waypoints [m/s], and the height above ground [m]."""
+    """Return the strongest steady wind at the heights of the waypoints [m/s], and its height above ground [m]."""
     winds = [(float(np.hypot(*weather.conditions.wind_at(height_m))), height_m) for height_m in set(route.altitudes_relative_m)]
     return max(winds)
 

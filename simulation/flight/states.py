@@ -1,4 +1,4 @@
-"""What a simulated UAV says of itself, and how it answers an order."""
+"""States that a simulated UAV reports, and its responses to orders."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ from operation.reasons import Reason
 
 
 class FlightMode(StrEnum):
-    """Our own names; what the wire calls them is the endpoint's matter."""
+    """Flight modes independent of autopilots; the endpoint maps them to mode numbers."""
 
     HOLD = "hold"
     TAKE_OFF = "take-off"
@@ -41,7 +41,7 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class RallyPoint:
-    """A rally point; its height counts from the take-off."""
+    """A rally point; its height is above the take-off."""
 
     position: LonLat
     height_relative_m: float
@@ -49,7 +49,7 @@ class RallyPoint:
 
 @dataclass(frozen=True, slots=True)
 class Gps:
-    """`fix` as MAVLink counts: 0 none, 3 in three dimensions."""
+    """GPS state. `fix` as in MAVLink: 0 none, 3 is 3D."""
 
     fix: int
     satellites: int
@@ -58,11 +58,11 @@ class Gps:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedState:
-    """At `at_s` seconds after the start.
+    """State at `at_s` seconds after the start.
 
-    `position` is where the UAV takes itself to be, which is what it reports and flies by; `true_position` where it is. They differ only
-    while it is without GPS, and shortly after. Heights are true: AMSL, above the home's ground, and above the ground below.
-    Velocity, wind felt (the air's velocity) and rates in m/s and degrees a second, to north, east and down.
+    `position` is the estimated position, which the UAV reports and flies by; `true_position` is the real one. They only differ without GPS
+    and shortly after. Heights are true: AMSL, above home, and above ground. Velocity, wind (the air's velocity) and rates are in m/s and
+    degrees per second, to north, east and down.
     """
 
     at_s: float
@@ -107,7 +107,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class OrderRefused:
-    """The order is not carried out: `code` for programs, `words` for people."""
+    """The order is refused: `code` for programs, `words` for people."""
 
     code: str
     words: Reason | str

@@ -1,4 +1,4 @@
-"""A simulated UAV: it is given a mission and orders, stepped, and asked for its state. It knows no clock and no socket."""
+"""A simulated UAV: takes a mission and orders, is stepped, and reports its state. Uses no clock and no socket."""
 
 import math
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ from simulation.flight.states import (
 )
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
-SETTLES_S = 2.0  # on the ground, until the model rests
+SETTLES_S = 2.0  # on the ground, until the model is at rest
 MIN_SPEED_MPS = 0.2
 
 
@@ -92,11 +92,10 @@ def _landed(context: ManoeuvreContext, manoeuvre: Manoeuvre) -> Landed:
 
 
 class SimulatedUav:
-    """Stands disarmed on the ground at `home`, where `now_s` is 0.
+    """A UAV that stands disarmed on the ground at `home` when `now_s` is 0.
 
-    `step` advances 0.04 s and never raises for what a flight can bring: a state that is no number any more is a crash. The same airframe,
-    place, weather, seed and orders at the same steps give the same flight to the last bit. `weather`, `faults` and `settings` can be
-    replaced at any time.
+    `step` advances 0.04 s and never raises during a flight: a diverged model counts as a crash. Equal airframe, place, weather, seed and
+    orders at equal steps give bit-identical flights. `weather`, `faults` and `settings` can be replaced at any time.
     """
 
     def __init__(
@@ -148,7 +147,7 @@ class SimulatedUav:
         self._reported_at = -1
         self.faults = faults or Faults()
 
-    # --- what it is told -----------------------------------------------------------------------------------------------------------
+    # --- input -------------------------------------------------------------------------------------------------------------------------
 
     @property
     def weather(self) -> Weather:
@@ -168,7 +167,7 @@ class SimulatedUav:
 
     @property
     def rally_points(self) -> tuple[RallyPoint, ...]:
-        """Rally points: a return leads to the nearest of them, or home where that is nearer."""
+        """Return the rally points: RTL flies to the nearest, or home if that is nearer."""
         return self._context.rally_points
 
     @rally_points.setter
@@ -192,9 +191,9 @@ class SimulatedUav:
         self._pilot.revision += 1
 
     def load(self, items: Sequence[MissionItem], *, is_home_first: bool = False) -> Outcome:
-        """The whole list or, refused, nothing of it. `is_home_first`: item 0 is home and not flown, as ArduPilot has it.
+        """Load the whole list, or nothing if it is refused. `is_home_first`: item 0 is home and not flown, as on ArduPilot.
 
-        A mission under way goes on with the first item of the new list, from where the UAV is.
+        A mission in progress continues with the first item of the new list from the UAV's position.
         """
         try:
             read = orders(items, is_home_first=is_home_first)
@@ -229,7 +228,7 @@ class SimulatedUav:
         return DONE
 
     def take_off(self, height_relative_m: float | None = None) -> Outcome:
-        """Straight up; a UAV that is not armed yet does so once it is. None: as high as the settings have it."""
+        """Climb vertically; an unarmed UAV does so once armed. None: to the height in the settings."""
         height_m = self.settings.take_off_height_m if height_relative_m is None else height_relative_m
         if not (math.isfinite(height_m) and 0.5 <= height_m <= 1_000.0):
             return OrderRefused("height", Reason("take_off_not_flown", {"height": height_m}))
@@ -265,7 +264,7 @@ class SimulatedUav:
         return outcome
 
     def change_speed(self, speed_mps: float) -> Outcome:
-        """Over ground, until a mission item says otherwise."""
+        """Set the ground speed until a mission item changes it."""
         if not (math.isfinite(speed_mps) and speed_mps > 0.0):
             return OrderRefused("speed", "A speed is above 0.")
         self._context.speed_mps = min(max(speed_mps, MIN_SPEED_MPS), self.airframe.max_speed_mps)
@@ -279,7 +278,7 @@ class SimulatedUav:
         return DONE
 
     def set_current(self, index: int) -> Outcome:
-        """The item to be flown next."""
+        """Set the item to fly next."""
         if not self._first <= index < len(self._orders):
             return OrderRefused("index", f"There is no item {index} to fly.")
         self._mission = MissionManoeuvre(self._orders, index)
@@ -305,14 +304,14 @@ class SimulatedUav:
         return DONE
 
     def step(self) -> None:
-        """0.04 s of simulated time."""
+        """Advance 0.04 s of simulated time."""
         self._pilot.step()
 
-    # --- what it says --------------------------------------------------------------------------------------------------------------
+    # --- output ------------------------------------------------------------------------------------------------------------------------
 
     @property
     def now_s(self) -> float:
-        """Simulated seconds since the start."""
+        """Return the simulated seconds since the start."""
         return self._pilot.now_s
 
     @property
@@ -324,7 +323,7 @@ class SimulatedUav:
         return self._pilot.is_gps_lost
 
     def take_events(self) -> list[Event]:
-        """What happened since the last call."""
+        """Return the events since the last call."""
         events, self._context.events = self._context.events, []
         return events
 
@@ -342,13 +341,13 @@ class SimulatedUav:
 
     @property
     def true_place(self) -> tuple[float, float, float, float, float]:
-        """What a long record of a flight is made of, cheaper than `state`: seconds, lon, lat, height above home and above ground."""
+        """Return seconds, lon, lat, height above home and above ground; cheaper than `state`, for long recordings."""
         motion, context = self._body.motion, self._context
         return self.now_s, motion.lon_deg, motion.lat_deg, context.here[2], context.agl_m
 
     @property
     def state(self) -> SimulatedState:
-        """Of this step; made when it is asked for."""
+        """Return the state of this step, computed on demand."""
         if self._state is None or self._reported_at != self._pilot.revision:
             self._reported_at = self._pilot.revision
             self._state = reported(

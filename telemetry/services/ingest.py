@@ -86,7 +86,7 @@ def store_records(records: Sequence[NewRecord]) -> StoredCount:
 
 
 def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set[int]]:
-    """Return existing UAVs with the missions that they fly, and their organisations. Locks the UAVs against deletion in this transaction."""
+    """Return existing UAVs with the missions that they fly, and their organisations. Locks the UAVs against deletion."""
     with connection.cursor() as cursor:
         cursor.execute("SELECT id, organisation_id FROM missions_uav WHERE id = ANY(%s) ORDER BY id FOR KEY SHARE", [sorted(uav_ids)])
         found = cursor.fetchall()

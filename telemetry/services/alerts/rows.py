@@ -84,7 +84,7 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
 
 
 def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[int], now: datetime) -> set[int]:
-    """Close them unless an estimator still monitors their UAVs for them; this process monitors those of `but`. Returns the organisations."""
+    """Close them unless an estimator still monitors their UAVs; this process monitors those of `but`. Returns the organisations."""
     is_away = Exists(Alert.objects.filter(uav=OuterRef("uav"), code=down.CODE, closed_at=None))  # none of its alerts closes
     over = Alert.objects.filter(~is_away, closed_at=None, code__in=codes, mission__isnull=False)
     over = over.exclude(mission__state__in=WATCHED_STATES)

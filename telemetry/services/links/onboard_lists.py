@@ -58,7 +58,7 @@ class Doubt(StrEnum):
 
 
 def doubt_loaded(*, uav_id: int, doubt: Doubt, ago_s: float) -> None:
-    """Mark the readback as doubtful, by an observation `ago_s` ago; a later readback is not affected. A reboot is weaker than other doubts."""
+    """Mark the readback as doubtful, by an observation `ago_s` ago; later readbacks are unaffected. A reboot is the weakest doubt."""
     doubted = UavLink.objects.filter(uav=uav_id, loaded_read_at__lt=Now() - timedelta(seconds=ago_s)).exclude(loaded_approval=None)
     weaker = {"", Doubt.REBOOTED} if doubt is not Doubt.REBOOTED else {""}
     doubted.filter(loaded_doubt__in=weaker).update(loaded_doubt=doubt)

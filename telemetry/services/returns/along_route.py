@@ -26,7 +26,10 @@ FURTHER = timedelta(minutes=5)  # after the expected landing; zones in force unt
 
 @dataclass(frozen=True)
 class AlongRoute:
-    """A return along the route. `item` of the onboard list, from 0 without home, is flown to directly. `points` as in `return_path_points`."""
+    """A return along the route.
+
+    `item` of the onboard list, counted from 0 without home, is flown to directly. `points` are those of `return_path_points`.
+    """
 
     path: ReturnPath
     item: int
