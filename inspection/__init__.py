@@ -1,3 +1,3 @@
-"""What exists on the ground: infrastructure, zones, terrain, and the network made of them."""
+"""Map data: infrastructure, zones, terrain, and the inspection network made of them."""
 
 from inspection import reasons as reasons

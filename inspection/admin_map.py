@@ -1,4 +1,4 @@
-"""The geometry field of the admin: a map that needs nothing from outside, and the GeoJSON text beside it."""
+"""The admin's geometry field: a map without external resources, and its GeoJSON text."""
 
 import json
 from typing import Any
@@ -20,7 +20,7 @@ AREA_TYPES = {"POLYGON", "MULTIPOLYGON"}
 
 
 class MapWidget(forms.Textarea):
-    """A map over the text: it shows what the text says, and a point can be dragged."""
+    """A map beside the text: it shows the text's geometry, and a point can be dragged."""
 
     template_name = "admin/map_widget.html"
     is_point = False
@@ -39,12 +39,12 @@ class MapWidget(forms.Textarea):
 
 
 class GeoJSONField(forms.Field):
-    """GeoJSON text that passes the geometry gate; what a user wrote wrong is shown back with the place of the fault."""
+    """GeoJSON text that passes the geometry validator; invalid text is shown again with the place of the fault."""
 
     widget = MapWidget
 
     def __init__(self, *, geom_type: str, srid: int, max_geom_collections: int | None = None, **options: Any) -> None:
-        """srid and max_geom_collections come from the model field: the gate takes WGS84 alone, and no collections."""
+        """Take srid and max_geom_collections from the model field: the validator accepts only WGS84, and no collections."""
         super().__init__(**options)
         self.geom_type = geom_type
         self.widget.is_point = geom_type == "POINT"
@@ -74,7 +74,7 @@ class GeoJSONField(forms.Field):
 
 
 class StrictJSONField(forms.JSONField):
-    """Refuses what is no JSON (NaN, endless nesting) and what PostgreSQL cannot hold, and shows it back with the fault."""
+    """Refuses invalid JSON (NaN, endless nesting) and values that PostgreSQL cannot store, and shows the text again with the fault."""
 
     def to_python(self, value: Any) -> Any:
         if isinstance(value, str) and value.strip():

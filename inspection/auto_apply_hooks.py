@@ -1,4 +1,4 @@
-"""What later apps have against an import that is applied without anybody looking at it."""
+"""Checks that later apps add to imports that are applied without review."""
 
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
@@ -34,7 +34,7 @@ SELECT EXISTS (
 
 @dataclass(frozen=True)
 class AutoApplyRefusal:
-    """Why an import is not applied by itself."""
+    """A reason against applying an import automatically."""
 
     code: str
     why: Why
@@ -42,7 +42,7 @@ class AutoApplyRefusal:
 
 @dataclass(frozen=True)
 class GroundMark:
-    """Where history and zones end before an import writes. Take it under hold_ground."""
+    """The end of history and zones before an import writes. Make it while holding hold_ground."""
 
     entry: int
     zone: int
@@ -50,7 +50,7 @@ class GroundMark:
 
 @dataclass(frozen=True)
 class WrittenGround:
-    """All that an import has written in the transaction that is open, whatever its number: as it was before and as it is after."""
+    """All that an import has written in the open transaction, before and after, whatever its size."""
 
     mark: GroundMark
 
@@ -72,7 +72,7 @@ class WrittenGround:
 
 
 def register_check(name: str) -> None:
-    """The dotted name of a function of a WrittenGround that lists reasons, as HeldBack, against it. It is loaded when it is first asked."""
+    """Register a function by its dotted name. It takes a WrittenGround and lists reasons against it. It is imported on first use."""
     if name not in _checks:
         _checks.append(name)
 
@@ -84,7 +84,7 @@ def ground_mark() -> GroundMark:
 
 
 def further_reasons(mark: GroundMark, data_import: DataImport) -> list[AutoApplyRefusal]:
-    """What later apps have against what was written since the mark. In the transaction that wrote it."""
+    """Return the reasons of later apps against what was written since the mark, within the transaction that wrote it."""
     with _shapes(mark, data_import):
         return [reason for name in _checks for reason in import_string(name)(WrittenGround(mark))]
 

@@ -1,4 +1,4 @@
-"""Addresses of the pages about the ground."""
+"""URLs of the map data pages."""
 
 from django.urls import path
 

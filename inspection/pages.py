@@ -1,4 +1,4 @@
-"""The pages about the ground: HTML shells round a map."""
+"""Map data pages: HTML shells around a map."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from workspace.pages import SignedInPage, raster_maps
 
 
 class GroundPage(SignedInPage):
-    """A page of this app. `section` is the place in the bar, `tab` the one among the pages of that section."""
+    """A page of this app. `section` is its entry in the navigation bar, `tab` the one among the pages of that section."""
 
     section = "assets"
     tab = ""
@@ -32,7 +32,7 @@ class DataIssuesPage(GroundPage):
 
 
 class ImportsPage(GroundPage):
-    """What has come in; with a proposal's id, that one is open."""
+    """Imports; with a proposal's id, that proposal is open."""
 
     template_name = "imports.html"
     tab = "imports"

@@ -1,4 +1,4 @@
-"""The admin's pages for the ground: curators correct assets and zones here, and look at where data comes from."""
+"""Admin pages for map data: curators correct assets and zones here, and see where data comes from."""
 
 from inspection.admin.assets import AssetAdmin
 from inspection.admin.incoming import ImportProposalAdmin

@@ -1,4 +1,4 @@
-"""The admin's pages for assets, one for all kinds and one for each."""
+"""Admin pages for assets, one for all kinds and one for each."""
 
 from typing import Any
 
@@ -47,7 +47,7 @@ class AssetForm(CuratedForm):
 
 
 class ImportFilter(admin.SimpleListFilter):
-    """The newest imports that can have brought assets; looking for those that did would read the whole table."""
+    """The newest imports that can contain assets; finding those that do would scan the whole table."""
 
     title = "import"
     parameter_name = "data_import"
@@ -64,12 +64,12 @@ class ImportFilter(admin.SimpleListFilter):
 
 @admin.register(Asset)
 class AssetAdmin(CuratedAdmin):
-    """A saved asset counts as edited: imports leave it alone from then on."""
+    """Assets; a saved one counts as edited, and imports no longer change it."""
 
     form = AssetForm
     history_subject = "asset"
     formfield_overrides = FORM_FIELDS
-    kind: AssetKind | None = None  # of the pages that show one kind
+    kind: AssetKind | None = None  # on the pages of one kind
     list_display = ["label", "kind", "subtype", "voltages", "operator", "osm", "is_flyable", "is_edited", "vanished_at"]
     list_filter = ["kind", "is_flyable", "is_edited", ("vanished_at", admin.EmptyFieldListFilter), "asset_set", ImportFilter]
     search_fields = ["name", "ref", "operator", "=osm_id", "=source_key"]
@@ -146,7 +146,7 @@ class AssetAdmin(CuratedAdmin):
 
 
 class _KindAdmin(AssetAdmin):
-    """The pages of one kind: the kind is not asked for."""
+    """The page of one kind, on which the kind is preset."""
 
     list_filter = [name for name in AssetAdmin.list_filter if name != "kind"]
 

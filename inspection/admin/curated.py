@@ -1,4 +1,4 @@
-"""What the admin's pages of assets and zones share: nobody overwrites what somebody else changed meanwhile, and the history is whole."""
+"""Base of the admin pages of assets and zones: no lost updates, and a complete history."""
 
 from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
@@ -22,7 +22,7 @@ PEOPLE = {"created_by", "decided_by", "imported_by"}
 
 
 class CuratedForm(forms.ModelForm):
-    """Carries the revision that the page showed; a form from an older one is shown back."""
+    """Carries the revision that the page showed; a form with an older one is shown again."""
 
     history_subject = ""
     reader: ClassVar[User]
@@ -45,7 +45,7 @@ class CuratedForm(forms.ModelForm):
 
 
 class CommonGroundAdmin(ReadOnlyAdmin):
-    """What the program writes of the ground, which all organisations share. People are named to installation operators alone."""
+    """Read-only map data that all organisations share. Only installation operators see user names."""
 
     organisation_path = None
 
@@ -60,13 +60,13 @@ class CommonGroundAdmin(ReadOnlyAdmin):
 
 
 class CuratedAdmin(HistoryAdmin):
-    """Saves through the services of curation, with the revision that the form was filled in on."""
+    """Saves through the curation services, with the revision on which the form was filled in."""
 
     organisation_path = None
 
     def get_form(self, request: HttpRequest, obj: Any = None, change: bool = False, **options: Any) -> Any:
         form = super().get_form(request, obj, change, **options)
-        form.reader = user_of(request)  # the class is made for this request
+        form.reader = user_of(request)  # the class is made per request
         return form
 
     def changeform_view(self, request: HttpRequest, object_id: str | None = None, *args: Any, **options: Any) -> HttpResponse:
@@ -77,7 +77,7 @@ class CuratedAdmin(HistoryAdmin):
             return HttpResponseRedirect(request.get_full_path())
 
     def change_each(self, request: HttpRequest, queryset: QuerySet[Any], change: Callable[[Any], None]) -> int:
-        """Do it to each of the chosen rows, all or none; more than can be done in a request are refused."""
+        """Change each of the chosen rows, all or none; refuses more than can be done in a request."""
         number = queryset.count()
         if number > MAX_CONCURRENT:
             self.message_user(

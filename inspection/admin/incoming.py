@@ -1,4 +1,4 @@
-"""The admin's pages for what came in and what it became: uploads, proposals, imports, sets of assets, terrain, graphs, issues."""
+"""Admin pages for incoming data and results: uploads, proposals, imports, sets of assets, terrain, graphs, issues."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ from workspace.api.signed_in import user_of
 
 @admin.register(ImportProposal)
 class ImportProposalAdmin(CommonGroundAdmin):
-    """Looked at, applied and discarded on the page of the imports, which each row leads to."""
+    """Proposals; the imports page, to which each row links, shows, applies and discards them."""
 
     list_display = ["file", "page", "kind", "origin", "state", "new", "changed", "vanished", "created_by", "created_at", "decided_by"]
     list_filter = ["state", "kind", "origin"]
@@ -90,7 +90,7 @@ class AssetSetAdmin(CommonGroundAdmin):
 
 @admin.register(DataIssue)
 class DataIssueAdmin(CommonGroundAdmin):
-    """Mended on the page of the issues; here several are left as they are, or opened again, at once."""
+    """Data issues, repaired on the issues page; here several are dismissed or reopened at once."""
 
     list_display = ["kind", "asset", "cut_off_m", "state", "note", "decided_by", "decided_at", "found_at"]
     list_filter = ["state", "kind"]

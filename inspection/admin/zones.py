@@ -1,4 +1,4 @@
-"""The admin's pages for zones, their sets, the versions of these, and where they are fetched from."""
+"""Admin pages for zones, zone sets, their versions, and subscriptions."""
 
 from typing import Any
 
@@ -27,7 +27,7 @@ class ZoneForm(CuratedForm):
     history_subject = "zone"
 
     def clean_schedule(self) -> Any:
-        """As the rest of the program has it: None is always."""
+        """Return the schedule as stored: None means always."""
         schedule = self.cleaned_data["schedule"]
         try:
             return None if schedule is None else checked_schedule(schedule, "schedule")
@@ -98,7 +98,7 @@ class ZoneSetAdmin(CommonGroundAdmin):
 
 @admin.register(ZoneSetVersion)
 class ZoneSetVersionAdmin(CommonGroundAdmin):
-    """A set is rolled back to a version on the page of the zones, where the difference is seen first."""
+    """Versions of zone sets; a rollback is made on the zones page, which first shows the difference."""
 
     list_display = ["zone_set", "number", "zones", "data_import", "created_by", "created_at"]
     list_filter = ["zone_set"]
@@ -111,7 +111,7 @@ class ZoneSetVersionAdmin(CommonGroundAdmin):
 
 @admin.register(ZoneSubscription)
 class ZoneSubscriptionAdmin(CommonGroundAdmin):
-    """Made and changed on the page of the zones; here several are paused or resumed at once."""
+    """Subscriptions, made and changed on the zones page; here several are paused or resumed at once."""
 
     list_display = ["zone_set", "address", "interval_h", "is_active", "fetched_at", "next_fetch_at", "problem"]
     list_filter = ["is_active", ("problem", admin.EmptyFieldListFilter)]

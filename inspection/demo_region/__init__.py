@@ -1,6 +1,6 @@
-"""Two made regions: Elme Valley, the demo region with zones, hills and UAV bases, and Quillmoor, mapped as real regions are.
+"""Two synthetic regions: Elme Valley, the demo region with zones, hills and UAV bases, and Quillmoor, mapped like real regions.
 
-Nothing in them exists. The same seed gives the same region. Their files are read by the same importers as any other data.
+Nothing in them exists. The same seed gives the same region. The ordinary importers read their files.
 """
 
 from inspection.demo_region.osm_file import write_osm_file

@@ -1,4 +1,4 @@
-"""The ground of the demo region: a valley that falls eastward between two ridges, with hills and a river bed."""
+"""Terrain of the demo region: a valley that falls eastward between two ridges, with hills and a river bed."""
 
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ WAVES = 36
 
 @dataclass(frozen=True, eq=False)
 class Hills:
-    """Heights as a smooth function of place.
+    """Heights as a smooth function of position.
 
     hill   (n, 4)  east, north, height, radius [m]
     wave   (n, 4)  east and north wave number [rad/m], phase [rad], height [m]
@@ -73,7 +73,7 @@ def make_hills(generator: np.random.Generator) -> Hills:
 
 @dataclass(frozen=True, eq=False)
 class TerrainGrid:
-    """Heights in rows from north to south; west and north are the outer edges of the first cell, as a GeoTIFF counts them."""
+    """Heights in rows from north to south; west and north are the outer edges of the first cell, as in GeoTIFF."""
 
     west_deg: float
     north_deg: float

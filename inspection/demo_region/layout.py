@@ -1,4 +1,4 @@
-"""The fixed drawing of the demo region: towns, substations, corridors, roads, rails and waters, in kilometres from its centre."""
+"""The fixed layout of the demo region: towns, substations, corridors, roads, rails and waters, in kilometres from its centre."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ def km(*points: tuple[float, float]) -> tuple[Point, ...]:
 class Town:
     name: str
     at: Point
-    size: float  # how strongly it draws farms
+    size: float  # weight by which it attracts farms
 
 
 def _town(name: str, east_km: float, north_km: float, size: float) -> Town:

@@ -1,4 +1,4 @@
-"""A made region as an .osm.pbf file: the same region gives the same bytes."""
+"""A synthetic region as an .osm.pbf file: the same region gives the same bytes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -9,8 +9,8 @@ import osmium
 from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, FloatArray, Point, lon_lat
 from inspection.geodesy import LonLat
 
-# OSM counts its ids upward and had reached about 1.4e10 for nodes in 2026. Made objects start far above, so that they never meet
-# a real id, and stay below 2**53, the last whole number that JavaScript keeps.
+# OSM counts its ids upward and had reached about 1.4e10 for nodes in 2026. Synthetic objects start far above, so that they never collide
+# with a real id, and stay below 2**53, the limit of JavaScript's integers.
 FIRST_ID = 4_000_000_000_000
 
 Tags = Mapping[str, str]
@@ -65,7 +65,7 @@ class OsmDrawing:
         return self.add_way([self.add_node(point) for point in path], tags)
 
     def add_area(self, ring: Iterable[FloatArray], tags: Tags) -> int:
-        """A closed way; the ring is given without its repeated last point."""
+        """Add a closed way and return its id; the ring has no repeated last point."""
         node_ids = [self.add_node(point) for point in ring]
         return self.add_way([*node_ids, node_ids[0]], tags)
 

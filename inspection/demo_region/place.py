@@ -1,7 +1,7 @@
-"""Where the demo region lies, how large it is, and who flies there. Every name is invented.
+"""Location, size and UAVs of the demo region. Every name is invented.
 
-It lies in the Great Sand Sea of Egypt's Western Desert: land without settlements, roads or power lines, so that no real tower
-can be mistaken for a made one and a base map under it stays empty (docs/decisions/0010-synthetic-demo-location.md).
+It is in the Great Sand Sea of Egypt's Western Desert: land without settlements, roads or power lines, so that no real tower can be
+mistaken for a synthetic one and a base map under it stays empty (docs/decisions/0010-synthetic-demo-location.md).
 """
 
 from collections.abc import Sequence
@@ -23,20 +23,20 @@ CENTRE = LonLat(26.6, 25.7)
 HALF_WIDTH_M = 20_000.0
 HALF_HEIGHT_M = 13_000.0
 
-# Metres in a degree at the centre's latitude (series of the WGS84 radii of curvature). A made region needs no better projection.
+# Metres in a degree at the centre's latitude (series of the WGS84 radii of curvature). A synthetic region needs no better projection.
 _LATITUDE = radians(CENTRE.lat)
 METRES_PER_DEG_LON = 111_412.84 * cos(_LATITUDE) - 93.5 * cos(3 * _LATITUDE) + 0.118 * cos(5 * _LATITUDE)
 METRES_PER_DEG_LAT = 111_132.92 - 559.82 * cos(2 * _LATITUDE) + 1.175 * cos(4 * _LATITUDE)
 
 
 def lon_lat(east_m: float, north_m: float) -> LonLat:
-    """Position of a point of the region, on OSM's grid of 1e-7 degrees."""
+    """Return the position of a point of the region, on OSM's grid of 1e-7 degrees."""
     return LonLat(round(CENTRE.lon + east_m / METRES_PER_DEG_LON, 7), round(CENTRE.lat + north_m / METRES_PER_DEG_LAT, 7))
 
 
 @dataclass(frozen=True)
 class BasedUav:
-    """A UAV with the figures of its type; all but battery, range and speed are those of the simulated airframe Inspector."""
+    """A UAV with the values of its type; all but battery, range and speed are those of the simulated airframe Inspector."""
 
     name: str
     sensors: tuple[str, ...]
@@ -81,7 +81,7 @@ BASES = (
 
 
 def smooth_path(points: Sequence[Point], rounds: int = 4) -> FloatArray:
-    """Chaikin's corner cutting with both ends kept: roads, railways and rivers bend, they do not break."""
+    """Return the path after Chaikin's corner cutting with both ends kept, for the bends of roads, railways and rivers."""
     path = np.asarray(points, dtype=np.float64)
     for _ in range(rounds):
         near = 0.75 * path[:-1] + 0.25 * path[1:]
@@ -101,21 +101,21 @@ def point_along(path: FloatArray, at_m: float) -> FloatArray:
 
 
 def piece_of(path: FloatArray, start_m: float, end_m: float) -> FloatArray:
-    """The part of a path between two distances along it, its own vertices in between kept."""
+    """Return the part of a path between two distances along it, with its vertices in between."""
     along = distance_along(path)
     inside = path[(along > start_m + 0.5) & (along < end_m - 0.5)]
     return np.vstack([point_along(path, start_m), inside, point_along(path, end_m)])
 
 
 def offset_path(path: FloatArray, offset_m: float) -> FloatArray:
-    """The path moved sideways, to the left for a positive offset; meant for short, nearly straight paths."""
+    """Return the path moved sideways, to the left for a positive offset; meant for short, nearly straight paths."""
     direction = np.gradient(path, axis=0)
     direction /= np.hypot(direction[:, 0], direction[:, 1])[:, None]
     return path + offset_m * np.column_stack([-direction[:, 1], direction[:, 0]])
 
 
 def spans_between(corners: FloatArray, span_m: float, generator: np.random.Generator) -> tuple[FloatArray, set[int]]:
-    """Supports from corner to corner, nearly even; returns the points and the indices of the corners."""
+    """Return nearly evenly spaced supports from corner to corner, and the indices of the corners."""
     points = [corners[0]]
     corner_indices = {0}
     for start, end in pairwise(corners):

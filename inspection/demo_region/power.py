@@ -1,4 +1,4 @@
-"""Power lines of the demo region: high voltage along drawn corridors, 20 kV as trees of poles to scattered farms."""
+"""Power lines of the demo region: high voltage along fixed corridors, 20 kV as trees of poles to scattered farms."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -13,22 +13,22 @@ from inspection.demo_region.osm_file import OsmDrawing
 from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, FloatArray, spans_between
 
 SUPPORTS_WANTED = 3_000
-GANTRY_M = 50.0  # from a substation's middle to where its lines end: all within the graph's crossing radius of one another
+GANTRY_M = 50.0  # from a substation's middle to the ends of its lines: all within the graph's crossing radius of one another
 FARM_SPACING_M = 330.0
 FARM_CEILING_AMSL_M = 520.0
 FARM_CANDIDATES = 9_000
-TOWN_REACH_M = 1_300.0  # over which farms become e times rarer
+TOWN_REACH_M = 1_300.0  # distance over which farms become e times rarer
 
 
 @dataclass(frozen=True)
 class Construction:
-    """How lines of a voltage are built and how well they are mapped."""
+    """How lines of a voltage are built and how completely they are mapped."""
 
     span_m: float
     support: str
     heights_m: tuple[float, float]
     height_share: float  # of the supports whose height is tagged
-    untagged_share: float  # of the inner line nodes that nobody tagged as a support (real data: 11 to 21 %)
+    untagged_share: float  # of the inner line nodes without a support tag (real data: 11 to 21 %)
 
 
 CONSTRUCTIONS = {
@@ -95,7 +95,7 @@ def _draw_corridor(
 
 
 def _gantry(code: str, towards: FloatArray, arrivals: Counter[str]) -> FloatArray:
-    """Where a line ends in a substation: on the side that it comes from, beside the lines that came before."""
+    """Return where a line ends in a substation: on the side that it comes from, beside earlier lines."""
     middle = np.array(SUBSTATIONS[code].at)
     direction = (towards - middle) / np.hypot(*(towards - middle))
     beside = np.array([-direction[1], direction[0]]) * 14.0 * (arrivals[code] % 3 - 1)
@@ -121,7 +121,7 @@ def _draw_trees(drawing: OsmDrawing, hills: Hills, gantries: dict[str, list[int]
 
 
 def _scatter_farms(hills: Hills, generator: np.random.Generator) -> FloatArray:
-    """Places apart from one another, the denser the nearer to a town, none high on the ridges; in random order."""
+    """Return spaced places in random order, denser near towns, none high on the ridges."""
     reach = np.array([HALF_WIDTH_M - 800.0, HALF_HEIGHT_M - 1_500.0])
     places = generator.uniform(-reach, reach, (FARM_CANDIDATES, 2))
     sizes = np.array([town.size for town in TOWNS])
@@ -141,7 +141,7 @@ def _tree_length_m(root: FloatArray, farms: FloatArray) -> float:
 
 
 def _draw_tree(drawing: OsmDrawing, code: str, farms: FloatArray, gantries: list[int], generator: np.random.Generator) -> None:
-    """The shortest tree from the substation to its farms, each way as long as it can be: a branch starts on a pole of its trunk."""
+    """Draw the shortest tree from the substation to its farms, with ways as long as possible: a branch starts on a pole of its trunk."""
     middle = np.array(SUBSTATIONS[code].at)
     places = np.vstack([middle, farms])
     tree = minimum_spanning_tree(cdist(places, places))

@@ -35,7 +35,7 @@ class DemoRegion:
 
 
 def make_region(seed: int = DEFAULT_SEED) -> DemoRegion:
-    """Draw the region. Hills, power and transport draw from generators of their own, so that a change to one leaves the others alone."""
+    """Draw the region. Hills, power and transport use separate generators, so that a change to one does not affect the others."""
     hills_generator, power_generator, transport_generator = np.random.default_rng(seed).spawn(3)
     hills = make_hills(hills_generator)
     osm = OsmDrawing()

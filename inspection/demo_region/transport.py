@@ -1,4 +1,4 @@
-"""Roads, railways, waters and the bridges where one passes over another."""
+"""Roads, railways, waters, and the bridges at their crossings."""
 
 from dataclasses import dataclass, field
 
@@ -21,7 +21,7 @@ from inspection.demo_region.place import FloatArray, distance_along, offset_path
 
 BRIDGES = 60
 BRIDGE_SPACING_M = 150.0  # between the middles of two bridges
-ABUTMENTS_M = 14.0  # how much longer a bridge is than what it spans
+ABUTMENTS_M = 14.0  # extra length of a bridge beyond what it spans
 PATH_WIDTH_M = 3.0
 
 
@@ -44,7 +44,7 @@ class Crossing:
 
     @property
     def rank(self) -> int:
-        """The river first, then rails with roads, then streams: what is left over is a level crossing or a culvert."""
+        """Return a sort key: the river first, then rails with roads, then streams; the rest are level crossings or culverts."""
         return {"river": 0, "rail": 1}.get(
             self.under.course.kind, 1 if self.over.course.kind == "rail" and self.under.course.kind != "stream" else 2
         )
@@ -73,7 +73,7 @@ def draw_transport(drawing: OsmDrawing, generator: np.random.Generator) -> None:
 
 
 def _streams(river: Strand, generator: np.random.Generator) -> list[Strand]:
-    """Streams from both ridges down to the river, wandering a little."""
+    """Return slightly winding streams from both ridges down to the river."""
     streams = []
     for bank in (1.0, -1.0):
         mouths = np.linspace(-18_000.0, 18_000.0, STREAMS_PER_BANK) + generator.uniform(-800.0, 800.0, STREAMS_PER_BANK)
@@ -109,7 +109,7 @@ def _crossings(over: Strand, under: Strand) -> list[Crossing]:
 
 
 def _choose(crossings: list[Crossing]) -> list[Crossing]:
-    """The BRIDGES most important crossings that stand apart from one another, in the order of their rank."""
+    """Return the BRIDGES highest-ranked crossings that keep BRIDGE_SPACING_M from one another, by rank."""
     chosen: list[Crossing] = []
     for crossing in sorted(crossings, key=lambda crossing: crossing.rank):
         if len(chosen) == BRIDGES:
@@ -120,7 +120,7 @@ def _choose(crossings: list[Crossing]) -> list[Crossing]:
 
 
 def _draw_strand(drawing: OsmDrawing, strand: Strand, shared_nodes: dict[tuple[float, float], int]) -> None:
-    """The strand as a chain of ways, one for each bridge and one for each stretch between them, as OSM splits them."""
+    """Draw the strand as a chain of ways, one per bridge and one per stretch between them, as OSM splits them."""
     course = strand.course
     if course.kind == "rail":
         tags = {"railway": "rail", "electrified": "contact_line", "voltage": "15000", "frequency": "16.7", "gauge": "1435"}
@@ -142,7 +142,7 @@ def _draw_strand(drawing: OsmDrawing, strand: Strand, shared_nodes: dict[tuple[f
 def _draw_piece(
     drawing: OsmDrawing, path: FloatArray, tags: dict[str, str], previous: int | None, shared_nodes: dict[tuple[float, float], int]
 ) -> int:
-    """A way that goes on from the previous one's last node, and shares the nodes where another strand has them (the junction)."""
+    """Draw a way from the previous one's last node that shares existing nodes of another strand (the junction); returns its last node."""
     node_ids = [] if previous is None else [previous]
     for point in path if previous is None else path[1:]:
         place = (float(point[0]), float(point[1]))
@@ -171,7 +171,7 @@ def _draw_bridge(
 
 
 def _draw_bridge_area(drawing: OsmDrawing, bridge: Crossing, deck: FloatArray, width_m: float) -> None:
-    """Over the river: the outline of the whole bridge, with a path beside the road or the rails on the same outline."""
+    """Draw the outline of a whole bridge over the river, with a path beside the road or rails on the same outline."""
     footpath = offset_path(deck, width_m / 2 + PATH_WIDTH_M / 2)
     drawing.add_path(footpath, {"highway": "path", "bridge": "yes", "layer": "1", "width": f"{PATH_WIDTH_M:g}"})
     if bridge.over.course.kind == "secondary":

@@ -24,13 +24,13 @@ def _circle(centre: Point, radius_m: float) -> dict[str, Any]:
 
 
 def _polygon(points: Sequence[Point]) -> dict[str, Any]:
-    """Closed, outer ring counter-clockwise as the points are given."""
+    """Return a closed polygon; the points are counter-clockwise."""
     ring = [list(lon_lat(*point)) for point in points]
     return {"type": "Polygon", "coordinates": [[*ring, ring[0]]]}
 
 
 def _airfield(centre: Point, length_m: float, width_m: float, heading_rad: float) -> list[Point]:
-    """A strip with cut corners along a runway; heading counter-clockwise from east."""
+    """Return a strip with cut corners along a runway; heading counter-clockwise from east."""
     half_length, half_width, cut = length_m / 2, width_m / 2, width_m / 3
     corners = [
         (half_length - cut, -half_width), (half_length, -half_width + cut),
@@ -43,7 +43,7 @@ def _airfield(centre: Point, length_m: float, width_m: float, heading_rad: float
 
 
 def _moor(centre: Point, reach_m: Sequence[float]) -> list[Point]:
-    """An uneven outline: one distance from the centre for each direction, counter-clockwise from east."""
+    """Return an irregular outline: one distance from the centre per direction, counter-clockwise from east."""
     steps = [2 * pi * index / len(reach_m) for index in range(len(reach_m))]
     return [(centre[0] + reach * cos(angle), centre[1] + reach * sin(angle)) for reach, angle in zip(reach_m, steps, strict=True)]
 
@@ -51,7 +51,7 @@ def _moor(centre: Point, reach_m: Sequence[float]) -> list[Point]:
 def _layer(
     shape: dict[str, Any], lower: float | None, upper: float | None, upper_reference: str = "AGL", unit: str = "M"
 ) -> dict[str, Any]:
-    """One volume; a limit that is not stated is left out, which is not the same as 0."""
+    """Return one volume; an unstated limit is omitted, which differs from 0."""
     layer: dict[str, Any] = {"uomDimensions": unit, "lowerVerticalReference": "AGL", "upperVerticalReference": upper_reference}
     if lower is not None:
         layer["lowerLimit"] = lower
@@ -84,7 +84,7 @@ def _zone(
 
 
 def zones_document() -> dict[str, Any]:
-    """Eight zones: each lies over a line or two, none over a base, and no line is the only way round one."""
+    """Return eight zones: each covers a line or two but no base, and each can be bypassed along several lines."""
     airfield = _polygon(_airfield((3_700.0, -2_450.0), 3_900.0, 1_500.0, 0.21))
     reserve = _polygon(
         _moor((-14_900.0, 4_900.0), (1_350.0, 1_500.0, 1_050.0, 1_250.0, 1_600.0, 1_300.0, 950.0, 1_150.0, 1_700.0, 1_400.0))

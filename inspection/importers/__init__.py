@@ -1,1 +1,1 @@
-"""Readers of the files that infrastructure, zones and terrain come in, with their limits and faults. Pure."""
+"""Readers of infrastructure, zone and terrain files, with their limits and faults. Pure."""

@@ -1,4 +1,4 @@
-"""Opens a zip file that somebody sent: no bomb, no path, no link, no archive in the archive; what is unpacked has no name on disk."""
+"""Safe reading of zip files: no bombs, paths, links or nested archives; unpacked files have no name on disk."""
 
 import io
 import stat
@@ -15,8 +15,8 @@ from inspection.importers.rows import refused
 MAX_ENTRIES = 1_000
 MAX_DIRECTORY_BYTES = 256 * 1024  # what zipfile reads at once; one entry takes 46 bytes and its name
 MAX_UNPACKED_BYTES = 512 * 1024 * 1024
-MAX_RATIO = 100  # honest shapefiles and KML pack 3:1 to 30:1
-FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # a small file may pack as well as it likes
+MAX_RATIO = 100  # real shapefiles and KML compress 3:1 to 30:1
+FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # below this size any ratio is accepted
 _CHUNK = 64 * 1024
 _ARCHIVE_ENDINGS = (".zip", ".kmz", ".gz", ".bz2", ".xz", ".7z", ".rar", ".tar", ".tgz")
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
@@ -28,7 +28,7 @@ class _TooMuchAtOnce(Exception):
 
 
 class _CappedFile(io.BufferedReader):
-    """Refuses to read more at once than an honest directory of entries has: a hostile one would fill the memory with its names."""
+    """Refuses reads larger than a plausible directory of entries: a hostile one would fill the memory with its names."""
 
     def read(self, size: int | None = -1, /) -> bytes:
         wanted = MAX_DIRECTORY_BYTES + 1 if size is None or size < 0 else size
@@ -41,7 +41,7 @@ class _CappedFile(io.BufferedReader):
 
 
 class Archive:
-    """The files of a zip file by name; a member is unpacked into a file that nobody else can see."""
+    """The files of a zip file by name; a member is unpacked into an unnamed temporary file."""
 
     def __init__(self, archive: zipfile.ZipFile, packed_bytes: int, most_ratio: int) -> None:
         self._archive = archive
@@ -51,7 +51,7 @@ class Archive:
         self.names = [info.filename for info in archive.infolist() if not info.is_dir()]
 
     def size_of(self, name: str) -> int:
-        """Unpacked, as the archive states it; never more comes out."""
+        """Return the unpacked size as the archive states it; extraction never exceeds it."""
         return self._archive.getinfo(name).file_size
 
     @contextmanager
@@ -68,7 +68,7 @@ class Archive:
             yield file
 
     def text(self, name: str, most_bytes: int) -> str:
-        """A small member, such as the one that names the reference system."""
+        """Return the text of a small member, such as the one that names the reference system."""
         with self.unpacked(name) as file:
             data = file.read(most_bytes + 1)
         if len(data) > most_bytes:
@@ -85,7 +85,9 @@ class Archive:
 
 @contextmanager
 def opened_archive(path: Path, *, most_ratio: int = MAX_RATIO) -> Iterator[Archive]:
-    """most_ratio: of what is unpacked to what is packed. Raises AssetFileError for an archive that no honest program writes."""
+    """Open an archive. most_ratio: largest ratio of unpacked to packed size. Raises AssetFileError for an archive that no ordinary program
+    writes.
+    """
     with path.open("rb", buffering=0) as raw, _CappedFile(raw) as file:
         try:
             archive = zipfile.ZipFile(file)

@@ -1,4 +1,4 @@
-"""What every reader of asset files makes: rows of plain values with a geometry as GeoJSON has it, and the faults that refuse a file."""
+"""Rows of asset files: plain values with a GeoJSON geometry, and the faults for which a file is refused."""
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
@@ -13,14 +13,14 @@ from operation.reasons import Reason
 MAX_ROWS = 200_000
 MAX_COLUMNS = 200
 MAX_COLUMN_NAME = 100
-MAX_TEXT = 1_000  # characters of one value; what is longer is cut
-MAX_ROW_CHARACTERS = 1024 * 1024  # of a row as it stands in a text file; 10,000 vertices need half of it
+MAX_TEXT = 1_000  # characters of one value; longer ones are cut
+MAX_ROW_CHARACTERS = 1024 * 1024  # of a row in a text file; 10,000 vertices need half of it
 
 Cell = str | int | float | bool | None
 
 
 class AssetFileError(ValueError):
-    """The file is refused as a whole; each fault names its place."""
+    """Raised for a file that is refused as a whole; each fault has its place."""
 
     def __init__(self, faults: Iterable[GeometryFault]) -> None:
         self.faults = list(faults)
@@ -33,8 +33,9 @@ def refused(place: str, message: Reason | str) -> AssetFileError:
 
 @dataclass(frozen=True)
 class RawRow:
-    """One row as its file has it. geometry is a GeoJSON geometry in the file's reference system that nobody has looked at yet, or why
-    there is none.
+    """One row of a file. geometry is an unvalidated GeoJSON geometry in the file's reference system, or the fault for which there is
+
+    none.
     """
 
     place: str
@@ -44,7 +45,7 @@ class RawRow:
 
 @dataclass
 class Source:
-    """An opened file. rows may be called again and again; each call reads the file from its start."""
+    """An open file. rows may be called repeatedly; each call reads the file from its start."""
 
     file_format: str
     rows: Callable[[], Iterator[RawRow]]
@@ -53,12 +54,12 @@ class Source:
     layers: tuple[str, ...] = ()
     notes: list[str] = field(default_factory=list)
     geometry_columns: dict[str, str] = field(default_factory=dict)  # of a table: {"lon", "lat"} or {"wkt"}
-    columns: tuple[str, ...] = ()  # of a table: all of them, those with the geometry too
+    columns: tuple[str, ...] = ()  # of a table: all of them, including the geometry's
     first_cells: dict[str, str] = field(default_factory=dict)  # of a table: its first row
 
 
 def plain_cell(value: Any, place: str) -> Cell:
-    """A value that the database can keep: no null character, no half of a surrogate pair, no endless text, no NaN."""
+    """Return a value that the database can store: no null character, no unpaired surrogate, limited length, no NaN."""
     if value is None or isinstance(value, bool):
         return value
     if isinstance(value, int):
@@ -74,7 +75,7 @@ def plain_cell(value: Any, place: str) -> Cell:
 
 
 class Columns:
-    """Checks the names of columns as rows bring them."""
+    """Validates the names of columns as rows arrive."""
 
     def __init__(self) -> None:
         self._known: set[str] = set()
@@ -93,7 +94,7 @@ class Columns:
 
 
 def unique_names(names: Iterable[str]) -> tuple[str, ...]:
-    """Each name once: a second "type" becomes "type 2", an empty one is called after its place."""
+    """Return unique names: a second "type" becomes "type 2", an empty name its position."""
     found: list[str] = []
     for number, stated in enumerate(names, start=1):
         name = base = " ".join(stated.split()) or f"column {number}"
@@ -118,7 +119,7 @@ class FaultList:
 
     @contextmanager
     def gathering(self) -> Iterator[None]:
-        """Keep a fault of the block and go on after it; stop reading when there are too many."""
+        """Store a fault of the block and continue after it. Raises TooManyFaults at the limit."""
         try:
             yield
         except GeometryFault as fault:

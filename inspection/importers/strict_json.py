@@ -1,4 +1,4 @@
-"""JSON as the standard has it: no NaN, no Infinity, no number too large for a float, no endless nesting."""
+"""Standard JSON: no NaN, no Infinity, no number too large for a float, limited nesting."""
 
 import json
 from math import isfinite
@@ -10,11 +10,11 @@ MAX_DEPTH = 64
 
 
 class JsonFault(ValueError):
-    """The text is not the JSON that we accept; the message says where and why."""
+    """Raised for text that is not acceptable JSON; the message has the place and the reason."""
 
 
 def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX_DEPTH) -> Any:
-    """The value of a JSON text in UTF-8, a byte-order mark allowed. Raises JsonFault."""
+    """Return the value of a JSON text in UTF-8; a byte-order mark is allowed. Raises JsonFault."""
     if len(data) > max_bytes:
         raise JsonFault(f"The file has {len(data) / 2**20:.1f} MiB; at most {max_bytes / 2**20:.0f} MiB are read.")
     try:
@@ -35,7 +35,7 @@ def parse_strict_json(data: bytes | str, *, max_bytes: int, max_depth: int = MAX
 
 
 def can_be_stored(value: Any) -> bool:
-    """Whether PostgreSQL's jsonb can hold it: not the character of number 0, nor halves of surrogate pairs."""
+    """Whether PostgreSQL's jsonb can store it: no null characters, no unpaired surrogates."""
     text = json.dumps(value, ensure_ascii=False)
     return "\\u0000" not in text and not any("\ud800" <= character <= "\udfff" for character in text)
 
@@ -52,7 +52,7 @@ def _finite(text: str) -> float:
 
 
 def _check_depth(value: Any, max_depth: int) -> None:
-    """Level by level, so that it needs no stack."""
+    """Check the depth level by level, without recursion."""
     level = [value]
     for _ in range(max_depth + 1):
         holders = [item for item in level if isinstance(item, dict | list)]

@@ -1,4 +1,4 @@
-"""What the commands that read a file have in common: the file, JSON on request, progress on a terminal, one sentence for a bad file."""
+"""Base of commands that read a file: the file, JSON on request, progress on a terminal, one sentence for a bad file."""
 
 import json
 import sys
@@ -24,7 +24,7 @@ OPEN_STATES = (ProposalState.READING, ProposalState.APPLYING)
 
 
 class ImportCommand(BaseCommand, ABC):
-    """A subclass reads the file and tells the counts; its errors for a bad file are CommandErrors."""
+    """A subclass reads the file and returns the counts; it raises CommandError for a bad file."""
 
     kind: str
 
@@ -70,17 +70,17 @@ class ImportCommand(BaseCommand, ABC):
 
     @abstractmethod
     def notify(self, name: str, counts: dict[str, Any]) -> None:
-        """Print for people what was in it."""
+        """Print the content of the file for users."""
 
     def parameters(self, options: dict[str, Any]) -> dict[str, Any]:
-        """Of the proposal that --auto-apply makes, as the API takes them."""
+        """Return the parameters of the proposal that --auto-apply makes, as in the API."""
         return {}
 
     def provenance(self, options: dict[str, Any]) -> dict[str, Any]:
         return {}
 
     def _within_bounds(self, path: Path, options: dict[str, Any], progress: Progress | None) -> DataImport:
-        """What the workers have applied of the file. Raises CommandError where they refuse it or hold it back."""
+        """Return the import that the workers have applied. Raises CommandError where they refuse the file or hold it back."""
         if options["synthetic"]:
             raise CommandError("--auto-apply is not for synthetic data.")
         if not 0.0 <= options["max_removed_percent"] <= 100.0:

@@ -1,4 +1,4 @@
-"""What exists on the ground, where it comes from, and the graph that connects it."""
+"""Models of map data, their sources, and the graph made of them."""
 
 from inspection.models.assets import Asset, AssetKind, AssetReference, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
 from inspection.models.data_issues import DataIssue, DataIssueKind, DataIssueSearch, DataIssueState

@@ -26,7 +26,7 @@ class OsmType(models.TextChoices):
     RELATION = "r", "Relation"
 
 
-# What a bridge may carry, as JSON paths below the tags of its own and of the ways on its area.
+# What a bridge may carry, as JSON paths in its own tags and in those of the ways on its area.
 _RAIL = 'railway ? (@ like_regex "^(rail|light_rail|narrow_gauge|tram|subway|monorail|funicular|preserved|miniature)$")'
 _PATH = 'highway ? (@ like_regex "^(footway|path|pedestrian|steps|cycleway|bridleway|corridor|platform)$")'
 _ROAD = 'highway ? (!(@ like_regex "^(footway|path|pedestrian|steps|cycleway|bridleway|corridor|platform)$"))'
@@ -53,7 +53,7 @@ def _what_a_bridge_carries() -> Case:
 
 
 class AssetSet(models.Model):
-    """The assets of one file that is not OpenStreetMap's; importing the source's next file under the same name brings them up to date."""
+    """The assets of one file other than OpenStreetMap's; importing the source's next file under the same name updates them."""
 
     name = models.CharField(max_length=200, unique=True)
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="asset_sets")
@@ -67,7 +67,7 @@ class AssetSet(models.Model):
 
 
 class Asset(models.Model):
-    """A piece of infrastructure. One table for all kinds: targets, findings, tiles and imports point at one thing.
+    """A piece of infrastructure. One table for all kinds, so that targets, findings, tiles and imports can refer to any of them.
 
     geometry: Point for a tower, LineString for a line or railway, Polygon or MultiPolygon for a bridge; WGS84, lon lat.
     """
@@ -184,8 +184,9 @@ class Bridge(Asset):
 
 
 class AssetReference(models.Model):
-    """An organisation's id and attributes of an asset. Beside the asset's row, so that no import touches them and no other organisation
-    reads them.
+    """An organisation's id and attributes of an asset. They are separate from the asset's row, so that imports do not change them and
+
+    other organisations cannot read them.
     """
 
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, related_name="asset_references")

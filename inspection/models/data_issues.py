@@ -1,4 +1,4 @@
-"""Where map data look wrong, for a curator to repair or to leave. Tables, constraints and indexes keep the names of before."""
+"""Data issues, for a curator to repair or dismiss. Tables, constraints and indexes keep their former names."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -19,12 +19,12 @@ class DataIssueKind(models.TextChoices):
 
 class DataIssueState(models.TextChoices):
     OPEN = "open", "Open"
-    REPAIRED = "repaired", "Repaired"  # no longer found, or mended here
+    REPAIRED = "repaired", "Repaired"  # no longer found, or repaired here
     DISMISSED = "dismissed", "Left as it is"
 
 
 class DataIssue(models.Model):
-    """One place where the data looks wrong. Found again under the same key with each new ground, so that a decision stays."""
+    """One place where map data look wrong. Its key stays the same for each dataset version, so that a decision is kept."""
 
     kind = models.CharField(max_length=30, choices=DataIssueKind.choices)
     key = models.CharField(max_length=200, unique=True, help_text="kind and the places that it is about; the same on every run")
@@ -55,7 +55,7 @@ class DataIssue(models.Model):
 
 
 class DataIssueSearch(models.Model):
-    """One row: which ground was looked at last, by which rules, and how long that took."""
+    """One row: the dataset version of the last search, its rules, and its duration."""
 
     SINGLE_ID = 1
 

@@ -1,4 +1,4 @@
-"""The ground's revision, and the graphs built from it."""
+"""The dataset version, and the graphs built from map data."""
 
 from django.contrib.gis.db import models
 from django.db.models import Q
@@ -8,7 +8,7 @@ from inspection.models.imports import DataImport
 
 
 class Ground(models.Model):
-    """One row: counts the changes to assets and zones, so that a graph can tell whether it is out of date."""
+    """One row that counts the changes to assets and zones, so that an outdated graph is detected."""
 
     SINGLE_ID = 1
 
@@ -25,7 +25,9 @@ class Ground(models.Model):
 
 
 class GraphSnapshot(models.Model):
-    """An immutable network, free of zones. What it counts is the graph cleared of the zones of its time. The primary key is the version."""
+    """An immutable network without zones. Its counts are those of the graph cleared of the zones of its time. The
+    primary key is the version.
+    """
 
     version = models.BigAutoField(primary_key=True)
     ground_revision = models.PositiveBigIntegerField(help_text="the ground that it shows")

@@ -1,4 +1,4 @@
-"""Files that were read, and files on their way in: parts of an upload, and proposals that a curator looks at before they count."""
+"""Imported files, and incoming ones: parts of an upload, and proposals for a curator's review."""
 
 import uuid
 
@@ -9,7 +9,7 @@ from django.db.models.functions import Now
 
 from workspace.models import DEFAULT_ORGANISATION_ID, Job
 
-MAX_REMOVED_PERCENT = 5.0  # of auto_apply, where nobody states another
+MAX_REMOVED_PERCENT = 5.0  # of auto_apply, unless stated otherwise
 
 
 class ImportKind(models.TextChoices):
@@ -20,7 +20,7 @@ class ImportKind(models.TextChoices):
 
 
 class DataImport(models.Model):
-    """One file that was read: where the data comes from, under which licence, and what was in it."""
+    """One imported file: the data's source, licence and content."""
 
     kind = models.CharField(max_length=20, choices=ImportKind.choices)
     file_name = models.CharField(max_length=255)
@@ -45,8 +45,9 @@ class DataImport(models.Model):
 
 
 class Upload(models.Model):
-    """A file on its way in, part by part; what has arrived is kept when the connection is cut. The bytes lie in the database, so any
-    web process may receive and any worker may read them.
+    """A file that arrives part by part; received parts survive a lost connection. The bytes are in the database, so that any web process
+    can
+    receive them and any worker can read them.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
@@ -89,7 +90,7 @@ class UploadPart(models.Model):
 
 class ProposalState(models.TextChoices):
     READING = "reading", "Reading"
-    REFUSED = "refused", "Refused"  # the file has faults; nothing of it counts
+    REFUSED = "refused", "Refused"  # the file has faults; none of it counts
     READY = "ready", "Ready to look at"
     APPLYING = "applying", "Applying"
     APPLIED = "applied", "Applied"
@@ -104,7 +105,7 @@ class ProposalOrigin(models.TextChoices):
 
 
 class ImportProposal(models.Model):
-    """What a file would change. A curator looks at the difference and applies or discards it; until then nothing of it counts."""
+    """The changes that a file would make. A curator reviews the difference and applies or discards it; until then none of it counts."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     kind = models.CharField(max_length=20, choices=ImportKind.choices)
@@ -141,7 +142,7 @@ class ImportProposal(models.Model):
 
     @property
     def organisation_id(self) -> int:
-        """Whose file it is, and whose external ids it has."""
+        """Return the organisation of the file and of its external ids."""
         return self.created_by.organisation_id if self.created_by else DEFAULT_ORGANISATION_ID
 
 
@@ -150,14 +151,14 @@ class ChangeAction(models.TextChoices):
     CHANGED = "changed", "Changed"
     VANISHED = "vanished", "Vanished"
     KEPT = "kept", "Kept as edited by hand"
-    NOT_READ = "not_read", "Not read"  # a record of the file with a fault; what the set has of it stays
+    NOT_READ = "not_read", "Not read"  # a record of the file with a fault; the set's version of it stays
 
 
-ROW_ACTIONS = (ChangeAction.NEW, ChangeAction.CHANGED, ChangeAction.VANISHED, ChangeAction.KEPT)  # that rows of the ground can have
+ROW_ACTIONS = (ChangeAction.NEW, ChangeAction.CHANGED, ChangeAction.VANISHED, ChangeAction.KEPT)  # actions on rows of map data
 
 
 class ProposedChange(models.Model):
-    """One line of a difference. A large difference stores the first of each action; the proposal has the numbers of all."""
+    """One line of a difference. A large difference stores the first of each action; the proposal has the totals."""
 
     proposal = models.ForeignKey(ImportProposal, on_delete=models.CASCADE, related_name="changes")
     action = models.CharField(max_length=20, choices=ChangeAction.choices)

@@ -1,4 +1,4 @@
-"""No-fly zones, the sets that they come in, and where sets are fetched from."""
+"""No-fly zones, zone sets, and the subscriptions that update sets."""
 
 from django.conf import settings
 from django.contrib.gis.db import models
@@ -42,7 +42,7 @@ class ZoneSetVersion(models.Model):
 
 
 class ZoneSubscription(models.Model):
-    """Where a set's next file is fetched, and how often. What it brings is a proposal; a curator decides."""
+    """Source and interval of a set's next file. A fetched file becomes a proposal; a curator decides."""
 
     zone_set = models.OneToOneField(ZoneSet, on_delete=models.CASCADE, related_name="subscription")
     address = models.URLField(max_length=500)
@@ -75,9 +75,9 @@ class HeightReference(models.TextChoices):
 
 
 class NoFlyZone(models.Model):
-    """One layer of a zone. It states facts as its source gives them; null is "not stated" and is not the same as 0.
+    """One layer of a zone. It stores facts as its source states them; null means "not stated", which differs from 0.
 
-    Which heights it reaches and when it applies is worked out in inspection/zones: what cannot be told counts as reaching, and as always.
+    inspection/zones computes its heights and times: unstated values count as reaching, and as always.
     """
 
     zone_set = models.ForeignKey(ZoneSet, on_delete=models.CASCADE, null=True, blank=True, related_name="zones")

@@ -1,1 +1,1 @@
-"""Finds where the data of the ground looks wrong: one small detector per kind of issue, and what each issue cuts off."""
+"""Detection of data issues: one small detector per kind, and what each issue disconnects."""

@@ -1,4 +1,4 @@
-"""What the detectors read, the graph's own arrays and a few facts besides, and what they find: places where the data look wrong."""
+"""Inputs of the detectors, the graph's arrays with a few facts, and their result: places where map data look wrong."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -12,10 +12,10 @@ from inspection.network.infrastructure import InfrastructurePlaces, Infrastructu
 
 @dataclass(frozen=True)
 class FoundIssue:
-    """kind is a value of models.DataIssueKind. cut_off_m is explained in quality/repair.py."""
+    """A data issue. kind is a value of models.DataIssueKind. quality/repair.py defines cut_off_m."""
 
     kind: str
-    key: str  # the same on every run, for as long as the issue is there
+    key: str  # the same in every run while the issue exists
     asset: int
     position: tuple[float, float]  # lon, lat [deg]
     geometry: BaseGeometry
@@ -29,9 +29,9 @@ NO_OSM_ID = -1
 
 @dataclass(frozen=True)
 class WayFacts:
-    """Of flyable lines or railways, in the order of their Ways."""
+    """Facts of flyable lines or railways, in the order of their Ways."""
 
-    osm_id: NDArray[np.int64]  # (w,) NO_OSM_ID for what was drawn or came from another file
+    osm_id: NDArray[np.int64]  # (w,) NO_OSM_ID for manually drawn ones and other files
     subtype: tuple[str, ...]
     voltages_v: tuple[tuple[int, ...], ...]  # highest first
     voltage_text: tuple[str, ...]  # as tagged
@@ -40,15 +40,15 @@ class WayFacts:
 
 @dataclass(frozen=True)
 class SupportFacts:
-    """Of flyable supports, in the order of their Places."""
+    """Facts of flyable supports, in the order of their Places."""
 
     osm_id: NDArray[np.int64]  # (s,) or NO_OSM_ID
-    is_terminal: NDArray[np.bool_]  # (s,) a portal, or tagged as where a line ends or goes under ground
+    is_terminal: NDArray[np.bool_]  # (s,) a portal, or tagged as the end of a line or of its overhead part
 
 
 @dataclass(frozen=True)
 class PlainBridge:
-    """A bridge that neither carries a way nor says what it is for."""
+    """A bridge that neither carries a way nor states a purpose."""
 
     asset: int
     key: str
@@ -57,7 +57,7 @@ class PlainBridge:
 
 @dataclass(frozen=True)
 class IssueSearchData:
-    """Everything that issues are looked for in, as of one revision of the ground."""
+    """Inputs of the search for issues, of one dataset version."""
 
     revision: int
     lines: InfrastructureWays
@@ -71,10 +71,10 @@ class IssueSearchData:
 
 
 def asset_key(letter: str, osm_id: int, asset: int) -> str:
-    """What names an asset on every run: its OSM type and id, else its primary key."""
+    """Return the same key of an asset in every run: its OSM type and id, else its primary key."""
     return f"{letter}{osm_id}" if osm_id != NO_OSM_ID else f"a{asset}"
 
 
 def place_key(position: NDArray[np.float64]) -> str:
-    """A position to a tenth of a metre."""
+    """Return a position to a tenth of a metre as text."""
     return f"{position[0]:.6f},{position[1]:.6f}"

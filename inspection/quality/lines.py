@@ -1,4 +1,4 @@
-"""Lines as they are mapped: voltages that cannot be, ends that should join, and ends in nothing."""
+"""Issues of lines: impossible voltages, ends that should join, and ends with nothing near."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,12 +11,12 @@ from inspection.network.nearness import nearest_within
 from inspection.quality.infrastructure import FoundIssue, IssueSearchData, WayFacts, asset_key, place_key
 from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, SupportNetwork
 
-MAX_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
+MAX_V = 1_200_000  # the highest ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
 MAX_VALUES = 6
 LOW_VOLTAGE_V = 1_000
 
-# Nominal voltages in use [V]: IEC 60038 and ANSI C84.1, railways (EN 50163), and what national networks use besides; above
-# 100 kV also those of direct current links.
+# Nominal voltages in use [V]: IEC 60038 and ANSI C84.1, railways (EN 50163), and further national ones; above 100 kV also those of direct
+# current links.
 STANDARD_V = frozenset(
     round(kilovolts * 1_000)
     for kilovolts in (
@@ -36,7 +36,7 @@ STANDARD_V = frozenset(
 
 
 def impossible_voltages(ground: IssueSearchData) -> list[FoundIssue]:
-    """One issue for each line or railway whose voltage is too low for it, too high for any, no nominal one, or one of too many."""
+    """Return one issue for each line or railway with a voltage that is too low, too high, not nominal, unreadable, or one of too many."""
     return [
         *_of_ways(ground.lines, ground.line_facts, is_railway=False),
         *_of_ways(ground.railways, ground.railway_facts, is_railway=True),
@@ -65,7 +65,7 @@ def _of_ways(ways: InfrastructureWays, facts: WayFacts, *, is_railway: bool) -> 
 
 
 def voltage_fault(volts: Sequence[int], text: str, *, subtype: str, is_railway: bool) -> dict[str, Any] | None:
-    """None, or what is wrong: {"fault": too_low, too_high, too_many, unread or unusual, "is_advisory", "offered_v"}."""
+    """Return None, or the fault: {"fault": too_low, too_high, too_many, unread or unusual, "is_advisory", "offered_v"}."""
     if not volts:
         return _fault("unread", []) if text.strip() and not _says_unknown(text) and not is_railway else None
     if any(value > MAX_V for value in volts):
@@ -84,12 +84,12 @@ def _fault(name: str, offered_v: list[int], *, is_advisory: bool = False) -> dic
 
 
 def _is_too_low(value: int) -> bool:
-    """A line on towers has high voltage: so few volts are kilovolts whose unit was left out, "110" for 110 kV."""
+    """Whether the value is kilovolts without their unit, such as "110" for 110 kV: a line on towers has high voltage."""
     return value < LOW_VOLTAGE_V and value * 1_000 in STANDARD_V
 
 
 def _corrected(volts: Sequence[int], is_wrong: Any, divisors: Sequence[int]) -> list[int]:
-    """The same voltages with the wrong ones divided so that they are nominal ones; none if that does not work for all."""
+    """Return the voltages with wrong ones divided to nominal ones; empty if that does not work for all."""
     corrected = set()
     for value in volts:
         fitting = [value // by for by in divisors if value % by == 0 and value // by >= LOW_VOLTAGE_V and value // by in STANDARD_V]
@@ -103,17 +103,18 @@ def _says_unknown(text: str) -> bool:
     return text.strip().lower() in {"unknown", "fixme", "?", "yes", "no"}
 
 
-JOIN_M = 6.0  # "a few metres": a mapper's slip; gantries of a substation stand 10 m and more apart
+JOIN_M = 6.0  # "a few metres": a mapping error; gantries of a substation are 10 m and more apart
 TERMINAL_M = 150.0  # a substation's reach, as in the graph's rule for crossings
-ASKED_AT_ONCE = 2_000_000  # neighbours, so that memory stays bounded
-REACH_M = 2_000.0  # how far an end may be from the network that it could belong to
+ASKED_AT_ONCE = 2_000_000  # neighbours per query, which limits memory
+REACH_M = 2_000.0  # largest distance of an end from the network that it could belong to
 
 
 def line_ends(network: SupportNetwork) -> list[FoundIssue]:
-    """Ends that no other leg leaves from: apart from another line by a few metres, or with nothing around them.
+    """Return ends from which no other leg leaves: a few metres from another line, or with nothing around them.
 
-    Spanwise keeps no substations. An end counts as meant where another line, a cable, a busbar, a portal or a tower tagged as terminal is
-    within 150 m; a substation with one line and none of these looks like nothing, and a curator says that it is meant.
+    Spanwise stores no substations. An end counts as intended where another line, a cable, a busbar, a portal or a tower tagged as terminal
+    is
+    within 150 m. A substation with one line and none of these is not recognised, and a curator dismisses the issue.
     """
     vertex = _loose_ends(network)
     position = network.node_position[network.node_of_vertex[vertex]]
@@ -128,7 +129,7 @@ def line_ends(network: SupportNetwork) -> list[FoundIssue]:
 
 
 def is_at_terminal(network: SupportNetwork, position: FloatArray, way: IntArray) -> BoolArray:
-    """Whether something at the place says that lines end there: a terminal support, what is not flown, or another line."""
+    """Whether something at the place indicates that lines end there: a terminal support, unflown infrastructure, or another line."""
     ground = network.ground
     terminals = np.concatenate([ground.off_network, ground.supports.position[ground.support_facts.is_terminal]])
     at_terminal = np.zeros(len(position), dtype=bool)
@@ -139,12 +140,12 @@ def is_at_terminal(network: SupportNetwork, position: FloatArray, way: IntArray)
 
 
 def _loose_ends(network: SupportNetwork) -> IntArray:
-    """Vertex numbers of first and last vertices from whose node one leg leaves only."""
+    """Return vertex numbers of first and last vertices whose node has a single leg."""
     lines = network.ground.lines
     has = np.diff(lines.first) > 1
     ends = np.concatenate([lines.first[:-1][has], lines.first[1:][has] - 1])
     loose = np.sort(ends[network.degree[network.node_of_vertex[ends]] == 1])
-    _, first = np.unique(network.node_of_vertex[loose], return_index=True)  # two lines along one pair of nodes have one end
+    _, first = np.unique(network.node_of_vertex[loose], return_index=True)  # two lines between one pair of nodes share an end
     chosen: IntArray = loose[np.sort(first)]
     return chosen
 
@@ -156,7 +157,7 @@ def _of_other_lines(network: SupportNetwork, vertex: IntArray, near: NearLegs) -
 
 
 def _ends_apart(network: SupportNetwork, vertex: IntArray, near: NearLegs, row: IntArray) -> list[FoundIssue]:
-    """One issue for each pair of an end and the line that it should join; two ends that miss each other are one issue."""
+    """Return one issue for each pair of an end and the line that it should join; two ends that miss each other are one issue."""
     leg = near.leg[row]
     start, other_end = network.leg_start[leg], network.leg_start[leg] + 1
     target = np.where(near.fraction[row] <= 0.5, start, other_end)
@@ -219,9 +220,9 @@ def _dead_ends(network: SupportNetwork, vertex: IntArray) -> list[FoundIssue]:
 
 
 def _nearest_other_component(network: SupportNetwork, node: IntArray) -> tuple[IntArray, FloatArray]:
-    """For each node the nearest one within reach of lines of its voltage that do not hang together with it, or -1.
+    """Return for each node the nearest one of an unconnected line with its voltage within reach, or -1.
 
-    Lines of two voltages meet in a transformer, not in each other; a voltage that is not stated may be any.
+    Lines of two voltages are connected by transformers, not directly; an unstated voltage matches any.
     """
     volts = _node_volts(network)
     on_lines = np.flatnonzero(network.degree > 0)

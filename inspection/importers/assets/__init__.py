@@ -1,1 +1,1 @@
-"""Files about assets that are not OpenStreetMap's, as rows of properties and one geometry each; pure Python."""
+"""Asset files in formats other than OpenStreetMap's, as rows of properties with one geometry each; pure Python."""

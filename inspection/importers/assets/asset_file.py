@@ -1,4 +1,4 @@
-"""One door for every format: the file's own content says what it is, and each row passes the geometry gate on its way."""
+"""Opens asset files of every format, which it detects from the content, and validates the geometry of each row."""
 
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -27,7 +27,7 @@ Shape = Point | LineString | MultiLineString | MultiPolygon
 
 @dataclass(frozen=True)
 class Row:
-    """geometry is in WGS84, lon lat, checked; None where the file has none."""
+    """A row. geometry is in WGS84, lon lat, validated; None where the file has none."""
 
     place: str
     properties: dict[str, Cell]
@@ -36,7 +36,7 @@ class Row:
 
 @dataclass
 class RowFaults:
-    """Gathers the faults of rows. Those that are to be left out are counted and shown; the others refuse the file."""
+    """Collects the faults of rows. With permission faulty rows are skipped and counted; otherwise they refuse the file."""
 
     leave_out: bool = False
     faults: list[GeometryFault] = field(default_factory=list)
@@ -55,7 +55,7 @@ class RowFaults:
 
 
 class AssetFile:
-    """An opened file whose rows can be read again and again, each time from the start."""
+    """An open file whose rows can be read repeatedly, each time from the start."""
 
     def __init__(self, source: Source, crs_name: str, to_wgs84: ToWgs84 | None) -> None:
         self.source = source
@@ -66,7 +66,7 @@ class AssetFile:
             self.notes.append(f"Positions may be off by {to_wgs84.accuracy_m:.0f} m: the exact grid of {crs_name} is not installed.")
 
     def rows(self, faults: RowFaults) -> Iterator[Row]:
-        """Each row with its checked geometry; a row with a fault is not given. Raises AssetFileError for what no row survives."""
+        """Yield each row with its validated geometry; rows with a fault are skipped. Raises AssetFileError for faults of the whole file."""
         budget = VertexBudget(MAX_VERTICES, MAX_ROWS)
         for number, raw in enumerate(self.source.rows(), start=1):
             if number > MAX_ROWS:
@@ -99,7 +99,7 @@ class AssetFile:
 
 @contextmanager
 def opened_asset_file(path: Path, *, crs: Any = None, geometry_columns: Any = None, layer: str = "") -> Iterator[AssetFile]:
-    """crs, such as EPSG:2056, overrules what the file says. Raises AssetFileError."""
+    """Open a file. crs, such as EPSG:2056, overrides the file's own. Raises AssetFileError."""
     stated = system_of_code(crs, "crs") if crs else None
     with ExitStack() as stack:
         source = stack.enter_context(_source(path, geometry_columns, layer, has_system=bool(crs)))
@@ -113,7 +113,7 @@ def opened_asset_file(path: Path, *, crs: Any = None, geometry_columns: Any = No
 
 
 def checked_shape(value: dict[str, Any], place: str) -> Shape:
-    """What the gate lets through, and lines in several parts: joined where they meet. Raises GeometryFault."""
+    """Return the validated geometry; a line in several parts is joined where they meet. Raises GeometryFault."""
     kind = value.get("type")
     members = value.get("geometries") if kind == "GeometryCollection" else None
     if isinstance(members, list) and len(members) == 1 and isinstance(members[0], dict) and "geometries" not in members[0]:
@@ -178,7 +178,7 @@ def _again(file: Any) -> Iterator[Any]:
 
 
 def _kml_of(archive: Archive) -> str | None:
-    """The document of a KMZ file: doc.kml, or the first one at the top."""
+    """Return the document of a KMZ file: doc.kml, or the first one at the top level."""
     names = sorted(
         (name for name in archive.names if name.lower().endswith(".kml")), key=lambda name: (len(PurePosixPath(name).parts), name)
     )
@@ -186,7 +186,7 @@ def _kml_of(archive: Archive) -> str | None:
 
 
 def _refuse_if_no_degrees(source: Source) -> None:
-    """Better than a fault in each row: the first position tells that the columns are in another system."""
+    """Refuse coordinates that are not degrees, judged by the first position, instead of reporting a fault for each row."""
     row = next(source.rows(), None)
     if row is None or not isinstance(row.geometry, dict) or row.geometry["type"] != "Point":
         return

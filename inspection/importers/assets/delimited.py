@@ -1,4 +1,4 @@
-"""Tables as text (CSV): encoding, delimiter and decimal sign are found out; the geometry is in two columns, or in one as WKT."""
+"""Tables as text (CSV): encoding, delimiter and decimal sign are detected; the geometry is in two columns, or in one as WKT."""
 
 import codecs
 import csv
@@ -33,11 +33,11 @@ _LON = ("lon", "lng", "long", "longitude", "longitud", "lon_wgs84", "laenge", "l
 _LAT = ("lat", "latitude", "latitud", "lat_wgs84", "breite", "y", "y_coord", "northing", "nord", "hochwert", "n")
 _WKT_NAMES = ("wkt", "geom", "geometry", "the_geom", "geometrie", "shape", "wkt_geom")
 
-csv.field_size_limit(max(csv.field_size_limit(), MAX_ROW_CHARACTERS))  # of the process: a polygon as WKT is longer than its default
+csv.field_size_limit(max(csv.field_size_limit(), MAX_ROW_CHARACTERS))  # process-wide: a polygon as WKT exceeds the default
 
 
 def delimited_source(path: Path, geometry_columns: Any) -> Source:
-    """geometry_columns is {"lon", "lat"} or {"wkt"} with the names of columns; what is not given is guessed. Raises AssetFileError."""
+    """Open a table. geometry_columns is {"lon", "lat"} or {"wkt"} with column names; missing ones are guessed. Raises AssetFileError."""
     encoding = _encoding(path)
     delimiter = _delimiter(path, encoding)
     columns, first = _columns(path, encoding, delimiter)
@@ -49,7 +49,7 @@ def delimited_source(path: Path, geometry_columns: Any) -> Source:
 
 
 def number_of(text: str) -> float | None:
-    """A number as people write it: 8.54, 8,54, 2'600'000.5, 1 200 000; None for all else, "nan" and "inf" too."""
+    """Return a number in usual notations: 8.54, 8,54, 2'600'000.5, 1 200 000; None for anything else, including "nan" and "inf"."""
     plain = text.strip().replace("'", "").replace("’", "").replace("\u00a0", "").replace("\u202f", "").replace(" ", "")
     if plain.count(",") == 1 and "." not in plain:
         plain = plain.replace(",", ".")
@@ -75,7 +75,7 @@ def _encoding(path: Path) -> str:
 
 
 def _delimiter(path: Path, encoding: str) -> str:
-    """The one that parts most rows of the start into the same number of cells, and more than one."""
+    """Return the delimiter that splits most of the first rows into the same number of cells, more than one."""
     lines = []
     for _, line in zip(range(_SAMPLE_ROWS), _lines(path, encoding), strict=False):
         lines.append(line)
@@ -94,7 +94,7 @@ def _delimiter(path: Path, encoding: str) -> str:
 
 
 def _lines(path: Path, encoding: str) -> Iterator[str]:
-    """Line by line; one that does not end is refused before it fills the memory."""
+    """Yield lines; an endless one is refused before it fills the memory."""
     with path.open(encoding=encoding, errors="replace" if encoding == "windows-1252" else "strict", newline="") as file:
         number = 0
         try:
@@ -183,7 +183,7 @@ def _geometry(values: dict[str, str], chosen: dict[str, str], place: str) -> dic
 
 
 def _geometry_of_wkt(text: str, place: str) -> dict[str, Any] | GeometryFault:
-    """Only what has no end of nesting reaches the parser."""
+    """Return the geometry of WKT, or a fault; deep nesting is refused before parsing."""
     match = _WKT.match(text)
     depth = deepest = 0
     for character in re.sub(r"[^()]", "", text):

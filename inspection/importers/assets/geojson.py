@@ -1,4 +1,4 @@
-"""GeoJSON, read feature by feature, so that a large file takes no more memory than its largest feature."""
+"""GeoJSON, read feature by feature, so that memory depends on the largest feature only."""
 
 import json
 import re
@@ -29,12 +29,12 @@ _DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
 
 
 def geojson_source(path: Path) -> Source:
-    """A FeatureCollection, a Feature or a bare geometry. Raises AssetFileError."""
+    """Open a FeatureCollection, a Feature or a bare geometry. Raises AssetFileError."""
     with path.open(encoding="utf-8-sig") as file:
         head = _head(file, path)
     stated = _CRS_NAME.search(head)
     source = Source("geojson", lambda: _rows(path))
-    if stated is not None:  # the standard of 2008 had it, and some programs still write it
+    if stated is not None:  # from the standard of 2008; some programs still write it
         source.crs = system_of_code(stated[1], "crs")
     return source
 
@@ -108,7 +108,7 @@ def _single(text: str) -> Iterator[Any]:
 
 
 class _Scanner:
-    """A window on the text that moves on, so that one feature at a time is in memory."""
+    """A sliding window on the text, with one feature at a time in memory."""
 
     def __init__(self, file: TextIO, window: str, at: int) -> None:
         self.file, self.window, self.at = file, window, at

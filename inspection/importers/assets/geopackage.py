@@ -1,4 +1,4 @@
-"""GeoPackage: an SQLite file, opened so that nothing in it runs: read-only, plain tables alone, no views, functions or triggers."""
+"""GeoPackage: an SQLite file, opened read-only so that nothing in it runs: plain tables only, no views, functions or triggers."""
 
 import sqlite3
 import struct
@@ -20,7 +20,7 @@ _EWKB_Z, _EWKB_M, _EWKB_SRID = 0x80000000, 0x40000000, 0x20000000
 
 
 def geometry_of_wkb(data: bytes, place: str) -> dict[str, Any]:
-    """A point, line or area, or several of one kind; heights and measures are left out. Raises GeometryFault."""
+    """Return a point, line or area, or several of one kind, without heights and measures. Raises GeometryFault."""
     try:
         geometry, end = _read_geometry(memoryview(data), 0, place)
     except struct.error as error:
@@ -81,13 +81,13 @@ def _positions(data: memoryview, at: int, count: int, order: str, dimensions: in
 
 
 def _check_room(data: memoryview, at: int, count: int, least_bytes: int) -> None:
-    """A count that the rest of the data cannot hold is a lie; nothing is set aside for it."""
+    """Raise struct.error for a count that exceeds the rest of the data, before any memory is allocated for it."""
     if count * least_bytes > len(data) - at:
         raise struct.error
 
 
 _STEPS_BETWEEN_LOOKS = 10_000
-_MAX_STEPS = 50_000_000  # of SQLite's machine for one query; an honest table of 200,000 rows takes a fifth
+_MAX_STEPS = 50_000_000  # SQLite's virtual machine steps for one query; a real table of 200,000 rows needs a fifth
 _CACHE_KIB = 4 * 1024
 _ALLOWED = {sqlite3.SQLITE_SELECT, sqlite3.SQLITE_READ}
 _ENVELOPE_BYTES = {0: 0, 1: 32, 2: 48, 3: 48, 4: 64}
@@ -96,7 +96,7 @@ _UNDEFINED = {-1, 0}
 
 @contextmanager
 def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[Source]:
-    """has_system says that the user names the reference system, so that an undefined one is no fault. Raises AssetFileError."""
+    """Open a layer. has_system: the user names the reference system, so an undefined one is no fault. Raises AssetFileError."""
     _refuse_if_cut_off(path)
     database = sqlite3.connect(f"file:{quote(str(path))}?mode=ro&immutable=1", uri=True)
     try:
@@ -122,7 +122,7 @@ def geopackage_source(path: Path, layer: str, *, has_system: bool) -> Iterator[S
 
 
 def _refuse_if_cut_off(path: Path) -> None:
-    """SQLite reads what is there of a file without telling (file format, 1.3.2 and 1.3.7: size and number of pages)."""
+    """Refuse a truncated file, which SQLite reads without an error (file format, 1.3.2 and 1.3.7: size and number of pages)."""
     with path.open("rb") as file:
         head = file.read(100)
     page_bytes, pages = (struct.unpack_from(">H", head, 16)[0], struct.unpack_from(">I", head, 28)[0]) if len(head) == 100 else (1, 2**32)
@@ -150,7 +150,7 @@ def _lock_down(database: sqlite3.Connection) -> None:
 
 
 def _ask(database: sqlite3.Connection, query: str, values: tuple[Any, ...] = ()) -> sqlite3.Cursor:
-    """Run a query that is stopped when it takes more steps than an honest one."""
+    """Run a query that is stopped at _MAX_STEPS."""
     looks = 0
 
     def look() -> int:
@@ -163,7 +163,7 @@ def _ask(database: sqlite3.Connection, query: str, values: tuple[Any, ...] = ())
 
 
 def _check_plain(database: sqlite3.Connection, table: str) -> None:
-    """A view or a virtual table would run what its author wrote."""
+    """Refuse a view or a virtual table, which would run its author's SQL."""
     found = _ask(
         database, "SELECT type, sql FROM sqlite_master WHERE name = ? COLLATE NOCASE AND type IN ('table', 'view')", (table,)
     ).fetchall()
@@ -190,7 +190,7 @@ def _layers(database: sqlite3.Connection) -> dict[str, tuple[str, int]]:
 
 
 def _columns(database: sqlite3.Connection, table: str) -> list[str]:
-    """Without generated columns, which would have to be worked out."""
+    """Return the columns without generated ones, which would have to be computed."""
     database.set_authorizer(None)
     try:
         rows = database.execute(f"PRAGMA table_xinfo({_quoted(table)})").fetchall()
@@ -231,7 +231,7 @@ def _rows(database: sqlite3.Connection, table: str, geometry_column: str, column
 
 
 def _geometry(blob: Any, place: str) -> dict[str, Any] | GeometryFault | None:
-    """OGC 12-128r18, 2.1.3: "GP", version, flags, reference system, envelope, then WKB."""
+    """Return the geometry of a blob. OGC 12-128r18, 2.1.3: "GP", version, flags, reference system, envelope, then WKB."""
     if blob is None:
         return None
     if not isinstance(blob, bytes) or len(blob) < 8 or blob[:2] != b"GP" or blob[2] != 0:

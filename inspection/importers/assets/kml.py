@@ -1,4 +1,4 @@
-"""KML, plain or zipped (KMZ), read placemark by placemark; a document that declares entities is not read at all."""
+"""KML, plain or zipped (KMZ), read placemark by placemark; documents that declare entities are refused."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -21,7 +21,7 @@ Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
 
 def kml_source(opened: Opener, file_format: str = "kml") -> Source:
-    """KML is always in WGS84, longitude first."""
+    """Open a KML document. KML is always in WGS84, longitude first."""
     return Source(file_format, lambda: _rows(opened))
 
 
@@ -182,7 +182,7 @@ class _Reader:
 
 
 def together(shapes: list[dict[str, Any]]) -> dict[str, Any] | None:
-    """One geometry of several: of one kind where that can be."""
+    """Return several geometries as one, of a single kind where possible."""
     if len(shapes) < 2:
         return shapes[0] if shapes else None
     kinds = {shape["type"] for shape in shapes}

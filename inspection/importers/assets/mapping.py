@@ -1,4 +1,4 @@
-"""What the columns of an asset file mean, as a person says it, and the assets that its rows are by that."""
+"""Mapping of an asset file's columns to asset fields, as chosen by a user, and the assets of its rows."""
 
 import hashlib
 import json
@@ -18,13 +18,13 @@ from inspection.importers.assets.delimited import number_of
 from inspection.importers.osm.tags import CABLE_KINDS, MAX_HEIGHT_M, RAILWAYS_OUT_OF_USE, circuits, length_m, voltages_v
 from inspection.importers.rows import Cell, refused
 
-RECORD_VERSION = 1  # counted up when the rules that make records change, so that the next import refreshes the rows
+RECORD_VERSION = 1  # incremented when record rules change, so that the next import refreshes the rows
 KINDS = ("tower", "line", "railway", "bridge")
 BY_GEOMETRY = "by_geometry"  # points are towers, lines are power lines, areas are bridges
 ROLES = ("name", "ref", "operator", "voltage", "circuits", "height", "subtype", "key", "external_id")
 UNITS = {"height": ("m", "ft"), "voltage": ("V", "kV")}
 MAX_KEY = 180
-MAX_EXTERNAL_ID = 200  # as the workspace has it
+MAX_EXTERNAL_ID = 200  # as in workspace
 _KIND_OF_SHAPE = {"Point": "tower", "LineString": "line", "MultiLineString": "line", "MultiPolygon": "bridge"}
 _SHAPES = {
     "tower": {"Point"},
@@ -39,7 +39,7 @@ _SUBTYPES = {"tower": "tower", "line": "line", "railway": "rail", "bridge": "are
 
 @dataclass(frozen=True)
 class Mapping:
-    """kind is one of KINDS or BY_GEOMETRY; or kind_column and what its values mean, "" for rows to be left out."""
+    """A mapping. kind is one of KINDS or BY_GEOMETRY; or kind_column with the meaning of its values, "" for rows to skip."""
 
     kind: str = ""
     kind_column: str = ""
@@ -48,7 +48,7 @@ class Mapping:
     units: dict[str, str] = field(default_factory=dict)
 
     def kind_of(self, row: Row, shape: Shape) -> str | None:
-        """None when nobody has said what the row's value means; "" when the row is to be left out."""
+        """Return the row's kind; None if its value has no meaning assigned; "" to skip the row."""
         if self.kind == BY_GEOMETRY:
             return _KIND_OF_SHAPE[shape.geom_type]
         if self.kind:
@@ -58,8 +58,9 @@ class Mapping:
 
 @dataclass(frozen=True)
 class AssetRecord:
-    """An asset as the file describes it. source_key tells it apart in its set, the same in each file of the source. external_id is the
-    id of whoever sends the file, no fact about the asset; empty: none.
+    """An asset as the file describes it. source_key identifies it within its set, equally in each file of the source. external_id is the
+
+    sender's id, not a fact about the asset; empty: none.
     """
 
     kind: str
@@ -88,15 +89,15 @@ class AssetRecord:
 
 @dataclass
 class Tally:
-    """Counts what happened to the rows on their way to records."""
+    """Counts the outcomes of rows."""
 
-    left_out: Counter[str] = field(default_factory=Counter)  # rows, by why
-    unread: Counter[str] = field(default_factory=Counter)  # values that are none, by role
+    left_out: Counter[str] = field(default_factory=Counter)  # rows, by reason
+    unread: Counter[str] = field(default_factory=Counter)  # invalid values, by role
     unknown_kinds: Counter[str] = field(default_factory=Counter)
 
 
 def checked_mapping(parameters: dict[str, Any], columns: Iterable[str]) -> Mapping:
-    """The mapping that parameters state, whole or in part. Raises AssetFileError for what cannot be meant."""
+    """Return the mapping of complete or partial parameters. Raises AssetFileError for invalid ones."""
     known = set(columns)
     kind = parameters.get("kind") or ""
     if isinstance(kind, dict):
@@ -126,7 +127,7 @@ def checked_mapping(parameters: dict[str, Any], columns: Iterable[str]) -> Mappi
 
 
 def records_of(rows: Iterable[Row], mapping: Mapping, faults: RowFaults, tally: Tally) -> Iterator[AssetRecord]:
-    """The assets that the rows are. Two rows with one key are a fault; without a key column the geometry is the key."""
+    """Yield the assets of the rows. Two rows with one key are a fault; without a key column the geometry is the key."""
     place_of_key: dict[tuple[str, str], str] = {}
     place_of_id: dict[str, str] = {}
     for row in rows:
@@ -147,7 +148,7 @@ def records_of(rows: Iterable[Row], mapping: Mapping, faults: RowFaults, tally: 
             external_id = _external_id(row, mapping, place_of_id)
             for number, part in enumerate(_parts(shape), start=1):
                 own = f"{key}/{number}" if key and number > 1 else key or _key_of_shape(part)
-                if not key:  # the same twice, such as two lines on the same towers
+                if not key:  # duplicates, such as two lines on the same towers
                     own = _free(place_of_key, kind, own)
                 if earlier := place_of_key.get((kind, own)):
                     raise GeometryFault(row.place, f"the key {own[:60]!r} stands at {earlier} already")
@@ -182,7 +183,9 @@ def _check_shape(kind: str, shape: Shape, place: str) -> None:
 
 
 def _parts(shape: Shape) -> list[BaseGeometry]:
-    """A line in parts that do not meet is several assets; an area in parts is one, a single part is stored as such."""
+    """Return the assets of a shape: disjoint parts of a line are several assets; an area in parts is one, a single
+    part is stored as such.
+    """
     if shape.geom_type == "MultiLineString" or (shape.geom_type == "MultiPolygon" and len(shape.geoms) == 1):
         return list(shape.geoms)
     return [shape]
@@ -198,7 +201,7 @@ def _stated_key(row: Row, mapping: Mapping) -> str:
 
 
 def _external_id(row: Row, mapping: Mapping, taken: dict[str, str]) -> str:
-    """Of a line that becomes several assets it is the first one's. Raises GeometryFault for one that cannot be, or is given twice."""
+    """Return the external id; of a line split into several assets, the first one has it. Raises GeometryFault if invalid or duplicate."""
     found = _text(row.properties.get(mapping.columns.get("external_id", ""))).strip()
     if len(found) > MAX_EXTERNAL_ID or not found.isprintable():
         raise GeometryFault(row.place, f"an external id has at most {MAX_EXTERNAL_ID} characters, and no control characters")
@@ -210,7 +213,7 @@ def _external_id(row: Row, mapping: Mapping, taken: dict[str, str]) -> str:
 
 
 def _key_of_shape(shape: BaseGeometry) -> str:
-    """To 1e-7 degrees (1 cm): another program may write the last digits otherwise."""
+    """Return a key of the shape to 1e-7 degrees (1 cm): programs differ in the last digits."""
     return "geometry:" + hashlib.sha256(shapely.to_wkb(shapely.transform(shape, lambda points: np.round(points, 7)))).hexdigest()[:32]
 
 

@@ -1,4 +1,4 @@
-"""Coordinate reference systems by name, and from them to longitude and latitude in WGS84; nothing is fetched from the network."""
+"""Coordinate reference systems by name, and their transformation to longitude and latitude in WGS84, without network access."""
 
 import re
 from collections.abc import Callable
@@ -14,8 +14,8 @@ from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.rows import refused
 
 MAX_WKT_CHARACTERS = 16 * 1024
-ROUGH_M = 2.0  # an accuracy worse than this is told
-FAR_OUTSIDE_DEG = 10.0  # positions so far from where a system is used are in another system
+ROUGH_M = 2.0  # a worse accuracy is reported
+FAR_OUTSIDE_DEG = 10.0  # positions this far outside a system's area belong to another system
 _CODE = re.compile(r"(?:urn:ogc:def:crs:)?(EPSG|ESRI|OGC)::?(?:[\d.]*:)?([0-9A-Za-z]{2,8})", re.IGNORECASE)
 _WGS84 = CRS.from_user_input("OGC:CRS84")
 
@@ -23,7 +23,7 @@ network.set_network_enabled(False)
 
 
 def system_of_code(text: Any, place: str) -> CRS | None:
-    """The system of a code such as EPSG:2056; None for WGS84 itself. Raises AssetFileError."""
+    """Return the system of a code such as EPSG:2056; None for WGS84 itself. Raises AssetFileError."""
     match = _CODE.fullmatch(text.strip()) if isinstance(text, str) else None
     if match is None:
         raise refused(place, f"{str(text)[:60]!r} names no reference system; write a code such as EPSG:2056")
@@ -44,7 +44,7 @@ def name_of_system(system: CRS | None) -> str:
 
 
 class ToWgs84:
-    """Takes coordinates of a system to lon, lat [deg]; accuracy_m is what the transformation states, if it states one."""
+    """Transforms coordinates of a system to lon, lat [deg]; accuracy_m is the transformation's own, if it states one."""
 
     def __init__(self, system: CRS) -> None:
         group = TransformerGroup(system, _WGS84, always_xy=True, allow_ballpark=True)
@@ -57,7 +57,7 @@ class ToWgs84:
         self.accuracy_m: float | None = accuracy_m if accuracy_m is not None and accuracy_m >= 0 else None
 
     def geometry(self, value: dict[str, Any], place: str) -> dict[str, Any]:
-        """A GeoJSON geometry with its positions moved. Raises GeometryFault."""
+        """Return a GeoJSON geometry with transformed positions. Raises GeometryFault."""
         try:
             if "geometries" in value:
                 members = [self.geometry(member, place) for member in value["geometries"]]

@@ -1,4 +1,4 @@
-"""Shapefiles in a zip file. The library that reads them trusts every length in them, so these are looked over first."""
+"""Shapefiles in a zip file. The library that reads them trusts every length, so all lengths are validated first."""
 
 import codecs
 import struct
@@ -26,7 +26,7 @@ _DAMAGED = (shapefile.ShapefileException, struct.error, ValueError, KeyError, In
 
 @contextmanager
 def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Iterator[Source]:
-    """has_system says that the user names the reference system, so that a missing .prj is no fault. Raises AssetFileError."""
+    """Open a layer. has_system: the user names the reference system, so a missing .prj is no fault. Raises AssetFileError."""
     members = {name.lower(): name for name in archive.names if not PurePosixPath(name).name.startswith(".")}
     stems = sorted(name[:-4] for name in members if name.endswith(".shp") and not name.startswith("__macosx/"))
     layers = tuple(PurePosixPath(members[f"{stem}.shp"]).stem for stem in stems)
@@ -57,7 +57,7 @@ def shapefile_source(archive: Archive, layer: str, *, has_system: bool) -> Itera
 
 
 def _looked_over(file: IO[bytes], name: str) -> list[tuple[int, int]]:
-    """Offset and length of each record. No length leads out of the file or back, no count is more than its record holds."""
+    """Return offset and length of each record. Lengths stay within the file and go forward, and counts fit into their records."""
     size = file.seek(0, 2)
     if size < _HEADER_BYTES:
         raise refused(name, "the file is cut off")
@@ -112,7 +112,7 @@ def _look_table_over(file: IO[bytes], name: str) -> None:
 
 
 def _encoding(stated: str, table: IO[bytes]) -> str:
-    """As the .cpg file says; else UTF-8 if all of the table is that, else the one of older Windows programs."""
+    """Return the encoding of the .cpg file; else UTF-8 if the whole table is valid UTF-8, else that of older Windows programs."""
     word = stated.strip().lower()
     for name in (word, f"cp{word.removeprefix('ansi').strip()}") if word else ():
         try:

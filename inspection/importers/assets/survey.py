@@ -1,4 +1,4 @@
-"""What is in an asset file, for somebody who has to say what its columns mean: columns with samples, kinds of geometry, a first look."""
+"""Survey of an asset file for the user who maps its columns: columns with samples, kinds of geometry, a preview."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from inspection.importers.assets.mapping import BY_GEOMETRY
 from inspection.importers.rows import Cell
 
 MAX_SAMPLES = 5
-MAX_VALUES = 50  # different values that are counted of a column; one with more tells no kinds apart
+MAX_VALUES = 50  # counted distinct values of a column; one with more is no kind column
 PREVIEW_ROWS = 500
 PREVIEW_VERTICES = 20_000
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}([T ].*)?|\d{1,2}\.\d{1,2}\.\d{4}")
@@ -62,7 +62,7 @@ class Survey:
 
 
 def survey_of(rows: Iterable[Row], columns: Iterable[str] = ()) -> Survey:
-    """Look at every row once, keeping next to nothing."""
+    """Survey every row once, with little memory."""
     found = Survey({name: ColumnSurvey(name) for name in columns})
     vertices = 0
     for row in rows:
@@ -110,7 +110,7 @@ def _type_of(value: Cell) -> str:
     return "whole number" if number.is_integer() else "number"
 
 
-# Names as they are found in the open data of grid operators, surveys and railways; compared without case, accents and signs.
+# Names found in open data of grid operators, surveys and railways; compared without case, accents and punctuation.
 _NAMES = {
     "key": ("uuid", "globalid", "guid", "fid", "gid", "objectid", "objid", "osmid", "id", "key", "t_id", "xtf_id", "egid"),
     "external_id": ("externalid", "externeid", "assetid", "sapid", "sapnr", "equipmentnumber", "equipmentnr", "equnr"),
@@ -164,7 +164,7 @@ _FOLDED = str.maketrans(
 
 
 def suggested_mapping(survey: Survey, *, file_name: str = "", geometry_columns: dict[str, str] | None = None) -> dict[str, Any]:
-    """The same shape as the parameters of an import; what cannot be guessed is not in it."""
+    """Return a mapping in the shape of an import's parameters, without what cannot be guessed."""
     columns: dict[str, str] = {}
     for role in ("key", "external_id", "ref", "name", "operator", "voltage", "circuits", "height", "subtype"):
         if (name := _column_for(role, survey, columns)) is not None:
@@ -195,7 +195,7 @@ def _column_for(role: str, survey: Survey, taken: dict[str, str]) -> str | None:
 
 
 def _can_be_key(column: ColumnSurvey, survey: Survey) -> bool:
-    """Filled in every row, and no value twice as far as the values were counted."""
+    """Whether each row has a value, without duplicates as far as values were counted."""
     repeated = column.values is not None and any(count > 1 for count in column.values.values())
     return column.filled == survey.rows and not repeated
 

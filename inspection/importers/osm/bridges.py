@@ -1,4 +1,4 @@
-"""Bridges: ways that lie on one bridge area are one bridge, and a way without an area gets a polygon from its width."""
+"""Bridges: ways on one bridge area form one bridge, and a way without an area gets a polygon from its width."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from inspection.geodesy.wgs84 import FloatArray
 from inspection.importers.osm.records import AssetRecord
 from inspection.importers.osm.tags import bridge_width_m, height_m
 
-LYING_ON_SHARE = 0.5  # a way lies on an area if at least half of its length does
-AREA_TOLERANCE_M = 1.0  # edges of areas are drawn along the way's own nodes now and then
+LYING_ON_SHARE = 0.5  # a way is on an area if at least half of its length is
+AREA_TOLERANCE_M = 1.0  # area edges are sometimes drawn along the way's own nodes
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class BridgeArea:
 
 
 def bridges_of(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[AssetRecord]:
-    """One record per bridge: every area with the ways on it, and every way that is on no area."""
+    """Return one record per bridge: every area with the ways on it, and every way that is on no area."""
     owner = _area_of_each_way(ways, areas)
     parts: dict[int, list[BridgeWay]] = {index: [] for index in range(len(areas))}
     lone: list[BridgeWay] = []
@@ -53,7 +53,7 @@ def bridges_of(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[A
 
 
 def _area_of_each_way(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[int | None]:
-    """For each way the index of the area that carries it, or None; of several areas the one that carries most."""
+    """Return for each way the index of the area that carries it, or None; of several areas the one that carries most."""
     own = {area.osm_id: index for index, area in enumerate(areas) if area.osm_type == "w"}
     if not areas:
         return [None] * len(ways)
@@ -83,7 +83,7 @@ def _bridge_of_area(area: BridgeArea, ways: Sequence[BridgeWay]) -> AssetRecord:
 
 
 def _bridge_of_way(way: BridgeWay) -> AssetRecord:
-    """A closed way tagged area=yes is its own outline; any other is widened to both sides, flat at its ends."""
+    """Return a way's bridge: a closed way tagged area=yes is the outline; any other is widened to both sides, flat at its ends."""
     frame = LocalFrame.around(*way.points[0])
     metres = frame.to_metres(way.points)
     polygon: BaseGeometry = Polygon()
@@ -102,7 +102,7 @@ def _bridge_of_way(way: BridgeWay) -> AssetRecord:
 
 
 def inner_point(polygon: BaseGeometry) -> LonLat:
-    """The centroid, or where that lies outside a point that does not."""
+    """Return the centroid, or a point inside where the centroid is outside."""
     point: Point = polygon.centroid
     if not polygon.covers(point):
         point = polygon.representative_point()
@@ -110,7 +110,7 @@ def inner_point(polygon: BaseGeometry) -> LonLat:
 
 
 class BrokenArea(Exception):
-    """The ways do not close to rings, or the rings make no valid polygon."""
+    """Raised when ways do not close to rings, or rings form no valid polygon."""
 
 
 def polygon_of_ring(points: FloatArray) -> Polygon:
@@ -120,7 +120,7 @@ def polygon_of_ring(points: FloatArray) -> Polygon:
 
 
 def polygon_of_relation(outer: Sequence[FloatArray], inner: Sequence[FloatArray]) -> Polygon | MultiPolygon:
-    """The area inside the outer rings without that inside the inner ones; members may be parts of rings in any order."""
+    """Return the area of the outer rings without the inner ones; members may be parts of rings in any order."""
     shells, holes = _rings(outer), _rings(inner)
     if not shells:
         raise BrokenArea

@@ -1,4 +1,4 @@
-"""Looks an OSM file over before a parser sees it: which format it has, and that it is no bomb."""
+"""Validates an OSM file before a parser reads it: its format, and that it is no decompression bomb."""
 
 import bz2
 import gzip
@@ -15,10 +15,10 @@ MAX_BLOB_HEADER_BYTES = 64 * 1024  # OSM wiki, PBF format: "should be less than 
 MAX_BLOB_BYTES = 32 * 1024 * 1024  # same page, for the uncompressed size
 MAX_BLOB_FIELDS = 100  # a Blob and its header have a handful
 MAX_BLOCK_FIELDS = 10_000  # the groups of a block, which holds some 8,000 objects
-MAX_BLOCK_STRINGS = 500_000  # in one block's table; 60 of its own for each object
+MAX_BLOCK_STRINGS = 500_000  # in one block's table: 60 per object
 MAX_UNPACKED_BYTES = 64 * 1024**3
-MAX_RATIO = 100  # OSM XML packs about 10:1, bzip2 up to 20:1; a bomb 1,000:1 and more
-FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # a small file may pack as well as it likes
+MAX_RATIO = 100  # OSM XML compresses about 10:1, bzip2 up to 20:1; a bomb 1,000:1 and more
+FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # below this size any ratio is accepted
 BOMB = f"The file unpacks to more than {MAX_RATIO} times its size; refused as a decompression bomb."
 _CHUNK = 1024 * 1024
 _BLOB_TYPES = {b"OSMHeader", b"OSMData"}
@@ -27,11 +27,11 @@ Progress = Callable[[Reason, float], None]
 
 
 class OsmFileError(ValueError):
-    """The file cannot be taken for OSM data; the message says why, in one sentence for its user."""
+    """Raised for a file that is no valid OSM data; the message is a sentence for its user."""
 
 
 class OsmFormat(StrEnum):
-    """The values are libosmium's names, but for JSON, which it does not read."""
+    """File formats. The values are libosmium's names, except for JSON, which it does not read."""
 
     PBF = "pbf"
     XML = "osm"
@@ -51,7 +51,7 @@ def open_unpacked(path: Path, file_format: OsmFormat) -> BinaryIO:
 
 
 def examine(path: Path, progress: Progress | None = None) -> OsmFormat:
-    """Tell the file's format by its content and walk through it once; raises OsmFileError for what no honest file has."""
+    """Return the file's format, detected from its content, and scan it once. Raises OsmFileError for content of no ordinary file."""
     try:
         file_format = _format_of(path)
         if file_format is OsmFormat.PBF:
@@ -88,12 +88,12 @@ def _format_inside(path: Path, xml: OsmFormat, json: OsmFormat) -> OsmFormat:
 
 
 def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | None) -> None:
-    """Unpack the text once, keeping nothing: how large it becomes, and that no XML token is endless."""
+    """Unpack the text once without storing it: check its size, and that no XML token is endless."""
     packed_bytes = path.stat().st_size
     is_packed = file_format not in {OsmFormat.XML, OsmFormat.JSON}
     is_xml = file_format in {OsmFormat.XML, OsmFormat.XML_GZIP, OsmFormat.XML_BZIP2}
     if not is_packed and not is_xml:
-        return  # the JSON reader bounds each element itself
+        return  # the JSON reader limits each element itself
     unpacked = 0
     with open_unpacked(path, file_format) as file:
         while chunk := file.read(_CHUNK):
@@ -109,7 +109,7 @@ def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | Non
 
 
 def _examine_pbf(path: Path) -> None:
-    """Walk from blob to blob, one in memory at a time."""
+    """Scan all blobs, one in memory at a time."""
     size, unpacked = path.stat().st_size, 0
     with path.open("rb") as file:
         offset = 0
@@ -138,7 +138,7 @@ def _examine_pbf(path: Path) -> None:
 
 
 def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
-    """The type (field 1) and datasize (field 3) of a BlobHeader message."""
+    """Return the type (field 1) and datasize (field 3) of a BlobHeader message."""
     blob_type, blob_bytes = b"", -1
     try:
         for number, value in _fields(data, MAX_BLOB_FIELDS):
@@ -152,9 +152,9 @@ def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
 
 
 def _examine_blob(file: BinaryIO, start: int, end: int) -> int:
-    """Check a Blob message: raw_size (field 2), and the strings of its data, be that plain (field 1) or zlib (field 3).
+    """Check a Blob message: raw_size (field 2), and the strings of its data, plain (field 1) or zlib (field 3).
 
-    Returns the size of its data, unpacked [bytes].
+    Returns the unpacked size of its data [bytes].
     """
     file.seek(start)
     raw_size: int | None = None
@@ -186,11 +186,11 @@ def _examine_blob(file: BinaryIO, start: int, end: int) -> int:
 
 
 def _has_string_with_null(block: memoryview) -> bool:
-    """Whether the string table (field 1) of a PrimitiveBlock has one; libosmium reads past the end of its buffer at such a tag."""
+    """Whether the string table (field 1) of a PrimitiveBlock has a null character, at which libosmium reads past its buffer."""
     for number, table in _fields(block, MAX_BLOCK_FIELDS):
         if number == 1 and isinstance(table, memoryview):
             text = bytes(table)
-            if text.count(0) == text.startswith(b"\x0a\x00"):  # the empty string that every table begins with
+            if text.count(0) == text.startswith(b"\x0a\x00"):  # every table begins with the empty string
                 continue
             if any(isinstance(string, memoryview) and 0 in string for _, string in _fields(table, MAX_BLOCK_STRINGS)):
                 return True
@@ -198,11 +198,11 @@ def _has_string_with_null(block: memoryview) -> bool:
 
 
 class _TooManyFields(Exception):
-    """A message has more fields than its kind may have."""
+    """Raised for a message with more fields than its kind may have."""
 
 
 def _fields(data: bytes | memoryview, max_fields: int) -> Iterator[tuple[int, int | memoryview]]:
-    """The fields of a protobuf message, numbers and byte strings; IndexError when it is none, _TooManyFields beyond max_fields."""
+    """Yield the fields of a protobuf message, numbers and byte strings. Raises IndexError if invalid, _TooManyFields beyond max_fields."""
     view, at, number = memoryview(data), 0, 0
     while at < len(view):
         if (number := number + 1) > max_fields:
@@ -222,7 +222,7 @@ def _fields(data: bytes | memoryview, max_fields: int) -> Iterator[tuple[int, in
 
 
 def _varint(data: memoryview, at: int) -> tuple[int, int]:
-    """A protobuf varint and the offset after it; IndexError when there is none."""
+    """Return a protobuf varint and the offset after it. Raises IndexError if there is none."""
     value = 0
     for shift in range(0, 70, 7):
         byte = data[at]

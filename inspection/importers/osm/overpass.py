@@ -1,4 +1,4 @@
-"""Asking Overpass for an area's infrastructure: the question, and how large an area may be."""
+"""Overpass requests for an area's infrastructure, with a limit of the area."""
 
 import io
 import json
@@ -17,7 +17,7 @@ from inspection.importers.osm.records import Extent
 
 EARTH_RADIUS_KM = 6_371.0088  # IUGG mean radius
 QUERY_TIMEOUT_S = 180
-# What reader.py makes assets of, with life-cycle states that it tells apart by itself.
+# What reader.py makes assets of, including life-cycle states, which it distinguishes itself.
 _RAILWAYS = "rail|light_rail|narrow_gauge|tram|subway|monorail|funicular|preserved|miniature|disused|abandoned|construction"
 _FILTERS = (
     'node["power"~"^(tower|pole|portal)$"]', 'way["power"~"^(line|minor_line|cable|minor_cable|portal|tower)$"]',
@@ -28,11 +28,11 @@ _REMARK = re.compile(r'"remark"\s*:\s*"((?:[^"\\]|\\.){0,500})"')
 
 
 class WrongArea(ValueError):
-    """The box is none, or larger than what may be asked for at once."""
+    """Raised for a box that is invalid, or larger than one request allows."""
 
 
 def checked_box(value: object, most_km2: float) -> Extent:
-    """West, south, east, north [deg]. Raises WrongArea."""
+    """Return west, south, east, north [deg]. Raises WrongArea."""
     if not isinstance(value, list | tuple) or len(value) != 4 or not all(_is_finite_number(number) for number in value):
         raise WrongArea("The area is four numbers: west, south, east, north.")
     west, south, east, north = (float(number) for number in value)
@@ -45,13 +45,13 @@ def checked_box(value: object, most_km2: float) -> Extent:
 
 
 def area_km2(box: Extent) -> float:
-    """Of west, south, east, north [deg], on the sphere."""
+    """Return the area of west, south, east, north [deg] on the sphere [km²]."""
     west, south, east, north = box
     return EARTH_RADIUS_KM**2 * radians(east - west) * (sin(radians(north)) - sin(radians(south)))
 
 
 def question(box: Extent, *, most_bytes: int) -> str:
-    """The text in Overpass QL: everything of the box with whole ways, as JSON; the server stops at the size that we would refuse."""
+    """Return the Overpass QL query for everything in the box with whole ways, as JSON; the server stops at our own size limit."""
     west, south, east, north = box
     parts = "".join(f"{part};" for part in _FILTERS)
     area = f"{south:.7f},{west:.7f},{north:.7f},{east:.7f}"
@@ -59,7 +59,7 @@ def question(box: Extent, *, most_bytes: int) -> str:
 
 
 def complaint(tail: str) -> str:
-    """What the answer itself says against being whole, from its last characters: a query that ran out of time or memory, or ""."""
+    """Return the error remark at the end of a response, such as an exceeded time or memory limit, or ""."""
     remark = _REMARK.search(tail)
     return remark[1] if remark and "error" in remark[1].lower() else ""
 
@@ -87,7 +87,7 @@ _DECODER = json.JSONDecoder(parse_constant=_refuse_constant)
 
 
 def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | None:
-    """Write the elements of an Overpass answer to a PBF file and return the age that it states for its data.
+    """Write the elements of an Overpass response to a PBF file and return the stated age of its data.
 
     Raises OsmFileError with the place of the first fault.
     """
@@ -109,7 +109,7 @@ def rewrite_as_pbf(source: Path, file_format: OsmFormat, target: Path) -> str | 
 
 @dataclass
 class _Scanner:
-    """A window on the text that moves on, so that one element at a time is in memory."""
+    """A sliding window on the text, with one element at a time in memory."""
 
     file: TextIO
     window: str = field(default="", init=False)
@@ -137,7 +137,7 @@ class _Scanner:
                 raise OsmFileError(f"The JSON breaks off or is damaged after elements[{index - 1}].")
 
     def text_after_elements(self) -> str:
-        """What follows the list, as far as a remark may stand there."""
+        """Return the text after the list, up to the length of a remark."""
         while len(self.window) < MAX_REMARK_CHARACTERS and self._read_on():
             pass
         return self.window[:MAX_REMARK_CHARACTERS]
@@ -179,7 +179,7 @@ class _Scanner:
 
 
 def _timestamp(preamble: str) -> str | None:
-    """osm3s.timestamp_osm_base, from an object that breaks off where the elements begin."""
+    """Return osm3s.timestamp_osm_base from the preamble, which ends where the elements begin."""
     try:
         stated = _DECODER.decode(preamble.rstrip().rstrip(",") + "}")["osm3s"]["timestamp_osm_base"]
     except (ValueError, KeyError, TypeError, RecursionError, _NotANumber):
@@ -191,14 +191,14 @@ def _write(writer: Any, element: dict[str, Any], place: str) -> None:
     try:
         kind = element.get("type")
         if kind not in _MEMBER_TYPES:
-            return  # areas, counts and remarks carry no infrastructure
+            return  # areas, counts and remarks have no infrastructure
         osm_id = _whole(element["id"])
         tags = {_text(key): _text(value) for key, value in element.get("tags", {}).items()}
         if kind == "node":
             writer.add_node(mutable.Node(id=osm_id, location=_location(element), tags=tags))
         elif kind == "way":
             refs = [_whole(ref) for ref in element.get("nodes", [])]
-            for ref, point in zip(refs, element.get("geometry", []), strict=False):  # "out geom" states the nodes' places in the way
+            for ref, point in zip(refs, element.get("geometry", []), strict=False):  # "out geom" puts node positions into the way
                 if point is not None:
                     writer.add_node(mutable.Node(id=ref, location=_location(point)))
             writer.add_way(mutable.Way(id=osm_id, nodes=refs, tags=tags))
@@ -213,7 +213,7 @@ def _write(writer: Any, element: dict[str, Any], place: str) -> None:
 
 
 def _text(value: Any) -> str:
-    """Without null characters: libosmium keeps texts as C strings."""
+    """Return a text without null characters: libosmium stores C strings."""
     return str(value).replace("\0", "")
 
 

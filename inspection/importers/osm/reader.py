@@ -1,4 +1,4 @@
-"""Reads an OSM file into asset records: a few streaming passes, so that memory holds the infrastructure and not the file."""
+"""Reads an OSM file into asset records in a few streaming passes, so that memory depends on the infrastructure, not on the file."""
 
 from collections import Counter
 from collections.abc import Callable, Container, Iterable, Iterator, Sequence
@@ -23,7 +23,7 @@ from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 from operation.reasons import Reason
 
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
-MAX_NODES_PER_WAY = 10_000  # OSM itself stops at 2,000
+MAX_NODES_PER_WAY = 10_000  # OSM's own limit is 2,000
 _LENGTH_DECIMALS = 6
 BATCH = 5_000
 _CHUNK = 20_000
@@ -49,10 +49,11 @@ class _Relation:
 
 
 def read_osm(path: Path, progress: Progress | None = None, take: Take | None = None) -> OsmContent:
-    """The assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file; raises OsmFileError if it cannot be read whole.
+    """Return the assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file. Raises OsmFileError if it is not readable.
 
-    With `take` the records are given to it in batches and not kept, so that memory does not grow with their number; an object that
-    stands twice in an unsorted file is then given twice, the one that counts last.
+    With `take` the records are passed to it in batches and not stored, so that memory does not grow with their number. A duplicate object
+    in
+    an unsorted file is then passed twice, the valid one last.
     """
     file_format = examine(path, progress)
     try:
@@ -69,20 +70,20 @@ def read_osm(path: Path, progress: Progress | None = None, take: Take | None = N
 
 
 class _Batch:
-    """Records on their way out: kept, or given away some thousand at a time; what must be known of all is counted on the way."""
+    """Collects records, or passes them on in batches of some thousand; totals are counted on the way."""
 
     def __init__(self, take: Take | None) -> None:
         self._take = take
         self.kept: list[AssetRecord] = []
         self.kinds: Counter[tuple[str, str]] = Counter()
         self.is_unsorted = False
-        self._row_of: dict[int, int] = {}  # of supports that are kept: the last of the same number counts
+        self._row_of: dict[int, int] = {}  # of stored supports: the last one of a number counts
         self._last_id = 0
         self._bounds: list[tuple[float, float, float, float]] = []
         self.extent: Extent | None = None
 
     def add_sorted(self, record: AssetRecord) -> None:
-        """A support; files have them in the order of their numbers, each once."""
+        """Add a support; files have supports in the order of their numbers, without duplicates."""
         self.is_unsorted |= record.osm_id <= self._last_id
         self._last_id = record.osm_id
         if self._take is None and record.osm_id in self._row_of:
@@ -105,7 +106,7 @@ class _Batch:
                 self.give()
 
     def give(self) -> None:
-        """What is left, at the end."""
+        """Pass on the rest."""
         self._widen()
         if self._take is not None and self.kept:
             self._take(self.kept)
@@ -120,7 +121,7 @@ class _Batch:
 
 
 class _Reader:
-    """The passes over one file, in order; each keeps only what a later one or a record needs."""
+    """The passes over one file, in order; each stores only what a later one or a record needs."""
 
     def __init__(self, file: Any, progress: Progress | None, take: Take | None) -> None:
         self.file = file
@@ -154,7 +155,7 @@ class _Reader:
         )  # fmt: skip
 
     def _tagged(self, entities: Any, *keys: str) -> Iterator[Any]:
-        """The objects that have one of the keys; the others are passed over in C++."""
+        """Yield the objects with one of the keys; the others are skipped in C++."""
         items: Iterable[Any] = osmium.FileProcessor(self.file, entities).with_filter(KeyFilter(*keys))
         for item in items:
             if item.deleted:
@@ -165,7 +166,7 @@ class _Reader:
                 yield item
 
     def _numbered(self, entities: Any, ids: Container[int]) -> Iterator[Any]:
-        """The objects with these ids. Not osmium's IdFilter: its set takes 4 MiB for every 2^25 ids, however few are wanted."""
+        """Yield the objects with these ids. osmium's IdFilter would use 4 MiB for every 2^25 ids, however few are needed."""
         items: Iterable[Any] = osmium.FileProcessor(self.file, entities)
         for item in items:
             if item.id in ids and not item.deleted:
@@ -199,7 +200,7 @@ class _Reader:
         return ways
 
     def _read_members(self, relations: Sequence[_Relation], ways: dict[int, _Way]) -> dict[int, _Way]:
-        """The ways that outline bridge areas, among them untagged ones."""
+        """Return the ways that outline bridge areas, including untagged ones."""
         wanted = {ref for relation in relations for ref in relation.outer + relation.inner}
         found = {ref: ways[ref] for ref in wanted if ref in ways}
         if missing := wanted - found.keys():
@@ -225,7 +226,7 @@ class _Reader:
         self.node_ids, self.positions = wanted[found], positions[found]
 
     def _nodes_in_chunks(self) -> Iterator[tuple[NDArray[np.int64], FloatArray]]:
-        """Ids and positions of all nodes, NaN for those that are not on earth, some ten thousand at a time."""
+        """Yield ids and positions of all nodes in chunks of some ten thousand; NaN for invalid positions."""
         ids: list[int] = []
         places: list[tuple[float, float]] = []
         nodes: Iterable[Any] = osmium.FileProcessor(self.file, osmium.osm.NODE)
@@ -242,7 +243,7 @@ class _Reader:
             yield np.array(ids, dtype=np.int64), np.array(places, dtype=np.float64)
 
     def _located(self, way: _Way) -> tuple[NDArray[np.int64], FloatArray, int]:
-        """The way's nodes that are in the file, their positions, and how many are not."""
+        """Return the way's nodes in the file, their positions, and the number of missing ones."""
         if len(self.node_ids) == 0:
             return way.refs[:0], np.zeros((0, 2)), len(way.refs)
         places = np.minimum(np.searchsorted(self.node_ids, way.refs), len(self.node_ids) - 1)
@@ -358,7 +359,7 @@ def _way(item: Any, tags: dict[str, str]) -> _Way:
 
 
 def _lengths_m(paths: Sequence[FloatArray]) -> FloatArray:
-    """The geodesic length of each path, all of them measured in one call."""
+    """Return the geodesic length of each path, measured in one call."""
     if not paths:
         return np.zeros(0)
     points = np.concatenate(paths)
@@ -377,7 +378,7 @@ def _why_no_line(points: FloatArray, length_m: float) -> str | None:
 
 
 def _middle(points: FloatArray) -> LonLat:
-    """The point half-way along; on a step across the antimeridian the vertex before it."""
+    """Return the midpoint along the path; on a step across the antimeridian, the vertex before it."""
     steps = distance_m(points[:-1], points[1:])
     along = np.concatenate([[0.0], np.cumsum(steps)])
     index = min(int(np.searchsorted(along, along[-1] / 2, side="right")) - 1, len(steps) - 1)

@@ -1,4 +1,4 @@
-"""What the reader makes of an OSM file: one record per asset, and what it counted on the way."""
+"""Records of an OSM file: one per asset, and counts."""
 
 import hashlib
 import json
@@ -11,14 +11,14 @@ from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
 
-RECORD_VERSION = 1  # counted up when the rules that make records change, so that a re-import refreshes the rows
+RECORD_VERSION = 1  # incremented when record rules change, so that a re-import refreshes the rows
 
 Extent = tuple[float, float, float, float]  # west, south, east, north [deg]
 
 
 @dataclass(frozen=True)
 class AssetRecord:
-    """An asset as OSM describes it. geometry is in WGS84, lon lat; lengths and heights in metres; None is "not stated"."""
+    """An asset as OSM describes it. geometry is in WGS84, lon lat; lengths and heights in metres; None means "not stated"."""
 
     kind: str  # tower, line, railway, bridge
     subtype: str
@@ -33,7 +33,7 @@ class AssetRecord:
     length_m: float | None = None
     is_flyable: bool = True
     node_osm_ids: tuple[int, ...] = ()
-    parts: tuple[dict[str, Any], ...] = ()  # the ways that lie on a bridge's area: {"osm_id", "tags"}
+    parts: tuple[dict[str, Any], ...] = ()  # the ways on a bridge's area: {"osm_id", "tags"}
 
     @property
     def key(self) -> tuple[str, str, int]:
@@ -52,7 +52,7 @@ class AssetRecord:
         return self._stated("operator")
 
     def _stated(self, key: str) -> str:
-        """The record's own tag, else that of its parts if they agree."""
+        """Return the record's own tag, else that of its parts if they agree."""
         if key in self.tags:
             return self.tags[key]
         stated = {part["tags"][key] for part in self.parts if key in part["tags"]}
@@ -60,7 +60,7 @@ class AssetRecord:
 
     @cached_property
     def content_hash(self) -> str:
-        """Of all that the record says; equal content, equal hash, in every run."""
+        """Return a hash of the whole record, equal for equal content in every run."""
         facts = [
             RECORD_VERSION, self.key, self.subtype, self.geometry.wkb_hex, self.tags, self.voltages_v, self.circuits, self.height_m,
             self.is_flyable, self.node_osm_ids, self.parts,
@@ -70,14 +70,14 @@ class AssetRecord:
 
 @dataclass(frozen=True)
 class OsmContent:
-    """The assets of one file. extent is None when the file has none; stated_extent is what the file's header says.
+    """The assets of one file. extent is None for an empty file; stated_extent comes from the file's header.
 
-    records is empty where they were given away in batches; kinds counts all of them by kind and subtype.
+    records is empty if they were passed on in batches; kinds counts all of them by kind and subtype.
     """
 
     records: list[AssetRecord]
     kinds: Counter[tuple[str, str]]
-    is_unsorted: bool  # an object may have been given twice
+    is_unsorted: bool  # an object may have been passed twice
     counts: dict[str, Any]
     extent: Extent | None
     stated_extent: Extent | None

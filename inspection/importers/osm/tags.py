@@ -1,4 +1,4 @@
-"""OSM tags as typed values: free text goes in, numbers and plain statements come out, garbage becomes "not stated"."""
+"""OSM tags as typed values; invalid text becomes "not stated"."""
 
 import re
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ Tags = Mapping[str, str]
 
 MAX_VOLTAGE_V = 2_000_000  # the highest in service is 1,150,000 V
 MAX_CIRCUITS = 100
-MAX_HEIGHT_M = 1_000.0  # the tallest supports stand at 385 m
+MAX_HEIGHT_M = 1_000.0  # the tallest supports are 385 m high
 MAX_WIDTH_M = 200.0
 
 FOOT_M = 0.3048
@@ -34,15 +34,16 @@ _FEET_AND_INCHES = re.compile(r"\s*(\d{1,4})\s*(?:'|ft)\s*(\d{1,2}(?:\.\d{1,3})?
 
 
 def affirms(value: str | None) -> bool:
-    """Whether a yes-or-no tag such as bridge, tunnel or disused says yes, or names a kind, which means yes."""
+    """Whether a yes-or-no tag such as bridge, tunnel or disused has yes, or a kind, which means yes."""
     return value is not None and value.strip().lower() not in _DENIALS
 
 
 def voltages_v(value: str | None) -> tuple[int, ...]:
-    """Each voltage of a list such as "138000;69000", "110 kV" or "220000-400000" in volts, highest first, each once.
+    """Return each voltage of a list such as "138000;69000", "110 kV" or "220000-400000" in volts, highest first, without duplicates.
 
-    A comma parts values, unless the figures are grouped by thousands as in "138,000". What cannot be read is left out. A unit that
-    stands once, at the end, holds for the whole list ("110/20 kV"), but only for values too small to be volts.
+    A comma separates values, unless digits are grouped by thousands as in "138,000". Unreadable values are omitted. A single unit at the
+    end
+    applies to the whole list ("110/20 kV"), but only to values too small to be volts.
     """
     if not value:
         return ()
@@ -58,7 +59,7 @@ def voltages_v(value: str | None) -> tuple[int, ...]:
 
 
 def circuits(value: str | None) -> int | None:
-    """The number of circuits, if the tag is a plain number."""
+    """Return the number of circuits, if the tag is a plain number."""
     if value is None or not re.fullmatch(r"\s*\d{1,4}\s*", value, re.ASCII):
         return None
     number = int(value)
@@ -66,7 +67,7 @@ def circuits(value: str | None) -> int | None:
 
 
 def length_m(value: str | None, *, maximum_m: float) -> float | None:
-    """A height or width such as "45", "45.5 m", "148 ft" or 12'6" in metres; None for all else, and beyond the maximum."""
+    """Return a height or width such as "45", "45.5 m", "148 ft" or 12'6" in metres; None if invalid or beyond the maximum."""
     if not value:
         return None
     if match := _FEET_AND_INCHES.fullmatch(value[:50]):
@@ -91,7 +92,7 @@ def is_bridge(tags: Tags) -> bool:
 
 
 def railway_kind(tags: Tags) -> str | None:
-    """The kind of a railway track, in use or not; None for platforms, stations, proposals and all else tagged railway."""
+    """Return the kind of a railway track, in use or not; None for platforms, stations, proposals and other values."""
     kind = tags.get("railway")
     return kind if kind in RAILWAYS_IN_USE or kind in RAILWAYS_OUT_OF_USE else None
 
@@ -102,7 +103,7 @@ def power_way_kind(tags: Tags) -> str | None:
 
 
 def is_out_of_sight(tags: Tags) -> bool:
-    """Below ground or water, or under a roof: nothing that a UAV could follow."""
+    """Whether it is below ground or water, or under a roof, where no UAV can follow it."""
     return tags.get("location", "").lower() in _OUT_OF_SIGHT or affirms(tags.get("tunnel")) or tags.get("covered") == "yes"
 
 
@@ -111,7 +112,7 @@ def is_out_of_use(tags: Tags) -> bool:
 
 
 def is_flyable_line(tags: Tags) -> bool:
-    """An overhead line in use, outside a substation's own busbars and bays."""
+    """Whether it is an overhead line in use, outside a substation's own busbars and bays."""
     return (
         tags.get("power") in OVERHEAD_KINDS
         and tags.get("line") not in {"busbar", "bay"}
@@ -137,7 +138,7 @@ OTHER_BRIDGE_WIDTH_M = 5.0
 
 
 def bridge_width_m(tags: Tags) -> float:
-    """How wide the bridge under a way is: as tagged, else by lanes or tracks, else usual for its kind."""
+    """Return the width of the bridge under a way: as tagged, else by lanes or tracks, else usual for its kind."""
     stated = width_m(tags)
     if stated is not None:
         return stated

@@ -57,7 +57,7 @@ _TO_WGS84 = "gdalwarp -t_srs EPSG:4326"
 
 
 class GeoTiff:
-    """Coordinates are those of `system`; see raster.Raster for what a window is.
+    """A GeoTIFF. Coordinates are those of `system`; see raster.Raster for windows.
 
     x, y of a post: (x + column * step_x, y - row * step_y).
     """
@@ -93,13 +93,13 @@ class GeoTiff:
                 else:
                     raw[target] = part[here.start - top : here.stop - top, there.start - left : there.stop - left]
         window = window_of(raw, self._void, scale=self._factor, offset_m=self._offset_m)
-        if absent.any():  # a sparse file has nothing where there is nothing
+        if absent.any():  # a sparse file omits empty parts
             window.heights_m[absent] = np.nan
             window.kinds[absent] = Kind.DECLARED_VOID
         return window
 
     def _part(self, number: int, rows: int) -> NDArray[Any] | None:
-        """A strip or a tile; the ones last used are kept unpacked."""
+        """Return an unpacked strip or tile, cached by last use."""
         if number in self._kept:
             self._kept.move_to_end(number)
             return self._kept[number]
@@ -178,7 +178,7 @@ class GeoTiff:
             self._cut_strips(row_bytes)
 
     def _cut_strips(self, row_bytes: int) -> None:
-        """Strips that are not packed can be read in smaller ones."""
+        """Split uncompressed strips into smaller ones."""
         starts = self._offsets[np.arange(self.height) // self._part_rows] + np.arange(self.height) % self._part_rows * row_bytes
         if (self._counts < row_bytes * np.minimum(self._part_rows, self.height - np.arange(len(self._counts)) * self._part_rows)).any():
             raise TerrainFileError("The TIFF is cut off.")
@@ -212,7 +212,7 @@ class GeoTiff:
         return system
 
     def _place(self) -> tuple[float, float, float, float]:
-        """Where the post of the first row and column stands, and the steps."""
+        """Return the position of the first post (row and column 0), and the steps."""
         scale, ties, matrix = (self._tags.numbers(tag).astype(np.float64) for tag in (_SCALE, _TIEPOINTS, _TRANSFORMATION))
         if len(matrix) == 16:
             if matrix[1] or matrix[4]:
@@ -236,7 +236,7 @@ class GeoTiff:
             raise TerrainFileError(f"The GeoTIFF declares {text[:20]!r} as its void value, which is no number.") from error
 
     def _to_metres(self, unit_m: float) -> tuple[float, float]:
-        """Factor and addition that make metres of the file's numbers."""
+        """Return factor and offset that convert the file's numbers to metres."""
         scale, offset = 1.0, 0.0
         for role, text in _ITEM.findall(self._tags.text(_METADATA)):
             if role == "unittype":

@@ -1,4 +1,4 @@
-"""A raster of heights that is read window by window, and the blocks that it is stored in."""
+"""A raster of heights that is read window by window, and the blocks in which it is stored."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,12 +15,12 @@ from operation.reasons import Reason
 
 
 class Kind(IntEnum):
-    """What stands at a post."""
+    """Kind of a post."""
 
     HEIGHT = 0
     DECLARED_VOID = 1  # the value that the file declares
-    UNDECLARED_VOID = 2  # NaN, or no height on earth, such as -32768 or 99999, that the file does not declare
-    OUTSIDE = 3  # beyond the edge of a raster that stands askew in longitude and latitude
+    UNDECLARED_VOID = 2  # NaN, or an impossible height such as -32768 or 99999, that the file does not declare
+    OUTSIDE = 3  # beyond the edge of a raster that is rotated in longitude and latitude
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,23 +48,23 @@ class Raster(Protocol):
     def step_lat_deg(self) -> float: ...
 
     def window(self, row: int, column: int, rows: int, columns: int) -> Window:
-        """Raises TerrainFileError where the file is damaged."""
+        """Return a window. Raises TerrainFileError for a damaged file."""
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A part of a raster. Blocks share their edge posts, so that no gap is between them; a post counts in one of them alone."""
+    """A part of a raster. Blocks share their edge posts, so that there is no gap between them; a post counts in one of them only."""
 
-    grid: HeightGrid | None  # None where there is nothing but voids
+    grid: HeightGrid | None  # None if all posts are voids
     posts: int
     declared_voids: int
     undeclared_voids: int
-    share: float  # of the raster that is read with this block
+    share: float  # of the raster read up to this block
 
 
 def window_of(raw: NDArray[np.generic], declared_void: float | None, *, scale: float = 1.0, offset_m: float = 0.0) -> Window:
-    """Tells heights from voids; scale and offset_m make metres of what the file has."""
-    with np.errstate(invalid="ignore", over="ignore"):  # signalling NaN, and numbers that float32 does not have: both are voids
+    """Return heights and voids; scale and offset_m convert the file's values to metres."""
+    with np.errstate(invalid="ignore", over="ignore"):  # signalling NaN, and numbers beyond float32: both are voids
         values = raw.astype(np.float64)
         declared = np.zeros(raw.shape, dtype=bool)
         if declared_void is not None:
@@ -78,7 +78,7 @@ def window_of(raw: NDArray[np.generic], declared_void: float | None, *, scale: f
 
 
 def _is_void(raw: NDArray[np.generic], values: NDArray[np.float64], declared_void: float) -> NDArray[np.bool_]:
-    """A float32 file can only hold the declared number as float32 has it: -3.4028234663852886e+38 may be written with fewer digits."""
+    """Compare as float32 in such a file: -3.4028234663852886e+38 may be written with fewer digits."""
     same: NDArray[np.bool_] = values == declared_void
     if raw.dtype == np.float32 and abs(declared_void) <= np.finfo(np.float32).max:
         same = same | (raw == np.float32(declared_void))
@@ -86,7 +86,7 @@ def _is_void(raw: NDArray[np.generic], values: NDArray[np.float64], declared_voi
 
 
 def blocks_of(raster: Raster, size: int = BLOCK_SIZE) -> Iterator[Block]:
-    """Row by row from the north."""
+    """Yield blocks row by row from the north."""
     rows_left = list(_parts(raster.height, size))
     columns_left = list(_parts(raster.width, size))
     number = len(rows_left) * len(columns_left)
@@ -110,17 +110,17 @@ def blocks_of(raster: Raster, size: int = BLOCK_SIZE) -> Iterator[Block]:
 
 
 def _parts(count: int, size: int) -> Iterator[tuple[int, int]]:
-    """First post and number of posts of each part; neighbours share a post."""
+    """Yield first post and number of posts of each part; neighbours share a post."""
     for first in range(0, max(count - 1, 1), size - 1):
         yield first, min(size, count - first)
 
 
 class TerrainFileError(ValueError):
-    """The file cannot be taken for a terrain model; the message says why."""
+    """Raised for a file that is no terrain model, with the reason."""
 
 
 class Survey:
-    """Counts the posts of blocks once each, though blocks share their edges."""
+    """Counts each post of the blocks once, although blocks share their edges."""
 
     def __init__(self) -> None:
         self.blocks = self.posts = self.declared_voids = self.undeclared_voids = 0
@@ -145,14 +145,14 @@ class Survey:
         return self.declared_voids + self.undeclared_voids
 
     def counts(self) -> dict[str, Any]:
-        """Of a file with at least one height."""
+        """Return the counts of a file with at least one height."""
         return {
             "blocks": self.blocks, "posts": self.posts, "voids": self.voids, "undeclared_voids": self.undeclared_voids,
             "lowest_m": round(self.lowest_m, 2), "highest_m": round(self.highest_m, 2), "extent": self._extent,
         }  # fmt: skip
 
     def notes(self) -> list[Reason]:
-        """What people should know of its voids."""
+        """Return notes for users about its voids."""
         if not self.voids:
             return []
         figures = {"voids": self.voids, "posts": self.posts, "percent": float(f"{100 * self.voids / self.posts:.2g}")}
@@ -173,11 +173,11 @@ ELLIPSOIDAL = (
 
 
 class DatumFault(TerrainFileError):
-    """What somebody wrote is no vertical datum that heights can be compared in."""
+    """Raised for text that names no vertical datum with comparable heights."""
 
 
 def datum_named(name: str) -> str:
-    """The name as it is stored. Raises DatumFault."""
+    """Return the name as it is stored. Raises DatumFault."""
     name = " ".join(name.split())
     if not name or len(name) > MAX_NAME_LENGTH or not name.isprintable():
         raise DatumFault(f"A vertical datum is a name of 1 to {MAX_NAME_LENGTH} characters, such as EGM96.")
@@ -187,7 +187,7 @@ def datum_named(name: str) -> str:
 
 
 def datum_of_codes(system_code: int, datum_code: int, citation: str) -> str | None:
-    """What a GeoTIFF states by VerticalGeoKey, VerticalDatumGeoKey and VerticalCitationGeoKey; None where it states nothing."""
+    """Return the datum in VerticalGeoKey, VerticalDatumGeoKey and VerticalCitationGeoKey of a GeoTIFF; None if it states none."""
     if system_code in _GEOTIFF_ELLIPSOIDS or "ellipsoid" in citation.lower():
         raise TerrainFileError(ELLIPSOIDAL)
     if system_code in _NAMES:
@@ -201,7 +201,7 @@ def datum_of_codes(system_code: int, datum_code: int, citation: str) -> str | No
 
 
 def metres_of_unit(code: int, system_code: int) -> float:
-    """How many metres one step of the file's heights is. Code 0: not stated."""
+    """Return the metres per unit of the file's heights. Code 0: not stated."""
     factors = {0: None, 9001: 1.0, 9002: 0.3048, 9003: 1200 / 3937}
     if code not in factors:
         raise TerrainFileError(f"The heights are in a unit that is not known (EPSG:{code}). Convert them to metres first.")
@@ -213,7 +213,7 @@ def metres_of_unit(code: int, system_code: int) -> float:
 
 
 def refuse_if_ellipsoidal(system: CRS) -> None:
-    """A system with a third axis of its own counts heights from its ellipsoid."""
+    """Refuse a system with a third axis, which measures heights from its ellipsoid."""
     if system.is_geographic and len(system.axis_info) == 3:
         raise TerrainFileError(ELLIPSOIDAL)
 

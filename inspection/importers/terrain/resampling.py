@@ -1,4 +1,4 @@
-"""Puts the posts of a GeoTIFF on longitudes and latitudes: as they stand, or, where its system is another, by sampling it anew."""
+"""Places the posts of a GeoTIFF in longitude and latitude: unchanged, or resampled if its system is a different one."""
 
 import math
 import warnings
@@ -13,7 +13,7 @@ from inspection.importers.terrain.geotiff import MAX_POSTS, GeoTiff
 from inspection.importers.terrain.raster import Kind, Raster, TerrainFileError, Window
 from inspection.terrain.heights import HeightGrid
 
-SAME_DEG = 2e-5  # some 2 m: ETRS89 and its like are taken for WGS 84
+SAME_DEG = 2e-5  # some 2 m: ETRS89 and similar ones are treated as WGS 84
 DEGREE_M = 111_320.0  # of latitude
 MAX_CONCURRENT = 4_000_000  # posts of the file under one block
 _EDGE_PLACES = 41
@@ -36,7 +36,7 @@ class PlacedAsItStands:
 
 
 class SampledAnew:
-    """A GeoTIFF in another system, sampled between its posts on a grid of longitude and latitude that is as fine; see raster.Raster."""
+    """A GeoTIFF in another system, resampled on a grid of longitude and latitude of the same resolution; see raster.Raster."""
 
     def __init__(self, tiff: GeoTiff, transformer: Transformer) -> None:
         self._tiff = tiff
@@ -70,7 +70,7 @@ class SampledAnew:
         return Window(heights.reshape(rows, columns), kinds.reshape(rows, columns))
 
     def _sampled(self, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Heights and kinds at (column, row) of the file."""
+        """Return heights and kinds at (column, row) of the file."""
         left, top = np.clip(np.floor(at.min(axis=0)), 0, None).astype(int).tolist()
         right, bottom = np.minimum(np.floor(at.max(axis=0)).astype(int) + 1, [self._tiff.width - 1, self._tiff.height - 1]).tolist()
         rows, columns = bottom - top + 1, right - left + 1
@@ -80,7 +80,7 @@ class SampledAnew:
         heights = HeightGrid(left, -top, 1.0, 1.0, window.heights_m).sample(at * [1.0, -1.0])
         nearest = np.clip(np.rint(at - [left, top]).astype(int), 0, [columns - 1, rows - 1])
         kinds = window.kinds[nearest[:, 1], nearest[:, 0]]
-        beside = np.isnan(heights) & (kinds == Kind.HEIGHT)  # a post is known, but one that it would be mixed with is not
+        beside = np.isnan(heights) & (kinds == Kind.HEIGHT)  # a known post with a void among its interpolation neighbours
         return heights, np.where(np.isnan(heights), np.where(beside, Kind.DECLARED_VOID, kinds), Kind.HEIGHT)
 
     def _edge(self) -> FloatArray:
@@ -99,7 +99,7 @@ class SampledAnew:
         return edge
 
     def _step_m(self) -> float:
-        """Between posts in the middle of the file, as it is on the ground."""
+        """Return the distance between posts in the middle of the file, on the ground."""
         x, y = self._tiff.x + self._tiff.width // 2 * self._tiff.step_x, self._tiff.y - self._tiff.height // 2 * self._tiff.step_y
         lon, lat = self._transformer.transform([x, x + self._tiff.step_x, x], [y, y, y + self._tiff.step_y])
         places = np.column_stack([lon, lat])
@@ -107,7 +107,7 @@ class SampledAnew:
 
 
 def placed(tiff: GeoTiff) -> tuple[Raster, list[str]]:
-    """The raster in longitude and latitude, and what people should know of how it came there. Raises TerrainFileError."""
+    """Return the raster in longitude and latitude, and notes for users about the conversion. Raises TerrainFileError."""
     raster, notes = _placed(tiff)
     west, north = raster.west_deg, raster.north_deg
     east, south = west + (raster.width - 1) * raster.step_lon_deg, north - (raster.height - 1) * raster.step_lat_deg
@@ -120,7 +120,7 @@ def _placed(tiff: GeoTiff) -> tuple[Raster, list[str]]:
     if tiff.system.equals(_WGS84, ignore_axis_order=True):
         return PlacedAsItStands(tiff), []
     try:
-        with warnings.catch_warnings(action="ignore"):  # that a better one is not installed: the notes say how exact this one is
+        with warnings.catch_warnings(action="ignore"):  # about a better one that is not installed: the notes state the accuracy of this one
             group = TransformerGroup(tiff.system, _WGS84, always_xy=True, allow_ballpark=True)
         transformer = group.transformers[0]
         if tiff.system.is_geographic and _is_as_wgs84(tiff, transformer):

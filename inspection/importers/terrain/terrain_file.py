@@ -1,4 +1,4 @@
-"""Opens a terrain file: a GeoTIFF, an HGT file, or a zip of several of them, which is one model."""
+"""Opens a terrain file: a GeoTIFF, an HGT file, or a zip of several of them as one model."""
 
 import gzip
 import re
@@ -20,13 +20,13 @@ from inspection.importers.terrain.resampling import DEGREE_M, placed
 from inspection.importers.terrain.tiff import TIFF_STARTS
 from operation.reasons import Reason
 
-VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
+VERTICAL_DATUM = "EGM96"  # SRTM, and data distributed in its format
 VOID = -32768
 SIZES = {1201 * 1201 * 2: 1201, 3601 * 3601 * 2: 3601}  # 3 and 1 arc seconds
 _NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})", re.IGNORECASE)
 MAX_MEMBERS = 100
 MAX_UNPACKED_BYTES = 512 * 1024 * 1024
-DEFLATE_LIMIT = 1_032  # an HGT file of open sea packs as well as that; what counts is how much comes out
+DEFLATE_LIMIT = 1_032  # open sea compresses that much; the unpacked size is limited instead
 MAX_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
 NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
 _ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
@@ -61,7 +61,7 @@ class HgtRaster:
 
 @dataclass
 class TerrainFile:
-    """rasters are read while the file is open. vertical_datum: as the file states it or its format has it; None where neither does."""
+    """An open terrain file. rasters are read while it is open. vertical_datum: from the file or its format; None where neither has one."""
 
     file_format: str
     rasters: list[Raster] = field(default_factory=list)
@@ -71,13 +71,13 @@ class TerrainFile:
 
     @property
     def resolution_m(self) -> float:
-        """Between posts from north to south, of the finest raster."""
+        """Return the distance between posts from north to south, of the finest raster [m]."""
         return min(raster.step_lat_deg for raster in self.rasters) * DEGREE_M
 
 
 @contextmanager
 def opened_terrain(path: Path) -> Iterator[TerrainFile]:
-    """Raises TerrainFileError for what is none, here or while it is read."""
+    """Open a terrain file. Raises TerrainFileError for an invalid one, here or during reading."""
     with ExitStack() as stack:
         file = stack.enter_context(path.open("rb"))
         start = file.read(4)
@@ -93,7 +93,7 @@ def opened_terrain(path: Path) -> Iterator[TerrainFile]:
 
 
 def datum_of(file: TerrainFile, stated: str) -> str:
-    """The vertical datum of the heights: as the file states it, else as somebody says. Raises TerrainFileError."""
+    """Return the vertical datum of the heights: as the file states it, else as the user does. Raises TerrainFileError."""
     named = datum_named(stated) if stated.strip() else ""
     if file.vertical_datum is not None:
         return file.vertical_datum
@@ -160,7 +160,7 @@ def _members(archive: Archive) -> list[str]:
 
 @contextmanager
 def _gunzipped(path: Path) -> Iterator[IO[bytes]]:
-    """A .hgt.gz as a file without a name; never more than the largest HGT file has."""
+    """Yield the content of a .hgt.gz as an unnamed file, at most as large as the largest HGT file."""
     left = max(SIZES)
     with tempfile.TemporaryFile() as target:
         try:

@@ -33,7 +33,7 @@ _TYPES = {
 
 
 class TiffDirectory:
-    """Raises TerrainFileError for what is cut off or contradicts itself."""
+    """Directory of a TIFF file. Raises TerrainFileError for a truncated or contradictory one."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
@@ -59,7 +59,7 @@ class TiffDirectory:
         return tag in self._entries
 
     def numbers(self, tag: int, most: int = 10_000) -> NDArray[Any]:
-        """All values of a tag, none where the file has not got it."""
+        """Return all values of a tag, none if the file does not have it."""
         return self._values(self._entries, tag, most)
 
     def number(self, tag: int, default: int) -> int:
@@ -93,7 +93,7 @@ class TiffDirectory:
         return int.from_bytes(data, "little" if self.order == "<" else "big")
 
     def _read_directory(self, offset: int) -> tuple[dict[int, tuple[int, int, int]], int]:
-        """Tag → (type, count, where the value or its offset stands), and where the next directory begins; 0 for none."""
+        """Return tag → (type, count, position of the value or of its offset), and the position of the next directory; 0 for none."""
         count_size, entry_size, value_size = (8, 20, 8) if self._is_big else (2, 12, 4)
         number = self._short(self.read(offset, count_size))
         if not 0 < number <= MAX_ENTRIES:
@@ -111,7 +111,7 @@ class TiffDirectory:
         return entries, self._whole(first + len(data), self._is_big)
 
     def _has_mask(self, offset: int) -> bool:
-        """Whether a later directory is a mask, which would tell voids in a way that is not read."""
+        """Whether a later directory is a mask, which would mark voids in an unsupported form."""
         for _ in range(MAX_DIRECTORIES):
             if offset == 0:
                 return False
@@ -132,7 +132,7 @@ _DAMAGED = "A part of the TIFF cannot be unpacked: it is damaged or cut off."
 
 
 def unpacked_part(data: bytes, compression: int, size_bytes: int) -> bytes:
-    """Exactly size_bytes, or TerrainFileError. What a bomb has besides is not unpacked."""
+    """Return exactly size_bytes, or raise TerrainFileError. Surplus data of a bomb are not unpacked."""
     if compression == NONE:
         found = data[:size_bytes]
     elif compression == LZW:
@@ -147,7 +147,7 @@ def unpacked_part(data: bytes, compression: int, size_bytes: int) -> bytes:
 
 
 def _inflated(data: bytes, size_bytes: int) -> bytes:
-    """With the checksum behind it verified, unless there is more than was asked for."""
+    """Return the data with its checksum verified, unless there is more than requested."""
     stream = zlib.decompressobj()
     try:
         found = stream.decompress(data, size_bytes)
@@ -160,7 +160,7 @@ def _inflated(data: bytes, size_bytes: int) -> bytes:
 
 
 def _unpacked_lzw(data: bytes, size_bytes: int) -> bytes:
-    """Codes of 9 to 12 bits, the highest bit first; the width grows one code early, as TIFF has it."""
+    """Return data of LZW codes of 9 to 12 bits, most significant bit first; the width grows one code early, as in TIFF."""
     out = bytearray()
     table = _SINGLE.copy()
     previous = b""
@@ -218,7 +218,7 @@ def _unpacked_packbits(data: bytes, size_bytes: int) -> bytes:
 
 
 def without_predictor(data: bytes, predictor: int, dtype: np.dtype[np.generic], rows: int, columns: int) -> NDArray[np.generic]:
-    """The values of a part of rows x columns; dtype has the file's byte order."""
+    """Return the values of a part of rows x columns; dtype has the file's byte order."""
     if predictor == 3:
         steps = np.frombuffer(data, dtype=np.uint8).reshape(rows, dtype.itemsize * columns)
         planes = np.add.accumulate(steps, axis=1, dtype=np.uint8).reshape(rows, dtype.itemsize, columns)

@@ -1,4 +1,4 @@
-"""Zones from an ED-269 document, whose features are not GeoJSON's; each geometry entry is a layer.
+"""Zones from an ED-269 document, whose features differ from GeoJSON's; each geometry entry is a layer.
 
 Both envelopes in use are read: {"title", "description", "features": [...]} and {"formatVersion", "createdAt", "UASZoneList": [...]}.
 """
@@ -25,7 +25,7 @@ ENVELOPES = ("features", "UASZoneList")
 
 
 def is_ed269(document: Any) -> bool:
-    """An object with a list of zones, none of which says that it is a GeoJSON Feature."""
+    """Whether it is an object with a list of zones, none of which is a GeoJSON Feature."""
     if not isinstance(document, dict) or document.get("type") == "FeatureCollection":
         return False
     zones = document.get(_envelope(document))
@@ -86,7 +86,7 @@ def _layer(volume: Any, place: str, budget: VertexBudget, facts: dict[str, Any])
     if shape.get("type") != "Circle":
         return ZoneRecord(geometry=checked_area(shape, place, budget), band=band, **facts)
     centre = checked_position(shape.get("center"), f"{place}.center")
-    # Sources give the radius in metres also where heights are in feet; of the two readings this is the larger area.
+    # Sources state the radius in metres even where heights are in feet; this reading also gives the larger area.
     radius_m = checked_radius_m(shape.get("radius"), f"{place}.radius")
     circle = {"centre": list(centre), "radius_m": radius_m}
     return ZoneRecord(geometry=enclosing_polygon(centre, radius_m, place, budget), band=band, circle=circle, **facts)

@@ -30,7 +30,7 @@ _LAYER_KEYS = {
 
 
 def is_ed318(document: Any) -> bool:
-    """A FeatureCollection with a feature whose properties are those of a zone."""
+    """Whether it is a FeatureCollection with a feature that has a zone's properties."""
     if not isinstance(document, dict) or document.get("type") != "FeatureCollection" or not isinstance(document.get("features"), list):
         return False
     return any(
@@ -53,7 +53,7 @@ def zones_of_ed318(document: dict[str, Any], faults: FaultList, notes: list[str]
 
 
 def stated_validity(document: dict[str, Any], faults: FaultList) -> tuple[str | None, str | None]:
-    """From when until when the data says that it is valid (RFC 3339, UTC); None where it does not say."""
+    """Return the stated start and end of validity (RFC 3339, UTC); None where not stated."""
     metadata = document.get("metadata")
     if metadata is None:
         return None, None
@@ -67,7 +67,7 @@ def stated_validity(document: dict[str, Any], faults: FaultList) -> tuple[str | 
 
 
 def text_of(value: Any, place: str, maximum: int) -> str:
-    """A text, or of a list of texts in several languages the English one, else the first."""
+    """Return a text; of a list of texts in several languages the English one, else the first."""
     if not isinstance(value, list):
         return checked_text(value, place, maximum)
     texts = []
@@ -128,7 +128,7 @@ def _facts(properties: dict[str, Any], place: str) -> dict[str, Any]:
 
 
 def _geometries(geometry: Any, place: str) -> list[tuple[dict[str, Any], str]]:
-    """The members of a collection, each a layer; else the geometry alone."""
+    """Return the members of a collection, each a layer; else the geometry alone."""
     if not isinstance(geometry, dict):
         raise GeometryFault(place, "there is no geometry")
     if geometry.get("type") != "GeometryCollection":
@@ -155,7 +155,7 @@ def _layer(geometry: dict[str, Any], place: str, holder: dict[str, Any], budget:
 
 
 def _limits(geometry: dict[str, Any], place: str, holder: dict[str, Any]) -> tuple[dict[str, Any], str]:
-    """The layer under the names that ED-269 gives its members, and where it stands."""
+    """Return the layer with ED-269's member names, and its place."""
     for owner, key in ((geometry, "layer"), (geometry, "verticalLayer"), (holder, "layer"), (holder, "verticalLayer")):
         layer = owner.get(key)
         if layer is None:

@@ -1,4 +1,4 @@
-"""Zones from GeoJSON: a FeatureCollection, a Feature or a bare geometry. A zone with only a name is permanent and reaches all heights."""
+"""Zones from GeoJSON: a FeatureCollection, a Feature or a bare geometry. A zone with only a name is permanent and covers all heights."""
 
 from typing import Any
 
@@ -46,7 +46,7 @@ def zones_of_geojson(document: dict[str, Any], faults: FaultList, notes: list[st
         if is_hidden(feature):
             hidden += 1
         elif _is_bare_point(feature) and _title(feature) in areas:
-            markers += 1  # the label of an area that is here too
+            markers += 1  # the label of an area in the same file
         else:
             with faults.gathering():
                 records += _zones_of_feature(feature, place, index, budget)
@@ -55,7 +55,7 @@ def zones_of_geojson(document: dict[str, Any], faults: FaultList, notes: list[st
 
 
 def is_hidden(feature: Any) -> bool:
-    """The source itself does not show it: marked as hidden, or the frame around the country's own zones (Estonia's EERZout)."""
+    """Whether the source itself hides it: marked as hidden, or the frame around the country's own zones (Estonia's EERZout)."""
     properties = feature.get("properties") if isinstance(feature, dict) else None
     if not isinstance(properties, dict):
         return False
@@ -75,12 +75,12 @@ def _is_bare_point(feature: Any) -> bool:
 
 
 def _radius(properties: dict[str, Any]) -> Any:
-    """Metres around a point, under the names in use."""
+    """Return the radius around a point [m], from the property names in use."""
     return next((properties[name] for name in _RADII if properties.get(name) is not None), None)
 
 
 def _title(feature: Any) -> str:
-    """What tells that two features are the same zone."""
+    """Return the title by which two features are recognised as the same zone."""
     properties = feature.get("properties") if isinstance(feature, dict) else None
     if not isinstance(properties, dict):
         return ""
@@ -110,7 +110,7 @@ def _zones_of_feature(feature: Any, place: str, index: int, budget: VertexBudget
 
 
 def _areas(geometry: Any, properties: dict[str, Any], place: str, budget: VertexBudget) -> list[tuple[MultiPolygon, dict[str, Any] | None]]:
-    """The areas of a geometry; a Point is one if the properties state a radius."""
+    """Return the areas of a geometry; a Point is one if the properties state a radius."""
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     if kind == "GeometryCollection":
         members = geometry.get("geometries")
@@ -132,7 +132,7 @@ def _areas(geometry: Any, properties: dict[str, Any], place: str, budget: Vertex
 
 
 def _check_crs(crs: Any) -> None:
-    """Old GeoJSON may name another reference system; only longitude and latitude on WGS84 are taken."""
+    """Refuse reference systems, as old GeoJSON may name them, other than longitude and latitude on WGS84."""
     if crs is None:
         return
     name = crs.get("properties", {}).get("name") if isinstance(crs, dict) and isinstance(crs.get("properties"), dict) else None

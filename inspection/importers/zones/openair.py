@@ -1,7 +1,7 @@
 """Zones from OpenAir, the text format of gliding: a record of lines for each airspace, each line with a two-letter command.
 
-Distances are nautical miles, heights feet or flight levels unless they say otherwise, directions clockwise unless V D=- says otherwise.
-A record that only sets pen and brush for its class draws nothing and is counted, not stored.
+Defaults: distances are nautical miles, heights feet or flight levels, directions clockwise unless V D=- is set.
+A record that only sets pen and brush for its class draws nothing; it is counted and not stored.
 Source: OpenAir user airspace format, as XCSoar and SeeYou read it.
 """
 
@@ -56,7 +56,7 @@ _LENGTH_M = {"": NAUTICAL_MILE_M, "NM": NAUTICAL_MILE_M, "KM": 1_000.0, "M": 1.0
 
 
 def position_of(text: str, place: str) -> LonLat:
-    """A position such as 48:47:27 N 016:53:33 E; minutes and seconds may be left out or have decimals. See `has_sixty`."""
+    """Return a position such as 48:47:27 N 016:53:33 E; minutes and seconds may be missing or have decimals. See `has_sixty`."""
     match = _POSITION.fullmatch(text.strip())
     if match is None:
         raise GeometryFault(place, f"{text.strip()[:60]!r} is no position such as 48:47:27 N 016:53:33 E")
@@ -72,7 +72,7 @@ def has_sixty(text: str) -> bool:
 
 
 def height_of(text: str, place: str) -> tuple[float | None, str]:
-    """Metres and their reference; (None, "") for what is not stated or has no limit. Feet above sea level unless it says otherwise."""
+    """Return metres and their reference; (None, "") for an unstated or unlimited height. The default is feet above sea level."""
     words = text.strip().upper()
     if not words or words in _NO_CEILING:
         return None, ""
@@ -91,7 +91,7 @@ def height_of(text: str, place: str) -> tuple[float | None, str]:
 
 
 def length_m_of(text: str, place: str) -> float:
-    """A radius in metres; nautical miles unless it says otherwise."""
+    """Return a radius in metres; the default unit is nautical miles."""
     match = _LENGTH.fullmatch(text.strip())
     if match is None:
         raise GeometryFault(place, f"{text.strip()[:40]!r} is no radius in nautical miles")
@@ -116,8 +116,8 @@ def _degrees(degrees: str, minutes: str | None, seconds: str | None, place: str)
 
 MAX_CROSSINGS = 8
 _CHUNK = 256
-MAX_DISTANCE_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
-MAX_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
+MAX_DISTANCE_M = 0.5  # of a side from the curve; in aeronautical files radii themselves are rounded to 19 m and more
+MAX_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more means a wrong centre
 _MIN_SIDES = 8
 CLASSES = {
     "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",
@@ -134,20 +134,20 @@ _FACTS = {"AY": "type", "AF": "frequency", "AG": "station", "AX": "transponder",
 
 
 def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
-    """The polygons that the closed ring of shape (n, 2) encloses with any of its loops; None if it crosses itself too often."""
+    """Return the polygons that any loop of the closed ring of shape (n, 2) encloses; None if it crosses itself too often."""
     segments = shapely.get_parts(MultiLineString(list(np.stack([ring[:-1], ring[1:]], axis=1))))
     if _crossings(segments) > MAX_CROSSINGS:
         return None
     faces = shapely.get_parts(shapely.polygonize([shapely.unary_union(segments)]))
     if not len(faces):
         return None
-    area = shapely.unary_union([Polygon(face.exterior) for face in faces])  # what a loop leaves out in its middle is enclosed too
+    area = shapely.unary_union([Polygon(face.exterior) for face in faces])  # a hole inside of a loop is enclosed too
     parts = list(area.geoms) if isinstance(area, MultiPolygon) else [area]
     return [part for part in parts if isinstance(part, Polygon) and part.is_valid and part.area > 0.0] or None
 
 
 def _crossings(segments: NDArray[np.object_]) -> int:
-    """How many pairs of sides meet that are not neighbours; counting stops above MAX_CROSSINGS."""
+    """Return the number of intersecting sides that are not neighbours; counting stops above MAX_CROSSINGS."""
     tree = shapely.STRtree(segments)
     count, last = 0, len(segments) - 1
     for first in range(0, len(segments), _CHUNK):
@@ -160,12 +160,12 @@ def _crossings(segments: NDArray[np.object_]) -> int:
 
 
 def arc(centre: LonLat, radius_m: float, start_deg: float, end_deg: float, is_clockwise: bool, place: str) -> FloatArray:
-    """From one direction to another (degrees from north), ends included; shape (n, 2), lon lat."""
+    """Return the arc from one direction to another (degrees from north), ends included; shape (n, 2), lon lat."""
     return _path(centre, radius_m, radius_m, start_deg, _turn(start_deg, end_deg, is_clockwise), place)
 
 
 def arc_between(centre: LonLat, start: LonLat, end: LonLat, is_clockwise: bool, place: str) -> FloatArray:
-    """From one position to another; where they are not equally far from the centre, the radius goes over from one to the other."""
+    """Return the arc between two positions; where their distances from the centre differ, the radius changes gradually."""
     start_deg, _, start_m = WGS84.inv(centre.lon, centre.lat, start.lon, start.lat)
     end_deg, _, end_m = WGS84.inv(centre.lon, centre.lat, end.lon, end.lat)
     if min(start_m, end_m) < MAX_DISTANCE_M:
@@ -180,7 +180,7 @@ def arc_between(centre: LonLat, start: LonLat, end: LonLat, is_clockwise: bool, 
 
 
 def circle_ring(centre: LonLat, radius_m: float, place: str) -> FloatArray:
-    """A closed ring around the circle: it holds all of it, and is nowhere farther than MAX_DISTANCE_M outside."""
+    """Return a closed ring that contains the whole circle, and is nowhere farther than MAX_DISTANCE_M outside."""
     sides = _sides(radius_m, 2 * pi)
     _check_not_at_a_pole(centre, radius_m, place)
     bearings = np.arange(sides, dtype=np.float64) * (360.0 / sides)
@@ -189,7 +189,7 @@ def circle_ring(centre: LonLat, radius_m: float, place: str) -> FloatArray:
 
 
 def _turn(start_deg: float, end_deg: float, is_clockwise: bool) -> float:
-    """The angle to turn through, in degrees, positive clockwise; a whole turn where both directions are the same."""
+    """Return the angle to turn through in degrees, positive clockwise; a whole turn for equal directions."""
     turn = (end_deg - start_deg) % 360.0
     if turn < 1e-9:
         turn = 360.0
@@ -203,7 +203,7 @@ def _path(centre: LonLat, start_m: float, end_m: float, start_deg: float, turn_d
 
 
 def _sides(radius_m: float, angle_rad: float) -> int:
-    """How many sides keep within MAX_DISTANCE_M of the curve."""
+    """Return the number of sides that stay within MAX_DISTANCE_M of the curve."""
     step = 2.0 * acos(max(1.0 - MAX_DISTANCE_M / radius_m, 0.0))
     return max(ceil(angle_rad / step), ceil(_MIN_SIDES * angle_rad / (2 * pi)), 1)
 
@@ -225,7 +225,7 @@ def looks_like_openair(data: bytes) -> bool:
 
 @dataclass
 class _Record:
-    """One airspace as it is being read."""
+    """One airspace during reading."""
 
     line: int
     airspace_class: str
@@ -242,7 +242,7 @@ class _Record:
 
 
 def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str | Reason]]:
-    """The zones, and what people should know of how the file was read; records with a fault are added to unread."""
+    """Return the zones, and notes for users on how the file was read; records with a fault are appended to unread."""
     reader = _Reader(faults)
     for number, line in enumerate(text.splitlines(), start=1):
         with faults.gathering():
@@ -268,7 +268,7 @@ class _Reader:
         self.record: _Record | None = None
         self.carried_over: list[str] = []
         self.unread: list[UnreadRecord] = []
-        self.fault: GeometryFault | None = None  # of the record: what follows from it is not told again
+        self.fault: GeometryFault | None = None  # of the record: consequential faults are not reported
         self.budget = VertexBudget()
         self.commands: dict[str, Callable[[_Record, str, str], None]] = {
             "AN": self._name, "AL": self._lower, "AH": self._upper, "V": self._variable, "DP": self._point, "DA": self._arc,
@@ -312,11 +312,11 @@ class _Reader:
         else:
             raise GeometryFault(place, f"the command {command[:10]!r} is not known")
         if len(record.points) > MAX_POLYGON_VERTICES:
-            record.points.clear()  # nothing more is kept of it
+            record.points.clear()  # nothing more of it is stored
             raise TooMuch(place, f"the airspace has more than {MAX_POLYGON_VERTICES} vertices")
 
     def finish(self) -> None:
-        """The record is read to its end."""
+        """End the record."""
         record, self.record = self.record, None
         if record is None:
             return
@@ -382,7 +382,7 @@ class _Reader:
             record.centre = self._position(value, place)
         elif variable.upper() == "D" and value in {"+", "-"}:
             record.is_clockwise = value == "+"
-        elif variable.upper() not in {"Z", "W", "T"}:  # zoom, width and label: how it is drawn
+        elif variable.upper() not in {"Z", "W", "T"}:  # zoom, width and label only affect drawing
             raise GeometryFault(place, f"the variable {rest[:20]!r} is not known")
 
     def _position(self, text: str, place: str) -> LonLat:

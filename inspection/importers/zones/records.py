@@ -1,4 +1,4 @@
-"""What every reader of zone files makes: records with their texts, height bands and circles, checked."""
+"""Records of zone files, with validated texts, height bands and circles."""
 
 from dataclasses import dataclass, field
 from math import cos, pi
@@ -20,7 +20,7 @@ UNITS_M = {"M": 1.0, "FT": FOOT_M}
 
 @dataclass(frozen=True)
 class HeightBand:
-    """Limits in metres with their references; None and "" mean not stated. as_stated is what the file says, unit and all."""
+    """Limits in metres with their references; None and "" mean not stated. as_stated is the file's own text with its unit."""
 
     lower_limit_m: float | None = None
     lower_reference: str = ""
@@ -31,7 +31,7 @@ class HeightBand:
 
 @dataclass(frozen=True)
 class ZoneRecord:
-    """One layer of a zone; a zone of several layers has several records of one identifier."""
+    """One layer of a zone; a zone of several layers has several records with one identifier."""
 
     identifier: str
     layer: int
@@ -47,7 +47,7 @@ class ZoneRecord:
 
 @dataclass(frozen=True)
 class UnreadRecord:
-    """A record with a fault. bbox: west, south, east, north [deg] of those of its positions that can be read; None where none can."""
+    """A record with a fault. bbox: west, south, east, north [deg] of its readable positions; None without any."""
 
     fault: GeometryFault
     name: str = ""
@@ -60,7 +60,7 @@ MAX_NAME = 255
 
 
 def checked_text(value: Any, place: str, maximum: int) -> str:
-    """A string, or a number that stands for one; "" when it is missing."""
+    """Return a string, or a number as text; "" if missing."""
     if value is None:
         return ""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
@@ -78,7 +78,7 @@ MAX_LIMIT_M = 100_000.0
 
 
 def height_band(holder: dict[str, Any], place: str) -> HeightBand:
-    """The band that an object states; a limit that is missing or null is not stated, which is not 0."""
+    """Return the band of an object; a limit that is missing or null is not stated, which differs from 0."""
     stated = {key: holder[key] for key in BAND_KEYS if holder.get(key) is not None}
     unit = stated.get("uomDimensions", "M")
     if not isinstance(unit, str) or unit not in UNITS_M:
@@ -118,10 +118,11 @@ def checked_radius_m(value: Any, place: str) -> float:
 
 
 def enclosing_polygon(centre: LonLat, radius_m: float, place: str, budget: VertexBudget | None = None) -> MultiPolygon:
-    """A regular polygon of 64 corners around the circle of points radius_m from the centre along the ellipsoid.
+    """Return a regular polygon of 64 corners around the circle of points radius_m from the centre along the ellipsoid.
 
-    Its sides are straight in longitude and latitude, as everywhere; it is widened until they clear the circle, which takes about a
-    centimetre for each kilometre of radius at middle latitudes.
+    Its sides are straight in longitude and latitude, as everywhere. It is widened until they clear the circle, which takes about a
+    centimetre
+    per kilometre of radius at middle latitudes.
     """
     (budget or VertexBudget()).take(CORNERS + 1, place)
     pole_m = min(WGS84.inv(centre.lon, centre.lat, centre.lon, latitude)[2] for latitude in (90.0, -90.0))
@@ -140,7 +141,7 @@ def enclosing_polygon(centre: LonLat, radius_m: float, place: str, budget: Verte
 
 
 def _circle(centre: LonLat, radius_m: float, corners: int, offset: float) -> FloatArray:
-    """Closed ring of points at a distance; longitudes run on past ±180. offset shifts the first corner by a share of a side."""
+    """Return a closed ring of points at a distance; longitudes continue past ±180. offset shifts the first corner by a share of a side."""
     bearings = (np.arange(corners) + offset) * (360.0 / corners)
     lon, lat, _ = WGS84.fwd(np.full(corners, centre.lon), np.full(corners, centre.lat), bearings, np.full(corners, radius_m))
     east = (np.asarray(lon) - centre.lon + 180.0) % 360.0 - 180.0

@@ -1,4 +1,4 @@
-"""A zone file as a whole: which format it is, its zones, or all that is wrong with it."""
+"""A zone file as a whole: its format and its zones, or all of its faults."""
 
 import re
 from collections import Counter
@@ -24,7 +24,7 @@ _GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", 
 
 
 def unread_of_document(document: dict[str, Any], faults: Sequence[GeometryFault]) -> list[UnreadRecord]:
-    """One for each fault that lies in a zone; a fault of the document itself has none."""
+    """Return one record for each fault inside of a zone; faults of the document itself have none."""
     found = []
     for fault in faults:
         place = _PLACE.match(fault.place)
@@ -53,7 +53,7 @@ def _text(holders: Sequence[dict[str, Any]], keys: Sequence[str]) -> str:
 
 
 def _positions(geometry: Any) -> Iterator[tuple[float, float]]:
-    """Pairs of numbers that can be longitude and latitude, wherever they stand in a geometry."""
+    """Yield pairs of numbers that can be longitude and latitude, at any depth of a geometry."""
     waiting = [geometry]
     for _ in range(MAX_LOOKED_AT):
         if not waiting:
@@ -73,7 +73,7 @@ def _is_number(value: Any) -> bool:
 
 
 class ZoneFileError(ValueError):
-    """The file is refused as a whole, for these faults."""
+    """Raised for a file that is refused as a whole, with its faults."""
 
     def __init__(self, faults: list[GeometryFault]) -> None:
         super().__init__("; ".join(str(fault) for fault in faults))
@@ -88,7 +88,7 @@ class ZoneFile:
     provider: str = ""
     valid_from: str | None = None  # as stated, RFC 3339, UTC
     valid_until: str | None = None
-    notes: tuple[str | Reason, ...] = ()  # what people should know of how it was read
+    notes: tuple[str | Reason, ...] = ()  # notes for users on how it was read
     unread: tuple[UnreadRecord, ...] = ()
 
 
@@ -103,10 +103,10 @@ class _Read:
 
 
 def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
-    """All the zones of an ED-269, ED-318, GeoJSON or OpenAir text, or ZoneFileError: none of a file that has a fault.
+    """Return all zones of an ED-269, ED-318, GeoJSON or OpenAir text. Raises ZoneFileError for a file with a fault.
 
-    With leave_out_faulty the records that have one are listed instead, if every fault is one record's; what is too large, or no file of
-    these kinds, is refused all the same.
+    With leave_out_faulty, faulty records are listed instead, if every fault belongs to one record; files that are too large or of another
+    kind are still refused.
     """
     found = FaultList()
     try:
@@ -135,7 +135,7 @@ def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
 
 
 def _storable(read: _Read, found: FaultList) -> list[ZoneRecord]:
-    """The records that the database can hold; the others are unread, too."""
+    """Return the records that the database can store; the others become unread."""
     kept = []
     for record in read.records:
         fault = _unstorable(record)
@@ -192,14 +192,14 @@ def _read_document(document: Any, faults: FaultList) -> _Read:
 
 
 def _unstorable(record: ZoneRecord) -> GeometryFault | None:
-    """What JSON can write and the database cannot hold."""
+    """Return the fault of values that JSON allows and the database cannot store."""
     if not can_be_stored([record.properties, record.schedule, record.band.as_stated]):
         return GeometryFault(f"zone {record.identifier}", "its texts have characters that are none")
     return None
 
 
 def _numbered(records: list[ZoneRecord]) -> list[ZoneRecord]:
-    """Layers counted on where a file uses an identifier for several zones, as national files do."""
+    """Return the records with layers counted on where a file uses an identifier for several zones, as national files do."""
     seen: Counter[str] = Counter()
     numbered = []
     for record in records:

@@ -1,4 +1,4 @@
-"""manage.py build_graph: build the inspection graph of the present ground."""
+"""manage.py build_graph: build the inspection graph of the current map data."""
 
 import json
 import sys

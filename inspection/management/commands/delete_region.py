@@ -1,4 +1,4 @@
-"""manage.py delete_region: takes all assets of a box, an import or a set off the ground."""
+"""manage.py delete_region: delete all assets of a box, an import or a set."""
 
 from typing import Any
 

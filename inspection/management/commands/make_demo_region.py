@@ -11,7 +11,7 @@ from inspection.demo_region import DEFAULT_SEED, QUILLMOOR_NAME, REGION_NAME, ma
 from inspection.demo_region.hills import TerrainGrid
 
 GDAL_FLOAT32 = 6
-EGM96_SRID = 9707  # WGS 84, with heights above EGM96: the file states from where they count
+EGM96_SRID = 9707  # WGS 84, with heights above EGM96: the file states its vertical reference
 
 
 class Command(BaseCommand):
