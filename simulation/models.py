@@ -1,4 +1,4 @@
-"""Rehearsals: what was flown in simulation of which plan, under which conditions, and what came of it."""
+"""Rehearsals: simulated flights of a plan, their conditions and results."""
 
 import uuid
 
@@ -24,7 +24,7 @@ class AssessmentLevel(models.TextChoices):
 
 
 class Rehearsal(models.Model):
-    """One plan of a mission flown in simulation. It speaks of the content that its hash names, and of no other."""
+    """A simulated flight of one plan of a mission. It is valid for the content of its hash only."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, related_name="rehearsals")
@@ -53,7 +53,7 @@ class Rehearsal(models.Model):
 
 
 class RehearsalRun(models.Model):
-    """All routes under one set of conditions. It is stored once it is over, so that a worker that is lost repeats only what it was at."""
+    """All routes under one set of conditions, stored when complete: after the loss of a worker only the present run is repeated."""
 
     rehearsal = models.ForeignKey(Rehearsal, on_delete=models.CASCADE, related_name="runs")
     sequence = models.PositiveSmallIntegerField()
@@ -75,7 +75,7 @@ class RehearsalRun(models.Model):
 
 
 class RehearsalTrack(models.Model):
-    """What one UAV flew in a run, a row a second."""
+    """The track of one UAV in a run, one row per second."""
 
     run = models.ForeignKey(RehearsalRun, on_delete=models.CASCADE, related_name="tracks")
     uav = models.PositiveSmallIntegerField(help_text="its place in the mission")
@@ -90,7 +90,7 @@ class RehearsalTrack(models.Model):
 
 
 class SimulatedAirframe(models.Model):
-    """Which simulated airframe flies for the UAVs of a type; without a row it is the nearest one."""
+    """The simulated airframe for the UAVs of a type; without a row it is the nearest one."""
 
     uav_type = models.OneToOneField(UavType, on_delete=models.CASCADE, primary_key=True, related_name="simulated_airframe")
     airframe = models.CharField(max_length=40, help_text="a code of simulation/flight/airframe.py")
@@ -101,7 +101,7 @@ class SimulatedAirframe(models.Model):
 
 
 class RehearsalRule(models.Model):
-    """Whether an organisation approves only what a rehearsal has passed; without a row it does not ask for one."""
+    """Whether an organisation requires a passed rehearsal for approval; without a row it does not."""
 
     organisation = models.OneToOneField(Organisation, on_delete=models.CASCADE, primary_key=True, related_name="rehearsal_rule")
     requires_green = models.BooleanField(default=False, help_text="approval needs a rehearsal of the present plan without a fail")

@@ -1,4 +1,4 @@
-"""The sentence of each code that tells how far a simulation is, and why one ended."""
+"""The sentence of each code for the progress of a simulation, and for why it ended."""
 
 from operation.reasons import gettext_noop, register_sentences
 
@@ -16,7 +16,7 @@ SENTENCES = register_sentences({
     "demo_simulation_failed": gettext_noop("The simulation of the demo mission failed."),
     "command_not_taken": gettext_noop("%(uav)s did not take a command."),
     "demo_failed": gettext_noop("The demo missions could not be made; the error is in the log."),
-    # what simulated UAVs say of trouble
+    # problems that simulated UAVs report
     "battery_at": gettext_noop("Battery %(percent)s %%"),
     "battery_low": gettext_noop("Battery low: %(percent)s %%"),
     "battery_low_hold": gettext_noop("Battery low: %(percent)s %%: hold"),

@@ -10,13 +10,13 @@ from workspace.models import JobState, Organisation
 
 
 def rehearsals_of_mission(organisation: Organisation, mission_id: UUID) -> QuerySet[Rehearsal]:
-    """Without the assessments' details; see rehearsal_of_mission."""
+    """Return the rehearsals without details of their assessments; see rehearsal_of_mission."""
     found = Rehearsal.objects.filter(organisation=organisation, mission=mission_id, mission__deleted_at=None)
     return found.select_related("job", "created_by").prefetch_related("runs")
 
 
 def rehearsal_of_mission(organisation: Organisation, mission_id: UUID, rehearsal_id: UUID) -> Rehearsal:
-    """Raises Rehearsal.DoesNotExist also for another organisation's."""
+    """Return a rehearsal. Raises Rehearsal.DoesNotExist, also for another organisation's."""
     return rehearsals_of_mission(organisation, mission_id).select_related("mission").get(pk=rehearsal_id)
 
 
@@ -25,7 +25,7 @@ def tracks_of_run(rehearsal: Rehearsal, sequence: int) -> QuerySet[RehearsalTrac
 
 
 def newest_finished(mission_id: UUID, content_sha256: str) -> Rehearsal | None:
-    """The newest that was flown to its end of exactly this content."""
+    """Return the newest completed rehearsal of exactly this content."""
     found = Rehearsal.objects.filter(mission=mission_id, content_sha256=content_sha256, job__state=JobState.DONE)
     return found.order_by("-created_at").first()
 

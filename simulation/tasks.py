@@ -1,4 +1,4 @@
-"""Doors to the queue `simulation`, and to `planning` for the demo missions."""
+"""Tasks of the queue `simulation`, and of `planning` for the demo missions."""
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
@@ -16,12 +16,12 @@ from workspace.jobs.services import JobCancelled, confirm_cancelled, fail_job, f
 
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900
-DEMO_INTERVAL_S = 1.0  # between two steps, at least: the sweep of the queue sends the next message
+DEMO_INTERVAL_S = 1.0  # minimum between two steps; the queue's sweep sends the next message
 
 
 @shared_task(name="simulation.tasks.make_demo_missions", soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def fly_demo_missions(job_id: str) -> None:
-    """Take one step of the demo missions, and leave the worker to others until the job's next message. Safe to run twice."""
+    """Take one step of the demo missions, and free the worker until the job's next message. Safe to run twice."""
     job = start_job(job_id=job_id)
     if job is None or job.created_by is None:
         return
@@ -43,7 +43,7 @@ def fly_demo_missions(job_id: str) -> None:
     except (TimeoutError, SoftTimeLimitExceeded):
         fail_job(job=job, code="took_too_long", message=Reason("demo_not_flown_in_time"))
     except DATABASE_UNAVAILABLE:
-        raise  # the lease runs out, and the job is taken up again
+        raise  # the lease expires, and the job is retried
     except Exception:
         fail_job(job=job, code="internal", message=Reason("demo_failed"))
         raise
@@ -51,7 +51,7 @@ def fly_demo_missions(job_id: str) -> None:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def rehearse_mission(job_id: str) -> None:
-    """Fly a mission in simulation. Safe to run twice: a job is held by one worker, and each run is stored once."""
+    """Fly a mission in simulation. Safe to run twice: one worker holds a job, and each run is stored once."""
     job = start_job(job_id=job_id)
     if job is None:
         return
@@ -71,7 +71,7 @@ def rehearse_mission(job_id: str) -> None:
     except SoftTimeLimitExceeded:
         fail_job(job=job, code="took_too_long", message=Reason("not_flown_in_time", {"minutes": SOFT_LIMIT_S // 60}))
     except DATABASE_UNAVAILABLE:
-        raise  # the lease runs out, and the job is taken up again
+        raise  # the lease expires, and the job is retried
     except Exception:
         fail_job(job=job, code="internal", message=Reason("rehearsal_failed"))
         raise

@@ -1,4 +1,4 @@
-"""Addresses of simulation under /api/v1/."""
+"""URLs of simulation under /api/v1/."""
 
 from django.urls import path
 

@@ -1,4 +1,4 @@
-"""Simulated UAVs that fly in real time: what was started together, each UAV, and what is changed while they fly."""
+"""Simulated UAVs in real time: simulations, their vehicles, and changes in flight."""
 
 import uuid
 
@@ -29,7 +29,7 @@ PRESENT = (SimulationState.WANTED, SimulationState.FLYING)
 
 
 class Simulation(models.Model):
-    """Simulated UAVs that share a clock: the stand-ins of a mission's UAVs, or those of the pool. A simulator flies it under a lease."""
+    """Simulated UAVs with a common clock, for a mission or in the pool. A simulator flies it under a lease."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, related_name="simulations")
@@ -70,7 +70,7 @@ class Simulation(models.Model):
 
 
 class SimulatedVehicle(models.Model):
-    """One simulated UAV. A UAV of the fleet is stood in for by one at a time, and a port is one vehicle's."""
+    """One simulated UAV. A UAV of the fleet has at most one at a time, and a port belongs to one vehicle."""
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     simulation = models.ForeignKey(Simulation, on_delete=models.CASCADE, related_name="vehicles")
@@ -113,7 +113,7 @@ class SimulatedVehicle(models.Model):
 
 
 class SimulationChange(models.Model):
-    """What is to be different from then on; a simulator does it once."""
+    """A change of a simulation, applied once by its simulator."""
 
     simulation = models.ForeignKey(Simulation, on_delete=models.CASCADE, related_name="changes")
     vehicle = models.ForeignKey(SimulatedVehicle, on_delete=models.CASCADE, null=True, blank=True, related_name="changes")

@@ -88,7 +88,7 @@ class _Corner:
 
 
 def course(start: Vector, vias: Sequence[Via], speed_limits: SpeedLimits) -> tuple[Piece, ...]:
-    """Return the course from `start` through all `vias` to a stop at the last. Coincident points are passed together, with all their marks."""
+    """Return the course from `start` through all `vias` to a stop at the last. Coincident points are passed together, with all marks."""
     legs = _legs(start, vias, speed_limits)
     pieces: list[Piece] = []
     cut_m = 0.0  # length of this leg that the previous corner uses

@@ -58,8 +58,10 @@ def _falling(value: float, begins: float, ends: float) -> float:
 
 
 class Reference:
-    """Reference point on a course. `place`, `along`, `speed_mps` and `gain_mps2` (its derivative) are updated by each step; `is_at_end` is
-    set when it stops at the last point.
+    """Reference point on a course.
+
+    `place`, `along`, `speed_mps` and its derivative `gain_mps2` are updated by each step. `is_at_end` is set once it stops at the last
+    point.
     """
 
     def __init__(self, pieces: Sequence[Piece], speed_mps: float, acceleration_mps2: float) -> None:

@@ -187,7 +187,7 @@ class Plant:
         return motion
 
     def fly(self, velocity: tuple[float, float, float], acceleration: tuple[float, float, float], heading_rad: float) -> bool:
-        """Set the set-points to north, east and down [m/s, m/s²]. Returns False and keeps the previous ones if a value is NaN or infinite."""
+        """Set the set-points to north, east and down [m/s, m/s²]. Returns False and changes nothing if a value is not finite."""
         values = (*velocity, *acceleration, heading_rad)
         if not math.isfinite(sum(values)):
             return False

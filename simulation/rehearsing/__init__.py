@@ -1,1 +1,1 @@
-"""Flying all routes of a mission at full speed: under which conditions, by which airframes, in lock-step of time."""
+"""Flies all routes of a mission at full speed: conditions, airframes, and lock-step time."""

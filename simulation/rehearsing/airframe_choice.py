@@ -1,4 +1,4 @@
-"""Which simulated airframe flies for a type of UAV: the nearest by speed, mass and how long it stays up."""
+"""Choice of the simulated airframe for a UAV type: the nearest by speed, mass and endurance."""
 
 import math
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ AS_FAST_SHARE = 0.8  # of the planned speed
 
 @dataclass(frozen=True)
 class Candidate:
-    """A simulated airframe as it is compared: kilograms, minutes of hover on its own battery, and the most it flies over ground."""
+    """A simulated airframe to compare: kilograms, minutes of hover on its battery, and maximum ground speed."""
 
     code: str
     mass_kg: float
@@ -22,15 +22,15 @@ class Candidate:
 
 
 def endurance_min(performance: Performance) -> float | None:
-    """Minutes of hover on a full battery; None without one."""
+    """Return the minutes of hover on a full battery; None if its energy is unknown."""
     return None if performance.battery_wh is None else performance.battery_wh / power_w(performance) * 60.0
 
 
 def nearest_airframe(performance: Performance, speed_mps: float, candidates: Iterable[Candidate]) -> str:
-    """The code of the one whose mass, and endurance where it is known, differ least as ratios; the first of equals.
+    """Return the code of the candidate with the smallest ratio of mass, and of endurance where known; the first of equals.
 
-    Of a UAV whose battery is not known only those are looked at that fly about as fast, or else the fastest: a much slower one would say
-    little but that it comes late. Where a battery is known, it has to be drained as by a UAV of that mass.
+    Without battery data only candidates of similar speed are considered, else the fastest, as a much slower one would only be late. With
+    battery data, consumption must match that of a UAV of this mass.
     """
     own_min, candidates = endurance_min(performance), tuple(candidates)
     if own_min is None:
@@ -44,7 +44,7 @@ def nearest_airframe(performance: Performance, speed_mps: float, candidates: Ite
     return min(candidates, key=differs).code
 
 
-HOVER_MIN = {"iris": 20.0, "inspector": 36.0}  # as their model files have it
+HOVER_MIN = {"iris": 20.0, "inspector": 36.0}  # of their model files
 
 
 def _candidate(airframe: Airframe) -> Candidate:

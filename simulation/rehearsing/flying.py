@@ -1,4 +1,4 @@
-"""All routes of a mission flown together: each UAV flies the very items that it would be given, in lock-step of simulated time."""
+"""Flies all routes of a mission together: each UAV flies its approved items, in lock-step of simulated time."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -16,15 +16,15 @@ from simulation.assessment.flown import NO_WAYPOINT, AssessedRoute, FlownFlight,
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND
 STEP_S = 0.04  # of a UAV's step
 STEPS_A_SAMPLE = 5
-TOGETHER_S = 1.0  # no UAV is ahead of another one by more
-HOVERS_S = 10.0  # after its last waypoint, before a flight that ends so is over
-TIMEOUT = 3.0  # times the planned duration
-TIMEOUT_S = 600.0  # and so much more: then a flight does not end by itself
+TOGETHER_S = 1.0  # maximum lead of one UAV over another
+HOVERS_S = 10.0  # after its last waypoint, until a flight that ends there is over
+TIMEOUT = 3.0  # factor on the planned duration
+TIMEOUT_S = 600.0  # in addition: after both a flight counts as unfinished
 UP_THERE = 0.95  # of a take-off's height
 
 
 class RehearsedVehicle(Protocol):
-    """What flying a mission needs of a simulated UAV; see simulation.flight.uav.SimulatedUav."""
+    """The part of a simulated UAV that a rehearsal uses; see simulation.flight.uav.SimulatedUav."""
 
     @property
     def now_s(self) -> float: ...
@@ -40,7 +40,7 @@ class RehearsedVehicle(Protocol):
 
 @dataclass(frozen=True)
 class Start:
-    """Where and with what a flight begins; `seed` is its own."""
+    """Start of a flight; `seed` is that of this flight."""
 
     uav: int
     flight: int
@@ -56,9 +56,9 @@ OnProgress = Callable[[float], None]
 
 @dataclass(frozen=True, eq=False)
 class RouteToFly:
-    """A route with the items of each of its flights, and the rally points of each. planned_s is how long each is reckoned to take.
+    """A route with the items and rally points of each flight. planned_s is its planned duration.
 
-    limit_mps: what the UAV flies through the air, as plans have it.
+    limit_mps: the UAV's airspeed limit in plans.
     """
 
     uav: int
@@ -73,7 +73,7 @@ class RouteToFly:
 
 
 def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float, seed: int, on_progress: OnProgress) -> list[AssessedRoute]:
-    """Fly them all, from the first take-off to the last landing. on_progress is told the share that is done; what it raises ends it all."""
+    """Fly all routes from the first take-off to the last landing. on_progress receives the completed share and may raise to stop."""
     flyers = [_Flyer(route, make, turnaround_s, seed * 1_000 + number) for number, route in enumerate(routes)]
     now_s = min((flyer.next_s for flyer in flyers), default=math.inf)
     while not all(flyer.is_over for flyer in flyers):
@@ -86,14 +86,14 @@ def fly(routes: Sequence[RouteToFly], make: MakeVehicle, *, turnaround_s: float,
 
 @dataclass(eq=False)
 class _Rows:
-    """A track while it is being flown."""
+    """A track during its flight."""
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
     texts: list[Reason | str] = field(default_factory=list)
 
 
 class _Flyer:
-    """One UAV through all flights of its route; each begins with another battery."""
+    """One UAV through all flights of its route, each with a new battery."""
 
     def __init__(self, route: RouteToFly, make: MakeVehicle, turnaround_s: float, seed: int) -> None:
         self._route, self._make, self._turnaround_s, self._seed = route, make, turnaround_s, seed
@@ -112,14 +112,14 @@ class _Flyer:
 
     @property
     def next_s(self) -> float:
-        """When it has something to do next, after the mission's departure."""
+        """Return when its next step is due, after the mission's departure."""
         if self.is_over:
             return math.inf
         return self._begins_s if self._vehicle is None else self._begins_s + self._vehicle.now_s
 
     @property
     def share(self) -> float:
-        """Of its route, by the times that are planned."""
+        """Return the completed share of its route, by planned times."""
         if self.is_over:
             return 1.0
         begun = 0.0 if self._vehicle is None else min(self._vehicle.now_s / max(self._planned_s(self._flight), 1.0), 1.0)
@@ -224,7 +224,7 @@ class _Flyer:
 
 
 def _heading_deg(flight: Flight) -> float:
-    """As the UAV is put down: towards the second waypoint."""
+    """Return the heading at the start: towards the second waypoint."""
     if len(flight.waypoints) < 2:
         return 0.0
     (lon, lat), (to_lon, to_lat) = flight.waypoints[0].position, flight.waypoints[1].position

@@ -1,4 +1,4 @@
-"""The stored terrain as a simulated UAV asks for it: one place at a time, many times a second."""
+"""Terrain for simulated UAVs, which read one place at a time, many times per second."""
 
 import math
 from collections.abc import Callable
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from inspection.geodesy import LonLat
 
 FloatArray = NDArray[np.float64]
-STEP_DEG = 1.0 / 7_200.0  # half a second of arc: 15 m to the north
+STEP_DEG = 1.0 / 7_200.0  # half an arc second: 15 m to the north
 BLOCK = 32  # steps along a side
 
 Heights = Callable[[FloatArray], FloatArray]
 
 
 class BlockedGround:
-    """Heights between posts of a fine lattice, read from the terrain block by block when a UAV first comes there.
+    """Heights interpolated on a fine grid, which is read from the terrain in blocks when a UAV first reaches them.
 
-    Where the terrain is not known it is as high as `otherwise_m`: where it took off.
+    Unknown terrain has the height `otherwise_m`, that of the take-off.
     """
 
     def __init__(self, heights_m: Heights | None, otherwise_m: float) -> None:

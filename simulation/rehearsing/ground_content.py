@@ -1,4 +1,4 @@
-"""The hash that names the ground about routes: its zones, its heights, and what stands on it."""
+"""Hash of the surroundings of routes: zones, terrain heights and obstacles."""
 
 import hashlib
 from collections.abc import Iterator, Sequence
@@ -10,13 +10,13 @@ from mavlink.approved_route import FrozenRoute
 from simulation.assessment.flown import FloatArray
 from simulation.assessment.judging import Surroundings
 
-BESIDE_DEG = 0.02  # some 2 km beside the waypoints, as far as assessments tell of zones
-LOOK_EACH_M = 30.0  # at heights, along the routes
+BESIDE_DEG = 0.02  # some 2 km beside the waypoints, the range in which assessments report zones
+LOOK_EACH_M = 30.0  # sampling of heights along the routes
 DEGREE_DIGITS, METRE_DIGITS = 7, 1
 
 
 def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
-    """SHA-256 of what an assessment on the routes would be held against; what lies farther away does not change it."""
+    """Return the SHA-256 of what an assessment of the routes uses; objects farther away do not change it."""
     hashed = hashlib.sha256()
     for part in (*_zones(routes, around), *_standing(around), _heights(routes, around)):
         hashed.update(part)
@@ -25,7 +25,7 @@ def ground_content(routes: Sequence[FrozenRoute], around: Surroundings) -> str:
 
 
 def _zones(routes: Sequence[FrozenRoute], around: Surroundings) -> Iterator[bytes]:
-    """Whatever they are called, and in whichever order they were drawn."""
+    """Yield the zones independent of their names and order."""
     table, places = around.zones, _places(routes)
     (west, south), (east, north) = places.min(axis=0) - BESIDE_DEG, places.max(axis=0) + BESIDE_DEG
     box = table.box
@@ -37,7 +37,7 @@ def _standing(around: Surroundings) -> Iterator[bytes]:
     standing = around.standing
     ends = np.round(np.hstack([standing.start, standing.end]), DEGREE_DIGITS)
     tops = np.round(np.column_stack([standing.start_top_m, standing.end_top_m]), METRE_DIGITS)
-    rows = np.hstack([ends, tops]) + 0.0  # without a sign of zero
+    rows = np.hstack([ends, tops]) + 0.0  # turns -0.0 into 0.0
     yield rows[np.lexsort(rows.T[::-1])].tobytes()
 
 
@@ -47,7 +47,7 @@ def _heights(routes: Sequence[FrozenRoute], around: Surroundings) -> bytes:
 
 
 def _along(route: FrozenRoute) -> FloatArray:
-    """Places (n, 2) lon, lat along a route, its waypoints among them."""
+    """Return places (n, 2) lon, lat along a route, including its waypoints."""
     places = _places([route])
     frame = LocalFrame.around(*places[0].tolist())
     lengths_m = np.hypot(*np.diff(frame.to_metres(places), axis=0).T)

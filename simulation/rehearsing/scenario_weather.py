@@ -1,4 +1,4 @@
-"""The air of a set of conditions, as simulated UAVs fly in it."""
+"""Converts a scenario's conditions to the weather of simulated UAVs."""
 
 from simulation.flight.faults import MAX_GUSTS_MPS, MAX_TURBULENCE_MPS, Weather
 from simulation.rehearsing.weather_scenario import WeatherScenario

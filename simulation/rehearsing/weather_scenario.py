@@ -1,4 +1,4 @@
-"""Under which conditions a mission is rehearsed: by name, or by a person's own figures."""
+"""Weather scenarios of rehearsals: named ones, and those with a user's values."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -8,12 +8,12 @@ from typing import Any
 from planning.energy.conditions import MAX_WIND_MPS, Conditions, InvalidConditions, WindLayer, conditions_from_json, conditions_to_json
 
 FRESH_BREEZE_MPS = 8.0  # Beaufort 5 begins there (WMO-No. 306, code table 1100)
-STRONGER = 1.5  # than planned, where that is more
+STRONGER = 1.5  # factor on the planned wind, if that gives more
 STRONG_GUSTS_MPS = 2.0
-WIND_TURBULENT_FROM_MPS = 1.0  # in a calm there is no turbulence
+WIND_TURBULENT_FROM_MPS = 1.0  # no turbulence below it
 WORN_BATTERY_PERCENT = 80.0  # of its rated energy, at which batteries are commonly taken out of service
 PREVAILING_FROM_DEG = 270.0
-LOW_AGL_M = 10.0  # 33 feet: where winds are told
+LOW_AGL_M = 10.0  # 33 feet: the height of reported winds
 MAX_NAME_LENGTH = 60
 OWN_KEYS = {"name", "wind", "temperature_c", "gusts_mps", "turbulence_mps_at_20ft", "battery_percent"}
 MAX_GUSTS_MPS = 10.0
@@ -30,7 +30,7 @@ class Named(StrEnum):
 
 @dataclass(frozen=True)
 class WeatherScenario:
-    """battery_percent is the share of the rated energy that a full battery holds; turbulence is Dryden's, by the wind at 20 feet."""
+    """battery_percent is the share of the rated energy in a full battery; turbulence is Dryden's, by the wind at 20 feet."""
 
     code: Named
     conditions: Conditions
@@ -41,7 +41,7 @@ class WeatherScenario:
 
 
 def named_scenario(code: Named, planned: Conditions) -> WeatherScenario:
-    """What a name stands for, given the conditions that the mission was planned with. Raises InvalidConditions for `own`."""
+    """Return the named scenario for the mission's planned conditions. Raises InvalidConditions for `own`."""
     if code is Named.CALM:
         return WeatherScenario(code, replace(planned, wind=()))
     if code is Named.AS_PLANNED:
@@ -55,7 +55,7 @@ def named_scenario(code: Named, planned: Conditions) -> WeatherScenario:
 
 
 def strong_wind(planned: Conditions) -> Conditions:
-    """At each height half as much again as planned, and at least a fresh breeze."""
+    """Return the planned wind times 1.5 at each height, at least a fresh breeze."""
     if planned.is_calm:
         return replace(planned, wind=(WindLayer(LOW_AGL_M, FRESH_BREEZE_MPS, PREVAILING_FROM_DEG),))
     layers = (replace(layer, speed_mps=min(max(layer.speed_mps * STRONGER, FRESH_BREEZE_MPS), MAX_WIND_MPS)) for layer in planned.wind)
@@ -63,7 +63,7 @@ def strong_wind(planned: Conditions) -> Conditions:
 
 
 def own_scenario(value: Any, planned: Conditions) -> WeatherScenario:
-    """A person's own figures; what is left out is as planned. Raises InvalidConditions."""
+    """Return a scenario with a user's values; omitted ones are as planned. Raises InvalidConditions."""
     if not isinstance(value, Mapping):
         raise InvalidConditions("conditions", "must be a name or an object")
     for key in value:
@@ -108,7 +108,7 @@ def scenario_from_json(stored: Mapping[str, Any]) -> WeatherScenario:
 
 
 def _turbulence_of(conditions: Conditions) -> float:
-    """The lowest wind that is told is taken for the one at 20 feet."""
+    """Return the wind of the lowest layer as that at 20 feet."""
     speed_mps = conditions.wind[0].speed_mps if conditions.wind else 0.0
     return speed_mps if speed_mps >= WIND_TURBULENT_FROM_MPS else 0.0
 

@@ -1,1 +1,1 @@
-"""Rehearsals in the shapes of the API."""
+"""Rehearsals and simulations in the API."""

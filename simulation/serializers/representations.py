@@ -1,4 +1,4 @@
-"""Rehearsals as the API answers them."""
+"""Rehearsals in API responses."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -59,7 +59,7 @@ SOURCES = (
 
 
 def rehearsal_json(rehearsal: Rehearsal, *, content_sha256: str | None, ground_revision: int) -> dict[str, Any]:
-    """content_sha256: of the mission's present plan, None where it has none."""
+    """Return a rehearsal. content_sha256: of the mission's present plan, None without one."""
     job = JobSerializer(rehearsal.job).data
     return {
         "id": str(rehearsal.pk),
@@ -109,7 +109,7 @@ def track_json(
 
 
 def planned_points(mission: Mission) -> dict[int, list[dict[str, Any]]]:
-    """Of each UAV's route, by its place."""
+    """Return the points of each UAV's route, by its place."""
     sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
     return {
         route.mission_uav.sequence: [

@@ -1,4 +1,4 @@
-"""Shapes of rehearsals, for the OpenAPI document and for what comes in."""
+"""Rehearsals in API requests and in the OpenAPI document."""
 
 from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import AssessmentLevel

@@ -1,4 +1,4 @@
-"""Simulated UAVs in real time, in the shapes of the API."""
+"""Simulations in the API: simulated UAVs in real time."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -30,14 +30,14 @@ NOT_OF_THE_FLEET = gettext_lazy(
 
 @extend_schema_field({"oneOf": [{"type": "string"}, {"type": "object", "additionalProperties": {}}]})
 class ConditionsField(serializers.JSONField):
-    """A name, or an object; read by simulation.views.rehearsals."""
+    """A name or an object; parsed by simulation.views.rehearsals."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
 
 
 class FaultsSerializer(KnownFieldsSerializer):
-    """What goes wrong from now on; what is left out stays as it is."""
+    """Faults from now on; omitted ones stay unchanged."""
 
     link_lost_for_s = serializers.FloatField(required=False, min_value=0, max_value=86_400, help_text="silence both ways; 0: none")
     gps_lost_for_s = serializers.FloatField(required=False, min_value=0, max_value=86_400, help_text="no fix; 0: no longer")
@@ -258,7 +258,7 @@ def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
 
 
 def connection_json(host: str, port: int) -> dict[str, Any]:
-    """The UAV listens: whoever wants to talk to it talks first."""
+    """Return how to connect: the UAV listens, and the ground station sends first."""
     examples = {
         "QGroundControl": f"Application Settings > Comm Links > Add: type UDP, server address {host}:{port}",
         "MAVProxy": f"mavproxy.py --master=udpout:{host}:{port} --source-system=255",

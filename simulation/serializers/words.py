@@ -1,4 +1,4 @@
-"""Why a rehearsal did not pass, in the reader's language: an assessment keeps codes and figures, and sentences are made when it is read."""
+"""Sentences of an assessment in the reader's language, made on reading from its stored codes and values."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,7 +9,7 @@ from django.utils.translation import gettext_noop
 
 from workspace.reason_texts import why_text
 
-# Of findings, by their code; the figures are put in as they are written for people.
+# Sentences of findings by code; values are inserted as formatted text.
 SENTENCES = {
     "crashed": gettext_noop("%(name)s crashed%(flight)s. %(said)s"),
     "unfinished": gettext_noop("%(name)s did not come to the end of its flight%(flight)s. %(said)s"),
@@ -39,7 +39,7 @@ LIMITS = ("limit_m", "limit_percent", "limit_s", "limit_mps")
 
 
 def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
-    """One sentence; `names` are those of UAVs by their places."""
+    """Return the sentence of a finding; `names` are those of UAVs by place."""
     facts = dict(finding["facts"])
     facts["limit"] = next((facts[name] for name in LIMITS if name in facts), None)
     facts["held"], facts["hold"] = facts.get("held_s"), facts.get("hold_s")
@@ -57,7 +57,7 @@ def reason_of(finding: Mapping[str, Any], names: Mapping[int, str]) -> str:
 
 
 def render_finding(finding: Mapping[str, Any], names: Mapping[int, str], labels: Mapping[int, str]) -> dict[str, Any]:
-    """With its sentence, after what it is about: the target by its number and name, else the UAV."""
+    """Return the finding with its sentence, after its subject: the target by number and name, else the UAV."""
     target = finding["target"]
     about = names.get(finding["uav"], "")
     if target is not None:
@@ -69,7 +69,7 @@ def render_finding(finding: Mapping[str, Any], names: Mapping[int, str], labels:
 
 
 def _number_of(waypoint: int | None) -> str:
-    """Waypoints are counted from 1 for people."""
+    """Return the waypoint's number for users, counted from 1."""
     return "–" if waypoint is None or waypoint < 0 else str(waypoint + 1)
 
 

@@ -1,1 +1,1 @@
-"""Writes of simulation: rehearsals from request to assessment, airframes of types, and the rule of approvals."""
+"""Services of simulation: rehearsals, airframes of types, approval rules, and simulated flights."""

@@ -1,4 +1,4 @@
-"""A demo mission flown by simulated UAVs, one step a call: nothing here waits, so no worker is held while they get ready and fly."""
+"""Flies a demo mission with simulated UAVs, one step per call. No call waits, so no worker is blocked during the flight."""
 
 from datetime import datetime, timedelta
 
@@ -21,15 +21,15 @@ from simulation.services.simulated_flights import start_simulated_flights
 from simulation.vehicle_models import PRESENT
 from workspace.models import User
 
-STEP_TIMEOUT = timedelta(minutes=5)  # for a UAV to stand ready, to be loaded, to start
-FLIGHT_TIMEOUT = timedelta(minutes=30)  # of one that is flown faster than real time
+STEP_TIMEOUT = timedelta(minutes=5)  # for a UAV to be ready, loaded and started
+FLIGHT_TIMEOUT = timedelta(minutes=30)  # of a flight faster than real time
 
 
 def fly_demo_mission(*, mission: Mission, actor: User, speed: float, since: datetime) -> Reason | None:
-    """Take the next step: approve it and have simulated UAVs take its UAVs' places, load them, start them, see the end of a fast flight.
+    """Take the next step: approve the mission with simulated UAVs, upload, start, and await the end of a fast flight.
 
-    Returns what is waited for; None where nothing is left to do, or where users have approved it or ended its simulation themselves.
-    since: simulations that are older are not this job's. Raises Refused; TimeoutError with what was waited for.
+    Returns what it waits for; None if nothing is left to do, or if users have approved it or ended its simulation themselves. since: older
+    simulations are not this job's. Raises Refused; TimeoutError with what it waited for.
     """
     simulation = Simulation.objects.filter(mission=mission, created_at__gte=since).order_by("created_at").first()
     if simulation is None:
@@ -54,7 +54,7 @@ def _begin(mission: Mission, actor: User, speed: float) -> Reason:
 
 
 def _carried_out(mission: Mission, actor: User, since: datetime) -> Reason | None:
-    """What is waited for until each UAV is loaded and started; None once they are."""
+    """Return what it waits for until each UAV is loaded and started; None afterwards."""
     commands = UavCommand.objects.filter(mission=mission, created_at__gte=since).select_related("uav")
     loads = commands.filter(kind=CommandKind.UPLOAD_MISSION)
     if not _are_applied(loads):
@@ -68,7 +68,7 @@ def _carried_out(mission: Mission, actor: User, since: datetime) -> Reason | Non
 
 
 def _flown(mission: Mission, speed: float) -> Reason | None:
-    """What is waited for until a fast flight is over; one in real time is left to itself once it is started."""
+    """Return what it waits for until a fast flight ends; None for one in real time, which continues by itself."""
     if speed <= 1.0:
         return None
     started_at = UavCommand.objects.filter(mission=mission, kind=CommandKind.START).latest("created_at").created_at
@@ -76,7 +76,7 @@ def _flown(mission: Mission, speed: float) -> Reason | None:
 
 
 def _are_applied(commands: QuerySet[UavCommand]) -> bool:
-    """Raises Refused where one of them has failed or expired."""
+    """Return whether all commands are applied. Raises Refused if one has failed or expired."""
     for command in commands:
         if command.state in (CommandState.FAILED, CommandState.EXPIRED):
             raise refuse("command_failed", Reason("command_not_taken", {"uav": command.uav.name}))
@@ -84,7 +84,7 @@ def _are_applied(commands: QuerySet[UavCommand]) -> bool:
 
 
 def _within(limit: timedelta, begun_at: datetime, message: Reason) -> Reason:
-    """Raises TimeoutError with the message where it has taken longer."""
+    """Return the message. Raises TimeoutError with it after the limit."""
     if timezone.now() - begun_at > limit:
         raise TimeoutError(str(message))
     return message

@@ -1,4 +1,4 @@
-"""Demo missions: one flown to its end, one in flight and one planned, by the planner and by simulated UAVs; and their removal."""
+"""Demo missions, made by the planner and simulated UAVs: one flown, one in flight and one planned; and their removal."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -35,21 +35,21 @@ from workspace.jobs.services import cancel_job, create_job
 from workspace.models import Job, Organisation, User
 
 MAKE_DEMO_MISSIONS = "simulation.tasks.make_demo_missions"
-MAX_SPEED = 10.0  # times real time, of the flight that is to be over soon
+MAX_SPEED = 10.0  # factor on real time, for the flight that is to end soon
 FROZEN_IN_FLIGHT = (MissionState.APPROVED, *ON_ITS_WAY)
 
 
 class OnProgress(Protocol):
-    """Told what is being done, and which share is done."""
+    """Receives the present activity and the completed share."""
 
     def __call__(self, message: Why, share: float) -> None: ...
 
 
 @dataclass(frozen=True)
 class DemoMission:
-    """What a demo mission consists of. Targets are towers between two distances of the first UAV's base, evenly picked.
+    """Definition of a demo mission. Targets are towers in a range of distances from the UAVs' bases, evenly picked.
 
-    speed: in which multiple of real time it is flown; None: it stays planned.
+    speed: factor on real time of its flight; None: it stays planned.
     """
 
     name: str
@@ -75,7 +75,7 @@ DEMO_MISSIONS = (
 
 @dataclass(frozen=True)
 class Step:
-    """What is being done, or waited for, and which share is done."""
+    """The present activity, and the completed share."""
 
     message: Reason
     share: float
@@ -86,7 +86,7 @@ class NotThere(Exception):
 
 
 def has_demo_region(organisation: Organisation) -> bool:
-    """Whether its towers are there, and no UAV of the organisation's own has the name of one of its UAVs."""
+    """Return whether its towers exist, and no other UAV of the organisation has the name of a demo UAV."""
     names = {uav.name for base in BASES for uav in base.uavs}
     if Uav.objects.filter(organisation=organisation, is_demo=False, name__in=names).exists():
         return False
@@ -98,7 +98,7 @@ def open_demo_job(organisation: Organisation) -> Job | None:
 
 
 def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
-    """The job that makes them; the one that is open already, if there is one."""
+    """Return the job that makes them, which may already be open."""
     with transaction.atomic():
         Organisation.objects.select_for_update(no_key=True).get(pk=organisation.pk)
         return open_demo_job(organisation) or create_job(
@@ -107,11 +107,10 @@ def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
 
 
 def make_demo_missions(*, organisation: Organisation, actor: User, since: datetime, progress: OnProgress) -> Step | None:
-    """Do the next thing and return at once: put missing demo UAVs into the fleet, plan one mission, or fly the planned ones a step further.
+    """Take the next step and return at once: add missing demo UAVs, plan one mission, or advance a flight.
 
-    since: when the job was asked for. Missions that are older are left as they are, and so is what users have changed or deleted since.
-    Returns None once all is planned and the fast flight is over.
-    Raises NotThere, Refused, TimeoutError, and what `progress` raises.
+    since: when the job was requested. Older missions are left unchanged, as are missions that users have changed or deleted since. Returns
+    None once all are planned and the fast flight is over. Raises NotThere, Refused, TimeoutError, and what `progress` raises.
     """
     if not has_demo_region(organisation):
         raise NotThere
@@ -162,7 +161,7 @@ def _request_of(uav: Uav, sorties: int) -> UavRequest:
 
 
 def _towers(demo: DemoMission, uavs: Sequence[Uav]) -> list[Asset]:
-    """The same number about each UAV's base, none twice."""
+    """Return the same number of towers around each UAV's base, each once."""
     near_m, far_m = demo.between_m
     found: dict[int, Asset] = {}
     for uav in uavs:
@@ -179,9 +178,10 @@ def _towers(demo: DemoMission, uavs: Sequence[Uav]) -> list[Asset]:
 
 
 def remove_demo_data(*, organisation: Organisation, actor: User) -> dict[str, int]:
-    """End the simulated flights, and delete the demo missions with their records, the demo UAVs that no other mission has, and types and
-    bases of the demo region that are left without a UAV. Assets and zones stay. Returns how many missions and UAVs went. Raises Refused
-    while a real UAV may fly one of the missions.
+    """End the simulated flights, and delete the demo missions with their records. Returns the number of deleted missions and UAVs.
+
+    Also deletes demo UAVs without another mission, and types and bases of the demo region without a UAV. Assets and zones stay. Raises
+    Refused while a real UAV may fly one of the missions.
     """
     with transaction.atomic():
         job = open_demo_job(organisation)

@@ -1,4 +1,4 @@
-"""What flies for each UAV of a mission, and with which battery."""
+"""Airframe and battery that fly for each UAV of a mission."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -9,12 +9,12 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe
 from simulation.rehearsing.airframe_choice import CANDIDATES, nearest_airframe
 
-CHOSEN, NEAREST = "chosen", "nearest"  # why it flies: said for the type, or the nearest by speed, mass and endurance
+CHOSEN, NEAREST = "chosen", "nearest"  # why: chosen for the type, or the nearest by speed, mass and endurance
 
 
 @dataclass(frozen=True)
 class StandIn:
-    """What flies for a UAV. battery_wh: its own where one is stated, else the airframe's."""
+    """The airframe that flies for a UAV. battery_wh: the UAV's own if stated, else the airframe's."""
 
     uav: int
     name: str
@@ -46,14 +46,14 @@ def stand_in_to_json(stand_in: StandIn) -> dict[str, Any]:
 
 
 def airframe_of_type(uav_type: UavType) -> str:
-    """The code of what flies for a type's UAVs that have no figures of their own."""
+    """Return the code of the airframe for a type's UAVs that have no values of their own."""
     chosen = SimulatedAirframe.objects.filter(uav_type=uav_type).values_list("airframe", flat=True).first()
     figures = {name: getattr(uav_type, name) for name in PERFORMANCE_KEYS}
     return chosen if chosen in AIRFRAMES else nearest_airframe(performance_from_json(figures), uav_type.cruise_speed_mps, CANDIDATES)
 
 
 def _chosen(uav: MissionUav) -> str | None:
-    """What was said for its type; an airframe that is no longer there counts as not said."""
+    """Return the airframe chosen for its type; None without one, or if it no longer exists."""
     type_id = None if uav.uav is None else uav.uav.uav_type_id
     found = SimulatedAirframe.objects.filter(uav_type=type_id).values_list("airframe", flat=True).first() if type_id else None
     return found if found in AIRFRAMES else None

@@ -1,4 +1,4 @@
-"""What is done once the simulation of a copy is over: the copy ends, and twins that fly nothing are retired, as system ids are few."""
+"""Cleans up after a copy's simulation: ends the copy, and retires unused twins, as system ids are few."""
 
 from collections.abc import Collection
 
@@ -17,11 +17,11 @@ from simulation.models import SimulatedVehicle
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User
 
-SIMULATION_ENDED = "simulation-ended"  # what commands to twins that are gone end with
+SIMULATION_ENDED = "simulation-ended"  # outcome of commands to twins that are gone
 
 
 def end_copy(mission: Mission) -> None:
-    """End a simulated copy that was sent to twins which are gone; any other mission stays as it is."""
+    """End a simulated copy that was sent to twins that are gone; other missions stay unchanged."""
     with transaction.atomic():
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.simulates_id is None or held.state not in ON_ITS_WAY:
@@ -32,12 +32,12 @@ def end_copy(mission: Mission) -> None:
 
 
 def retire_idle_twins(*, organisation: Organisation, actor: User | None, but: Collection[int] = ()) -> None:
-    """Twins of which no copy is to be flown any more give their MAVLink system ids back. They come back with the next copy."""
+    """Retire twins that fly no copy any more, and release their MAVLink system ids. The next copy reactivates them."""
     flown = MissionUav.objects.filter(uav=OuterRef("pk"), mission__state__in=ON_ITS_WAY, mission__deleted_at=None)
     present = SimulatedVehicle.objects.filter(uav=OuterRef("pk"), state__in=PRESENT)
     idle = Uav.objects.filter(~Exists(flown), ~Exists(present), organisation=organisation, twin_of__isnull=False)
     for twin in idle.exclude(Q(state=UavState.RETIRED) | Q(pk__in=but)):
         try:
             change_uav(uav=twin, actor=actor, position=None, values={"state": UavState.RETIRED})
-        except (Refused, FleetChanged):  # something is on its way to it, or it was deleted meanwhile
+        except (Refused, FleetChanged):  # a command for it is under way, or it was deleted
             continue

@@ -1,4 +1,4 @@
-"""The present plan of a mission as it is flown in simulation: its routes with the very items that UAVs would be given."""
+"""The present plan of a mission for simulation: its routes with the items that UAVs would receive."""
 
 import hashlib
 import json
@@ -32,7 +32,7 @@ def content_of(
     departs_s: float | None,
     turnaround_s: float,
 ) -> str:
-    """SHA-256 of the routes, their items, what flies them, when, and how long after a landing the next take-off is."""
+    """Return the SHA-256 of the routes, their items, airframes, departure and turnaround time."""
     parts: list[dict[str, Any]] = [
         {
             "uav": route.uav,
@@ -53,20 +53,21 @@ def content_of(
 
 @dataclass(frozen=True, eq=False)
 class PlanToFly:
-    """departs_s: seconds since the epoch, None for any time. content_sha256 names all of it."""
+    """departs_s: Unix seconds, None for any time. content_sha256 is the hash of all of it."""
 
     routes: tuple[RouteToFly, ...]
     stand_ins: tuple[StandIn, ...]
     conditions: Conditions
     departs_s: float | None
     content_sha256: str
-    inspected: tuple[tuple[LonLat, float], ...] = ()  # towers that are targets, and how tall they are taken to be there [m]
+    inspected: tuple[tuple[LonLat, float], ...] = ()  # towers that are targets, and their assumed height [m]
 
 
 def plan_to_fly(mission: Mission) -> PlanToFly:
-    """Of a mission as loaded by selectors.mission_of_organisation. Raises Refused where there is nothing, or nothing that can be flown.
+    """Return the plan of a mission loaded by selectors.mission_of_organisation. Raises Refused without a plan, or for one that cannot be
+    flown.
 
-    What is approved is read from the approval's document, like what is sent to UAVs; else it is made from the stored plan in the same way.
+    Approved routes are read from the approval's document, as for UAVs; others are made from the stored plan in the same way.
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     if not flown:
@@ -113,7 +114,7 @@ def _made(route: FrozenRoute) -> tuple[FrozenRoute, tuple[FlightLoad, ...]]:
 
 
 def _approved_routes(mission: Mission) -> dict[int, tuple[FrozenRoute, tuple[FlightLoad, ...]]]:
-    """By the UAV's place, as its approval has them; those of a companion computer, which has no items, are made from their route."""
+    """Return the approved routes by UAV place. Those for a companion computer, which have no items, get them from their route."""
     document = Approval.objects.filter(mission=mission, revoked_at=None).values_list("document", flat=True).first()
     found = {}
     for stored in [] if document is None else document["routes"]:

@@ -41,14 +41,14 @@ from workspace.audit import record_change
 from workspace.jobs.services import cancel_job, create_job_within, finish_job
 from workspace.models import Job, Organisation, User
 
-REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
+REUSED_FOR = timedelta(hours=24)  # another version of the program may fly differently
 REHEARSE = "simulation.tasks.rehearse_mission"
-KEPT = 20  # rehearsals of one mission; older ones go
+KEPT = 20  # rehearsals per mission; older ones are deleted
 OnProgress = Callable[[Why, float], None]
 
 
 class RehearsedUav:
-    """A simulated UAV as a rehearsal orders it about."""
+    """A simulated UAV with the interface for rehearsals."""
 
     def __init__(self, uav: SimulatedUav) -> None:
         self._uav = uav
@@ -78,7 +78,7 @@ class RehearsedUav:
         return self._uav.set_mode(FlightMode.MISSION)
 
     def take_texts(self) -> list[Reason | str]:
-        """What it has said of trouble since it was last asked. Why it has crashed is told once."""
+        """Return its problem reports since the last call. The reason of a crash is included once."""
         events = self._uav.take_events()
         reasons = [event.reason for event in events if isinstance(event, Crashed)]
         stated = [event.text for event in events if isinstance(event, StatusTextSent) and event.severity is not Severity.INFO]
@@ -86,7 +86,7 @@ class RehearsedUav:
 
 
 def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terrain: Heights | None) -> MakeVehicle:
-    """Makes the UAV for each flight: its airframe with the battery of the UAV that it stands in for, as full as the conditions say."""
+    """Return the function that makes the UAV of each flight: its airframe with the real UAV's battery, charged by the conditions."""
     by_uav = {stand_in.uav: stand_in for stand_in in stand_ins}
     weather = weather_of(scenario)
 
@@ -105,9 +105,9 @@ def vehicle_maker(stand_ins: Sequence[StandIn], scenario: WeatherScenario, terra
 
 
 def take_flown_before(run: RehearsalRun) -> bool:
-    """Give the run the assessment and the lines of its like, if there is one; `finished_at` stays when that was flown.
+    """Copy assessment and tracks from an equal earlier run, if there is one; `finished_at` keeps the time of that flight.
 
-    Its rehearsal names the ground that it would be flown over.
+    The rehearsal must already have the hash of its surroundings.
     """
     rehearsal = run.rehearsal
     alike = RehearsalRun.objects.filter(
@@ -136,19 +136,19 @@ def take_flown_before(run: RehearsalRun) -> bool:
 
 
 class PlanChanged(Exception):
-    """The mission is no longer as it was asked for."""
+    """The mission has changed since the request."""
 
 
 class GroundChanged(Exception):
-    """Some of it was flown over other ground than there is now."""
+    """Parts were flown with other surroundings than the present ones."""
 
 
 def start_rehearsal(
     *, mission: Mission, actor: User, scenarios: Sequence[WeatherScenario], seed: int = 7, afresh: bool = False
 ) -> Rehearsal:
-    """Ask for one; a job flies it. Raises Refused where there is nothing to fly, TooManyJobs.
+    """Create a rehearsal, which a job flies. Raises Refused if there is nothing to fly, TooManyJobs.
 
-    What was flown alike lately is taken over and not flown again, unless `afresh`.
+    Equal recent runs are reused and not flown again, unless `afresh`.
     """
     plan, ground = plan_to_fly(mission), planning_read().ground()
     with transaction.atomic():
@@ -188,14 +188,17 @@ def start_rehearsal(
 
 
 def cancel_rehearsal(*, rehearsal: Rehearsal, actor: User) -> Job:
-    """Stop it: what has been flown until then is kept."""
+    """Stop the rehearsal and keep completed runs."""
     job = cancel_job(job=rehearsal.job)
     note(rehearsal.mission, actor, "cancel-rehearsal", before=None, after={"rehearsal": str(rehearsal.pk)})
     return job
 
 
 def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
-    """Fly what is not flown yet, all over one ground, and end the job. Raises PlanChanged, GroundChanged, Refused; or as `progress`."""
+    """Fly the missing runs, all with the same surroundings, and end the job.
+
+    Raises PlanChanged, GroundChanged, Refused, and what `progress` raises.
+    """
     rehearsal = Rehearsal.objects.select_related("mission__organisation").get(job=job)
     mission = mission_of_organisation(rehearsal.organisation, rehearsal.mission_id)
     plan = plan_to_fly(mission)
@@ -213,7 +216,7 @@ def rehearse_for_job(*, job: Job, progress: OnProgress) -> None:
 
 
 def _stand_on(rehearsal: Rehearsal, plan: PlanToFly, ground: PlanningGround) -> None:
-    """Have it speak of the ground that it is flown over, which may have changed since it was asked for."""
+    """Store the present surroundings with the rehearsal, as they may have changed since the request."""
     known, now = rehearsal.ground_sha256, ground_of_plan(plan, ground)
     with transaction.atomic():
         held = Rehearsal.objects.select_for_update(of=("self",)).get(pk=rehearsal.pk)
@@ -253,7 +256,7 @@ def _fly_run(run: RehearsalRun, plan: PlanToFly, ground: PlanningGround, seed: i
 
 
 def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[AssessmentFinding]:
-    """For the UAV, or for the airframe that flies for it: the one that flies slower."""
+    """Check the wind against the slower of the UAV and its airframe."""
     found = (
         wind_finding(route.uav, route.route, scenario.conditions, min(route.limit_mps, AIRFRAMES[stand_in.airframe].max_airspeed_mps))
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True)
@@ -262,12 +265,12 @@ def _too_windy(plan: PlanToFly, scenario: WeatherScenario) -> list[AssessmentFin
 
 
 def _mid_air_starts(plan: PlanToFly) -> list[AssessmentFinding]:
-    """Of those that take over in the air: there they have no take-off of their own, and what is left of a battery."""
+    """Report UAVs with a mid-air start: in reality they have no take-off of their own, and a partly used battery."""
     return [AssessmentFinding(Level.WARNINGS, "begun-in-air", route.uav) for route in plan.routes if route.route.begun_by is not None]
 
 
 def _store(run: RehearsalRun, flown: Sequence[AssessedRoute], assessment: Assessment, took_s: float) -> None:
-    """Once, whole or not at all: another worker that has taken over finds either all of it or nothing."""
+    """Store a run once and completely; another worker that took over finds all or nothing."""
     with transaction.atomic():
         held = RehearsalRun.objects.select_for_update(of=("self",)).select_related("rehearsal").get(pk=run.pk)
         if held.finished_at is not None or held.rehearsal.ground_sha256 != run.rehearsal.ground_sha256:
@@ -288,14 +291,14 @@ def _finish(rehearsal_id: UUID, job: Job) -> None:
 
 
 def _forget_old(mission: Mission) -> None:
-    """Those beyond KEPT that are over."""
+    """Delete completed rehearsals beyond KEPT."""
     keys = list(Rehearsal.objects.filter(mission=mission).order_by("-created_at").values_list("pk", flat=True)[KEPT:])
     for old in Rehearsal.objects.filter(pk__in=keys).exclude(job__state__in=("queued", "running")).select_related("job"):
         old.delete()
 
 
 def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
-    """Why a mission may not be approved yet, and what to do; none where nobody asks for a rehearsal."""
+    """Return why a mission cannot be approved yet, and what to do; empty if no rehearsal is required."""
     if not requires_green(mission.organisation_id):
         return []
     try:
@@ -324,7 +327,10 @@ def reasons_without_rehearsal(mission: Mission) -> list[RefusalReason]:
 
 
 def _is_on_this_ground(rehearsal: Rehearsal, plan: PlanToFly) -> bool:
-    """Whatever has changed elsewhere since. The revision does not tell: a newer network of the same ground has other towers and wires."""
+    """Return whether the surroundings of the routes are unchanged.
+
+    They are compared by hash: a newer network of the same revision may have other towers and wires.
+    """
     return rehearsal.ground_sha256 == ground_of_plan(plan, planning_read().ground())
 
 

@@ -1,7 +1,6 @@
-"""A mission of real UAVs flown in simulation: a copy of it with the same routes, flown by simulated twins of its UAVs.
+"""Simulated copies of missions with real UAVs: the same routes, flown by simulated twins.
 
-The mission itself, its UAVs and its approval are read and not written. What is given to a twin reaches that twin alone: it has a MAVLink
-system id and a key of its own.
+The mission, its UAVs and its approval are only read. A twin has its own MAVLink system id and key, so its commands reach no other vehicle.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ from simulation.services.simulated_flights import FLOWN, start_simulated_flights
 from simulation.vehicle_models import PRESENT
 from workspace.models import User
 
-TWIN_NAME_LENGTH = 84  # of its UAV's name, so that what is added finds room
+TWIN_NAME_LENGTH = 84  # of its UAV's name, to leave room for the suffix
 FIGURES = (
     "uav_type", "max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "heading_deg", "sensor",
     "end_action",
@@ -42,7 +41,7 @@ def fly_simulated_copy(
     seed: int = 7,
     faults: Mapping[str, Any] | None = None,
 ) -> Simulation:
-    """Return the simulation that flies a copy of an approved mission: the copy that flies already, or a new one, approved by `actor`.
+    """Return the simulation of an approved mission's copy: the one that already flies, or a new one, approved by `actor`.
 
     Raises QuotaReached, and Refused with every reason.
     """
@@ -69,13 +68,13 @@ def fly_simulated_copy(
 
 
 def _copy_in_use(mission: Mission) -> Mission | None:
-    """The newest copy of the present plan that can be flown still."""
+    """Return the newest copy of the present plan that can still be flown."""
     copies = mission.simulated_copies.filter(state__in=FLOWN, deleted_at=None, planned_at=mission.planned_at)
     return copies.order_by("-created_at").first()
 
 
 def _bring_back_twins(copy: Mission, actor: User) -> None:
-    """Of a copy whose simulation has ended before it was sent to them."""
+    """Reactivate the twins of a copy whose simulation ended before it was sent to them."""
     for place in copy.mission_uavs.filter(uav__state=UavState.RETIRED).select_related("uav"):
         assert place.uav is not None  # noqa: S101 - of the filter
         change_uav(uav=place.uav, actor=actor, position=None, values={"state": UavState.ACTIVE})
@@ -99,7 +98,7 @@ def _make_copy(mission: Mission, places: Sequence[MissionUav], actor: User) -> M
 
 
 def _why_not(place: MissionUav) -> RefusalReason | None:
-    """Why a UAV of a mission has no twin."""
+    """Return why a UAV of a mission can have no twin."""
     values = {"uav": place.name}
     if place.uav is None:
         return RefusalReason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
@@ -109,7 +108,7 @@ def _why_not(place: MissionUav) -> RefusalReason | None:
 
 
 def _twin(place: MissionUav, actor: User) -> Uav:
-    """The twin of a mission's UAV, as that one is now, where it takes off in the mission."""
+    """Return the twin of a mission's UAV, with that UAV's present data, at its take-off in the mission."""
     uav = place.uav
     assert uav is not None  # noqa: S101 - _why_not looks
     values = {name: getattr(uav, name) for name in FIGURES} | {"battery_percent": 100.0, "state": UavState.ACTIVE}

@@ -1,4 +1,4 @@
-"""Simulated UAVs that stand in for those of a mission: they connect to the gateway as the UAVs would, each with its system id and key."""
+"""Simulated UAVs in place of a mission's UAVs: they connect to the gateway with the UAVs' system ids and keys."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -22,7 +22,7 @@ from simulation.vehicle_models import PRESENT
 from workspace.models import User
 
 FLOWN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
-MAX_SYSTEM_ID = 250  # those above are ground stations
+MAX_SYSTEM_ID = 250  # higher ids are ground stations
 LIFETIME_S = 4 * 3_600.0
 
 
@@ -36,8 +36,10 @@ def start_simulated_flights(
     seed: int = 7,
     faults: Mapping[str, Any] | None = None,
 ) -> Simulation:
-    """Of a mission as loaded by selectors.mission_of_organisation. Raises QuotaReached, and Refused with every reason: UAVs that are real
-    are never stood in for, whoever asks."""
+    """Start the simulation of a mission loaded by selectors.mission_of_organisation.
+
+    Raises QuotaReached, and Refused with every reason: real UAVs are never replaced, whoever requests it.
+    """
     if mission.state not in FLOWN:
         raise refuse("not_approved", _("Only an approved mission is flown in simulation. Approve it first, or rehearse it."))
     plan = plan_to_fly(mission)
@@ -64,7 +66,7 @@ def start_simulated_flights(
 
 
 def reachable(uav: Uav, actor: User) -> Uav:
-    """With a system id, and a key unless it needs none: what a gateway knows it by. Made keys are shown to nobody."""
+    """Return the UAV with a system id, and a key if it needs one, as a gateway requires. A generated key is not shown to any user."""
     if uav.mavlink_system_id is None:
         taken = set(Uav.objects.exclude(mavlink_system_id=None).values_list("mavlink_system_id", flat=True))
         free = next((number for number in range(1, MAX_SYSTEM_ID + 1) if number not in taken), None)
@@ -81,7 +83,7 @@ def reachable(uav: Uav, actor: User) -> Uav:
 
 
 def _why_not(place: MissionUav) -> RefusalReason | None:
-    """Why a UAV of a mission cannot be stood in for."""
+    """Return why a UAV of a mission cannot be simulated."""
     uav, values = place.uav, {"uav": place.name}
     if uav is None:
         return RefusalReason("not_in_fleet", _("%(uav)s is not in the fleet: nothing is sent to it.") % values, place.sequence)
@@ -115,7 +117,7 @@ def _vehicle(
     scenario: WeatherScenario,
     autopilot_type: SimulatedAutopilotType,
 ) -> SimulatedVehicle:
-    """On the ground where its approved route takes off."""
+    """Return the vehicle, on the ground at the take-off of its approved route."""
     take_off = route.route.take_off
     return SimulatedVehicle(
         simulation=simulation,

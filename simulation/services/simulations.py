@@ -22,12 +22,12 @@ from workspace.audit import record_change
 from workspace.leases import has_run_out, is_free, lock_until_end
 from workspace.models import Organisation, User
 
-KEPT = 200  # simulations of an organisation that are over
-_STARTS = 7_309_118  # the advisory lock under which quotas and ports are counted
+KEPT = 200  # completed simulations per organisation
+_STARTS = 7_309_118  # advisory lock for counting quotas and ports
 
 
 class QuotaReached(Exception):
-    """The organisation has as many simulated UAVs as it may; `free` are left."""
+    """The organisation has reached its number of simulated UAVs; `free` are left."""
 
     def __init__(self, free: int) -> None:
         super().__init__(free)
@@ -35,7 +35,7 @@ class QuotaReached(Exception):
 
 
 class NoPortFree(Exception):
-    """Every port of the pool is taken."""
+    """All ports of the pool are in use."""
 
 
 class IsOver(Exception):
@@ -44,7 +44,7 @@ class IsOver(Exception):
 
 @dataclass(frozen=True)
 class PoolUav:
-    """One UAV of the pool as it is wanted."""
+    """A requested UAV of the pool."""
 
     position: LonLat
     name: str = ""
@@ -66,7 +66,7 @@ def start_pool(
     seed: int = 7,
     faults: Mapping[str, Any] | None = None,
 ) -> Simulation:
-    """UAVs that listen at ports of their own. Raises QuotaReached, NoPortFree."""
+    """Start UAVs that listen on their own ports. Raises QuotaReached, NoPortFree."""
     with transaction.atomic():
         hold_starts()
         check_quota(organisation, len(uavs))
@@ -103,7 +103,7 @@ def change_simulation(
     scenario: WeatherScenario | None = None,
     faults: Mapping[str, Any] | None = None,
 ) -> SimulationChange:
-    """Of one vehicle, or of all; the speed is everybody's. Raises IsOver."""
+    """Change one vehicle, or all; the speed always applies to all. Raises IsOver."""
     with transaction.atomic():
         held = Simulation.objects.select_for_update().get(pk=simulation.pk)
         if not held.is_present or held.end_wanted_at is not None:
@@ -111,7 +111,7 @@ def change_simulation(
         reported = None if scenario is None else scenario_to_json(scenario)
         if speed is not None:
             Simulation.objects.filter(pk=held.pk).update(speed=speed)
-        if reported is not None:  # a vehicle that is put on the ground anew finds the same air
+        if reported is not None:  # a restarted vehicle gets the same weather
             vehicles = SimulatedVehicle.objects.filter(simulation=held)
             (vehicles if vehicle is None else vehicles.filter(pk=vehicle.pk)).update(conditions=reported)
         change = SimulationChange.objects.create(
@@ -130,7 +130,7 @@ def change_simulation(
 
 
 def end_simulation(*, simulation: Simulation, actor: User) -> None:
-    """Its simulator ends it within a second; without one it ends at once. One that is over stays as it is."""
+    """End the simulation: its simulator does so within a second; without one it ends at once. A completed one stays unchanged."""
     with transaction.atomic():
         held = Simulation.objects.select_for_update().get(pk=simulation.pk)
         if not held.is_present or held.end_wanted_at is not None:
@@ -144,7 +144,7 @@ def end_simulation(*, simulation: Simulation, actor: User) -> None:
 
 
 def end_vehicle(*, vehicle: SimulatedVehicle, actor: User) -> None:
-    """Of several; with the last one its simulation ends. One that is over stays as it is."""
+    """End one vehicle; with the last one its simulation ends. A completed one stays unchanged."""
     with transaction.atomic():
         held = Simulation.objects.select_for_update().get(pk=vehicle.simulation_id)
         wanted = held.vehicles.filter(state__in=PRESENT, end_wanted_at=None)
@@ -161,12 +161,12 @@ def end_vehicle(*, vehicle: SimulatedVehicle, actor: User) -> None:
 
 
 def end_vehicles_now(keys: Collection[UUID]) -> None:
-    """Single ones, by hand. Whoever calls holds their simulations, or nobody does."""
+    """End single vehicles on request. The caller holds their simulations, or they are not held."""
     SimulatedVehicle.objects.filter(pk__in=keys, state__in=PRESENT).update(state=SimulationState.ENDED, reason="ended-by-hand")
 
 
 def end_now(simulation: Simulation, reason: str, *, state: SimulationState = SimulationState.ENDED) -> None:
-    """Whoever calls holds it, or nobody does."""
+    """End the simulation. The caller holds it, or it is not held."""
     simulation.vehicles.filter(state__in=PRESENT).update(state=state, reason=reason)
     Simulation.objects.filter(pk=simulation.pk, state__in=PRESENT).update(
         state=state, reason=reason, ended_at=timezone.now(), holder="", lease_expires_at=None
@@ -177,7 +177,7 @@ def end_now(simulation: Simulation, reason: str, *, state: SimulationState = Sim
 
 
 def hold_starts() -> None:
-    """Until the transaction ends: of two that start at once the second counts the first one's. What is over and nobody holds is ended."""
+    """Lock starts until the end of the transaction, so that concurrent starts count each other. Ends expired free simulations."""
     lock_until_end(_STARTS)
     now = timezone.now()
     unheld = Simulation.objects.filter(is_free(), state__in=PRESENT)
@@ -186,7 +186,7 @@ def hold_starts() -> None:
 
 
 def check_quota(organisation: Organisation, wanted: int) -> None:
-    """Raises QuotaReached. What has outlived its time counts no more, whether or not a simulator was there to end it."""
+    """Check the quota. Expired simulations do not count, even if no simulator has ended them. Raises QuotaReached."""
     present = SimulatedVehicle.objects.filter(
         simulation__organisation=organisation,
         simulation__lifetime_ends_at__gt=timezone.now(),
@@ -198,7 +198,7 @@ def check_quota(organisation: Organisation, wanted: int) -> None:
 
 
 def note_start(simulation: Simulation, actor: User, *, speed: float, uavs: int, faults: Mapping[str, Any] | None) -> None:
-    """With the faults that it begins with; and what is long over is forgotten."""
+    """Record the start with its initial faults, and delete old completed simulations."""
     if faults:
         SimulationChange.objects.create(simulation=simulation, faults=dict(faults), created_by=actor)
     note(simulation, actor, "start", {"uavs": uavs, "speed": speed, "faults": dict(faults or {})})
@@ -207,7 +207,7 @@ def note_start(simulation: Simulation, actor: User, *, speed: float, uavs: int, 
 
 
 def note(simulation: Simulation, actor: User | None, action: str, facts: dict[str, Any]) -> None:
-    """In the organisation's history."""
+    """Record the change in the organisation's history."""
     mission = None if simulation.mission_id is None else str(simulation.mission_id)
     record_change(
         organisation=simulation.organisation, actor=actor, action=action, subject_type="simulation", subject_id=simulation.pk,
@@ -216,7 +216,7 @@ def note(simulation: Simulation, actor: User | None, action: str, facts: dict[st
 
 
 def lifetime_end(lifetime_s: float) -> datetime:
-    """From now; no simulation lasts longer than the setting says."""
+    """Return the end of a lifetime from now, limited by the settings."""
     return timezone.now() + timedelta(seconds=min(lifetime_s, settings.MAX_SIMULATION_H * 3_600.0))
 
 
@@ -230,7 +230,7 @@ def _free_ports(count: int) -> list[int]:
 
 
 def port_range() -> tuple[int, int]:
-    """The first and the last port of the pool. Raises ValueError for a setting that is none."""
+    """Return the first and last port of the pool. Raises ValueError for an invalid setting."""
     found = re.fullmatch(r"(\d+)-(\d+)", settings.SIMULATOR_PORTS.strip())
     if found is None:
         raise ValueError("SPANWISE_SIMULATOR_PORTS is FIRST-LAST.")

@@ -1,7 +1,7 @@
-"""Which simulator flies which simulation, and what it writes down.
+"""Leases of simulations by simulators, and the states that these store.
 
-A simulator holds simulations by leases. Another may take one when its lease is out, or when it bears the same name: it is the same
-simulator, started again. What the lost one had in the air is lost with it, as a real UAV that is gone: nothing goes on in mid-air.
+Another simulator may take a simulation when its lease has expired. One with the same name may take it before: it is the same one,
+restarted. UAVs that the failed one had in the air are lost, like real ones: no flight continues in mid-air.
 """
 
 from collections.abc import Collection, Mapping
@@ -21,22 +21,22 @@ from simulation.services.simulations import end_now, end_vehicles_now, note
 from simulation.vehicle_models import PRESENT
 from workspace.leases import is_free_for, release, renew, take
 
-AFTER_MISSION = timedelta(minutes=10)  # what stands in for a mission's UAVs stays so long after it is over
+AFTER_MISSION = timedelta(minutes=10)  # simulated UAVs of a mission stay this long after its end
 OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
 @dataclass(frozen=True)
 class LeasedSimulation:
-    """A simulation that was taken, with those of its vehicles that are to be flown."""
+    """A leased simulation with its vehicles to fly."""
 
     simulation: Simulation
     vehicles: tuple[SimulatedVehicle, ...]
 
 
 def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Collection[UUID]) -> LeasedSimulation | None:
-    """The one that has waited longest, if its UAVs times its speed are no more than most_load; anything where none is `flown` yet.
+    """Take the longest waiting simulation whose UAVs times speed are at most most_load; any if none is `flown` yet.
 
-    Those whose time is over are ended on the way. One that bears the holder's name and is not flown was given up: it begins anew.
+    Expired ones are ended. A simulation with the holder's name that is not flown was abandoned, and starts again.
     """
     with transaction.atomic():
         now = timezone.now()
@@ -51,7 +51,7 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
             if not vehicles:
                 continue
             take(Simulation.objects.filter(pk=simulation.pk), holder=holder, lease_s=lease_s, state=SimulationState.FLYING)
-            # The air is stored with each vehicle, the speed with the simulation; the faults of a lost flight went with it.
+            # Weather is stored with each vehicle, speed with the simulation; faults of a lost flight are dropped.
             is_first = simulation.restarts == 0
             if not is_first:
                 SimulationChange.objects.filter(simulation=simulation, done_at=None).update(done_at=now)
@@ -60,17 +60,17 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
 
 
 def renew_simulations(*, holder: str, ids: Collection[UUID], lease_s: float) -> set[UUID]:
-    """Those that are still held."""
+    """Return the simulations still held."""
     return set(renew(Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT), lease_s=lease_s))
 
 
 def release_simulations(*, holder: str) -> None:
-    """Whoever takes them finds them as if this simulator had been lost: there is no going on in mid-air."""
+    """Release all simulations. The next simulator treats them as after a failure: no flight continues in mid-air."""
     release(Simulation.objects.filter(holder=holder), holder="")
 
 
 def end_those_over(*, holder: str, ids: Collection[UUID]) -> set[UUID]:
-    """Of those that are held: whose end is wanted, whose time or mission is over, or that no longer may be flown."""
+    """End held simulations whose end is requested, whose time or mission is over, or that may not be flown any more. Returns their ids."""
     ended = set()
     with transaction.atomic():
         for simulation in Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT).select_for_update(of=("self",)):
@@ -82,7 +82,7 @@ def end_those_over(*, holder: str, ids: Collection[UUID]) -> set[UUID]:
 
 
 def end_single_ones(*, holder: str, ids: Collection[UUID]) -> list[SimulatedVehicle]:
-    """Of simulations that are held and fly on: the vehicles whose own end is wanted. They count as ended from here on."""
+    """Return vehicles of held simulations whose own end is requested, and mark them as ended."""
     with transaction.atomic():
         held = Simulation.objects.filter(pk__in=ids, holder=holder, state__in=PRESENT).select_for_update(of=("self",))
         found = SimulatedVehicle.objects.filter(simulation__in=list(held), state__in=PRESENT, end_wanted_at__isnull=False)
@@ -92,14 +92,14 @@ def end_single_ones(*, holder: str, ids: Collection[UUID]) -> list[SimulatedVehi
 
 
 def fail_simulation(*, simulation: Simulation, reason: str) -> None:
-    """It cannot be flown."""
+    """Mark a simulation that cannot be flown as failed."""
     with transaction.atomic():
         end_now(simulation, reason, state=SimulationState.FAILED)
         note(simulation, None, "fail", {"reason": reason})
 
 
 def take_changes(*, ids: Collection[UUID]) -> list[SimulationChange]:
-    """What is to be different, in the order in which it was said; each is given out once."""
+    """Return pending changes in the order of request; each is returned once."""
     with transaction.atomic():
         found = SimulationChange.objects.filter(simulation__in=ids, done_at=None).select_for_update(of=("self",))
         changes = list(found.select_related("vehicle"))
@@ -108,7 +108,7 @@ def take_changes(*, ids: Collection[UUID]) -> list[SimulationChange]:
 
 
 def notify(*, simulation_id: UUID, holder: str, step_timing: Mapping[str, Any], vehicles: Mapping[UUID, Mapping[str, Any]]) -> None:
-    """How the clock is kept, and how each vehicle does; nothing once another one holds it."""
+    """Store the step timing and the state of each vehicle; nothing if another simulator holds the simulation."""
     with transaction.atomic():
         if not Simulation.objects.filter(pk=simulation_id, holder=holder).update(step_timing=dict(step_timing)):
             return
@@ -136,13 +136,15 @@ def _is_long_over(state: str, ended_at: Any) -> bool:
 
 def _end(simulation: Simulation, reason: str) -> None:
     end_now(simulation, reason)
-    if reason != "ended-by-hand":  # that is in the history already
+    if reason != "ended-by-hand":  # already in the history
         note(simulation, None, "end", {"reason": reason})
 
 
 def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
-    """All at first. After a lost simulator those that were on the ground, and of the pool also those that were in the air: each stands
-    where it stood at first. A mission's UAV that was in the air is gone, and so is the simulation once all of them are.
+    """Return the vehicles to fly: all at first.
+
+    After the loss of a simulator: those on the ground, and in the pool also those in the air, all from their first place. A mission's UAV
+    that was in the air is lost; if all are, the simulation has failed.
     """
     vehicles = list(simulation.vehicles.filter(state__in=PRESENT).select_related("uav"))
     if simulation.state == SimulationState.FLYING:
@@ -164,5 +166,5 @@ def _to_fly(simulation: Simulation) -> list[SimulatedVehicle]:
 
 
 def _is_gone(vehicle: SimulatedVehicle) -> bool:
-    """What flew, and what had crashed: neither stands on the ground whole."""
+    """Return whether it was in the air or had crashed, and so does not stand intact on the ground."""
     return bool(vehicle.reported.get("is_in_air") or vehicle.reported.get("is_crashed"))

@@ -1,4 +1,4 @@
-"""What a rehearsal is held against: zones, terrain, towers and wires of the ground as it is now."""
+"""Surroundings for assessments: present zones, terrain, towers and wires."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from simulation.rehearsing.ground_content import ground_content
 from simulation.services.plan_to_fly import PlanToFly
 
 SAME_DEG = 1e-6
-BESIDE_DEG = 0.01  # some kilometre beside the waypoints: flights that stray farther have failed by then
+BESIDE_DEG = 0.01  # about a kilometre beside the waypoints: flights that deviate more have failed before
 NO_PLACES = np.zeros((0, 2))
 NOTHING_STANDS = Standing(NO_PLACES, NO_PLACES, np.zeros(0), np.zeros(0))
 
@@ -24,7 +24,7 @@ def surroundings_of(plan: PlanToFly, ground: PlanningGround) -> Surroundings:
 
 
 def ground_of_plan(plan: PlanToFly, ground: PlanningGround) -> str:
-    """The hash of the ground about a plan's routes; see rehearsing/ground_content.py."""
+    """Return the hash of the surroundings of a plan's routes; see rehearsing/ground_content.py."""
     return ground_content([route.route for route in plan.routes], surroundings_of(plan, ground))
 
 
@@ -33,9 +33,9 @@ def _flat(positions: FloatArray) -> FloatArray:
 
 
 def _standing(plan: PlanToFly, ground: PlanningGround, terrain: Heights | None) -> Standing:
-    """Near the routes, with tops above sea level; without a network nothing is known to stand.
+    """Return obstacles near the routes, with tops AMSL; none without a network.
 
-    The network takes every support without a height for a tall one. What is inspected is taken to be as tall as the plan flies over it.
+    The network assumes a large height for supports without one. Inspected ones are assumed to be as tall as in the plan.
     """
     try:
         spans = spans_of(ground.network())
@@ -50,7 +50,7 @@ def _standing(plan: PlanToFly, ground: PlanningGround, terrain: Heights | None) 
 
 
 def _as_planned(places: FloatArray, heights_m: FloatArray, plan: PlanToFly) -> FloatArray:
-    """Heights above ground, (k,), of what stands at places, (k, 2)."""
+    """Return heights above ground (k,) of objects at places (k, 2)."""
     found = heights_m.copy()
     for position, height_m in plan.inspected:
         is_there = (np.abs(places - np.array(position)) <= SAME_DEG).all(axis=1)

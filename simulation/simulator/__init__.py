@@ -1,1 +1,1 @@
-"""The simulator: a process that flies simulated UAVs in real time, as many as it has taken."""
+"""The simulator: a process that flies leased simulations in real time."""

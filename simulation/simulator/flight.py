@@ -1,4 +1,4 @@
-"""One simulation in the air: its fleet in a thread of its own, at its own speed."""
+"""One running simulation: its fleet in a separate thread, at its own speed."""
 
 import logging
 import threading
@@ -19,8 +19,10 @@ ENDS_WITHIN_S = 5.0
 
 @dataclass
 class RunningSimulation:
-    """`vehicles` and the fleet's UAVs stand in the same order. It flies no step after `held_until_s` (monotonic), whatever holds up the
-    thread that renews the lease: another simulator may fly the same UAVs by then.
+    """A running simulation. `vehicles` and the fleet's UAVs have the same order.
+
+    It makes no step after `held_until_s` (monotonic), whatever delays the thread that renews the lease: another simulator may fly the same
+    UAVs by then.
     """
 
     simulation: Simulation
@@ -38,12 +40,12 @@ class RunningSimulation:
         self._thread.start()
 
     def post(self, change: VehicleChange) -> None:
-        """At the next step."""
+        """Apply a change at the next step."""
         self.speed = change.speed or self.speed
         self.fleet.post(change)
 
     def drop(self, vehicle: SimulatedVehicle) -> None:
-        """It is gone at the next step; the others fly on."""
+        """Remove a vehicle at the next step; the others fly on."""
         self._dropped.add(vehicle.pk)
         self.fleet.post(VehicleChange(system=vehicle.system_id, ends=True))
 
@@ -54,7 +56,7 @@ class RunningSimulation:
 
     @property
     def load(self) -> float:
-        """Simulated seconds a second, over all UAVs."""
+        """Return the simulated seconds per second, over all UAVs."""
         return (len(self.vehicles) - len(self._dropped)) * self.speed
 
     def step_timing(self) -> dict[str, Any]:
@@ -65,7 +67,7 @@ class RunningSimulation:
         }  # fmt: skip
 
     def reported(self) -> dict[UUID, dict[str, Any]]:
-        """By vehicle that flies. A step may be under way: each state is a value of its own."""
+        """Return the state of each flying vehicle. Safe during a step: each state is an immutable value."""
         both = zip(self.vehicles, self.fleet.uavs, strict=True)
         return {vehicle.pk: _reported(flying) for vehicle, flying in both if vehicle.pk not in self._dropped}
 
@@ -86,7 +88,7 @@ class RunningSimulation:
 def flight_of(
     simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch], *, held_until_s: float
 ) -> RunningSimulation:
-    """Raises OSError where a socket cannot be had."""
+    """Start the simulation. Raises OSError if a socket cannot be opened."""
     return RunningSimulation(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed, held_until_s)
 
 

@@ -1,4 +1,4 @@
-"""What a simulator is started with."""
+"""Options of a simulator."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,10 @@ from workspace.leases import HolderOptions, holder_name
 
 @dataclass(frozen=True, kw_only=True)
 class SimulatorOptions(HolderOptions):
-    """What a simulator takes on, and where its UAVs connect.
+    """Capacity of a simulator, and where its UAVs connect.
 
-    `most_load`: simulated seconds a second that it takes on, over all UAVs. `gateway`: where a mission's UAVs connect, None where none
-    listens; `host`: where the pool's listen.
+    `most_load`: maximum simulated seconds per second, over all UAVs. `gateway`: where a mission's UAVs connect, None without one. `host`:
+    where the pool's UAVs listen.
     """
 
     most_load: float
@@ -22,7 +22,7 @@ class SimulatorOptions(HolderOptions):
 
 
 def options_of_settings(*, name: str | None = None, most_uavs: int | None = None, gateway: str | None = None) -> SimulatorOptions:
-    """Without a name, of this process alone. Raises WrongAddress."""
+    """Return the options; without a name one is made for this process. Raises InvalidStationAddress."""
     reached_at = gateway or settings.SIMULATOR_GATEWAY or settings.GATEWAY_UDP.split(",")[0]
     return SimulatorOptions(
         name=holder_name(name or settings.SIMULATOR_NAME),
@@ -33,6 +33,6 @@ def options_of_settings(*, name: str | None = None, most_uavs: int | None = None
 
 
 def gateway_address(text: str) -> Address:
-    """A gateway that listens everywhere is reached on this machine. Raises WrongAddress."""
+    """Return the address to connect to; a gateway on all interfaces is reached on this host. Raises InvalidStationAddress."""
     host, port = address_of(text)
     return {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host), port  # noqa: S104 - told apart, not bound

@@ -1,4 +1,4 @@
-"""The simulator as a whole: it takes simulations by leases, flies each at its speed, passes changes on, and writes down how they do."""
+"""The simulator process: leases simulations, flies each at its speed, applies changes, and stores states."""
 
 import errno
 import logging
@@ -44,16 +44,16 @@ from workspace.leases import held_until_s
 logger = logging.getLogger(__name__)
 INTERVAL_S = 0.5
 REPORT_INTERVAL_S = 1.0
-UNAVAILABLE_INTERVAL_S = 60.0  # one line of log
-LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
+UNAVAILABLE_INTERVAL_S = 60.0  # between log lines
+LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that does not respond may block it for minutes
 
 
 class NoGateway(Exception):
-    """A mission's UAV has nowhere to connect to."""
+    """There is no gateway for a mission's UAV."""
 
 
 def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: SimulatorOptions) -> Launch:
-    """Over the stored terrain; a ground height that was said holds where it is known from nowhere else. Raises NoGateway."""
+    """Return the launch of a vehicle over the stored terrain; a stated ground height is the fallback. Raises NoGateway."""
     if vehicle.uav is not None and options.gateway is None:
         raise NoGateway
     position, scenario = LonLat(*vehicle.position.coords), scenario_from_json(vehicle.conditions)
@@ -81,7 +81,7 @@ def _key_of(uav: Uav) -> bytes | None:
 
 @dataclass
 class Simulator:
-    """`run` until `stop`. The database is this thread's alone; a simulation's own thread knows its UAVs and their sockets."""
+    """The simulator: `run` until `stop`. Only this thread uses the database; a simulation's thread handles its UAVs and sockets."""
 
     options: SimulatorOptions
     flights: dict[UUID, RunningSimulation] = field(default_factory=dict)
@@ -106,7 +106,7 @@ class Simulator:
         self._stop.set()
 
     def round(self) -> None:
-        """Raises what the database raises; the next round begins anew."""
+        """Run one round. Raises database errors; the next round starts again."""
         if self.flights:
             self._hold()
         self._take()
@@ -188,7 +188,7 @@ class Simulator:
             logger.exception("a change of simulation %s cannot be made", change.simulation_id)
 
     def _go_on_without_database(self, error: Exception) -> None:
-        """They fly on until their leases are out: then another simulator may have them, and two of one UAV would be one too many."""
+        """Continue until the leases expire: then another simulator may fly them, and a UAV must not be flown twice."""
         connection.close()
         if time.monotonic() >= self._quiet_until_s:
             self._quiet_until_s = time.monotonic() + UNAVAILABLE_INTERVAL_S
@@ -221,12 +221,12 @@ DESCRIBED = (
 
 
 def figures_of(simulator: Simulator) -> SnapshotCollector:
-    """To be told for as long as it is entered."""
+    """Return the collector, which is registered while its context is entered."""
     return SnapshotCollector(DESCRIBED, _Reading(simulator).read)
 
 
 class _Reading:
-    """Remembers how far each simulation was; what those that have ended had done stays counted."""
+    """Reads the metrics; keeps the progress of each simulation, and the totals of ended ones."""
 
     def __init__(self, simulator: Simulator) -> None:
         self._simulator = simulator

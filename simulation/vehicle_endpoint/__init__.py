@@ -1,1 +1,1 @@
-"""Simulated UAVs on real sockets, at the speed of a clock: one process flies a batch of them."""
+"""Simulated UAVs on real sockets, paced by a clock: one process flies a fleet."""

@@ -1,4 +1,4 @@
-"""A batch of simulated UAVs in one process, at one speed: a step for all of them, then the ears until the next."""
+"""A fleet of simulated UAVs in one process at one speed: a step for all, then receiving until the next."""
 
 import logging
 import math
@@ -11,19 +11,19 @@ from queue import Empty, SimpleQueue
 from simulation.flight.faults import Faults, Weather
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 
-RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up
+RESYNC_AFTER_S = 1.0  # of real time: a larger lag is not caught up
 logger = logging.getLogger(__name__)
-UNACKNOWLEDGED_SPEED = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
-STEP_S = 0.04  # of simulated time, as SimulatedUav has it
+UNACKNOWLEDGED_SPEED = 1.0  # while a station that sends heartbeats falls silent: reports that it is too busy to receive are lost
+STEP_S = 0.04  # of simulated time, as in SimulatedUav
 MIN_SPEED, MAX_SPEED = 0.1, 60.0
 
 
 @dataclass
 class StepTimer:
-    """`speed` simulated seconds a second of the wall. Times are monotonic wall seconds.
+    """Paces `speed` simulated seconds per second. Times are monotonic seconds of real time.
 
-    A step is late when it begins more than a whole step after it was due. Behind by more than RESYNC_AFTER_S the rest is not made up for:
-    `slipped_s` counts what simulated time has lost so. `limit` is a speed that holds while it is below the wanted one.
+    A step is late if it begins more than one step after it was due. A lag above RESYNC_AFTER_S is not caught up and is added to
+    `slipped_s`. `limit` is a speed that applies while it is lower than the requested one.
     """
 
     step_s: float
@@ -37,11 +37,11 @@ class StepTimer:
 
     @property
     def interval_s(self) -> float:
-        """Between two steps, on the wall."""
+        """Return the interval of steps in real time."""
         return self.step_s / min(self.speed, self.limit)
 
     def begin(self, now_s: float) -> bool:
-        """Whether a step is due; it counts as taken then."""
+        """Return whether a step is due, and count it."""
         behind_s = now_s - self.next_s
         if behind_s < 0:
             return False
@@ -55,31 +55,31 @@ class StepTimer:
         return True
 
     def change(self, speed: float, now_s: float) -> None:
-        """From now on."""
+        """Change the speed from now on."""
         self.speed = speed
         self.next_s = now_s + self.interval_s
 
 
 class InvalidSpeed(ValueError):
-    """A speed that nothing is flown at."""
+    """The speed is out of range."""
 
 
 @dataclass(frozen=True)
 class VehicleChange:
-    """What is to be different from now on; None stays. `system` None: of all UAVs. `faults` is made of those that a UAV has."""
+    """Changes from now on; None: unchanged. `system` None: all UAVs. `faults` maps a UAV's present faults to new ones."""
 
     system: int | None = None
     weather: Weather | None = None
-    faults: Callable[[Faults, float], Faults] | None = None  # of those before, and simulated seconds
+    faults: Callable[[Faults, float], Faults] | None = None  # of previous faults and simulated seconds
     speed: float | None = None
-    ends: bool = False  # the UAV is gone, and so is its socket
+    ends: bool = False  # the UAV and its socket are removed
 
 
 @dataclass(frozen=True)
 class FleetReport:
-    """How the speed was kept: `latest_s` by how much the latest step began too late, `slipped_s` what was never made up for, on the wall.
+    """How the speed was kept: `latest_s` is the largest delay of a step, `slipped_s` the lag not caught up, in real time.
 
-    `failed` UAVs have fallen out of the batch by a fault of the program.
+    `failed` UAVs have left the fleet by a program error.
     """
 
     uavs: int
@@ -96,7 +96,7 @@ class FleetReport:
 
 @dataclass
 class Fleet:
-    """`speed` is simulated seconds a second. `post` may be called from any thread, everything else from the one that runs it."""
+    """The fleet. `speed` is simulated seconds per second. `post` may be called from any thread, all else from the running one."""
 
     uavs: Sequence[FlyingUav]
     speed: float = 1.0
@@ -111,17 +111,17 @@ class Fleet:
         self._step_timer = StepTimer(STEP_S, self.speed, self._began_s)
 
     def post(self, change: VehicleChange) -> None:
-        """At the next step. Raises InvalidSpeed."""
+        """Apply a change at the next step. Raises InvalidSpeed."""
         if change.speed is not None:
             _check_speed(change.speed)
         self._changes.put(change)
 
     def end(self) -> None:
-        """Soon, from any thread and from signal handlers."""
+        """End soon; callable from any thread and from signal handlers."""
         self._is_ended = True
 
     def run(self, until: Callable[[], bool] = lambda: False) -> FleetReport:
-        """Until told to end or `until` says so, which is asked before each step."""
+        """Run until ended or until `until` returns True, which is checked before each step."""
         self._began_s = time.monotonic()
         self._step_timer = StepTimer(STEP_S, self._step_timer.speed, self._began_s)
         with selectors.DefaultSelector() as selector:
@@ -169,7 +169,7 @@ class Fleet:
         return uav.system not in self._failed and uav.system not in self._gone
 
     def _guarded(self, uav: FlyingUav, work: Callable[[], None]) -> bool:
-        """A fault of the program costs the UAV that it befell, not the batch."""
+        """Run the work of a UAV; a program error removes this UAV only."""
         if self._flies(uav):
             try:
                 work()

@@ -1,4 +1,4 @@
-"""One simulated UAV on its socket: flight model, MAVLink side, signatures and faults of the link together."""
+"""One simulated UAV on its socket: flight model, MAVLink endpoint, signing and link faults."""
 
 import time
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from simulation.vehicle_protocol.streams import Outgoing, Station
 
 @dataclass
 class FlyingUav:
-    """Stepped by whoever keeps the time. `key` is 32 bytes, or None for a UAV that neither signs nor checks."""
+    """A UAV stepped by the owner of the clock. `key` is 32 bytes, or None for a UAV that neither signs nor checks."""
 
     uav: SimulatedUav
     system: int
@@ -36,14 +36,14 @@ class FlyingUav:
         self._signed = SignedLink(self.system, self.key, self.uav.faults.clock_offset_s)
 
     def step(self) -> None:
-        """One step of the flight, and what is due by then."""
+        """Advance one step of the flight, and send what is due."""
         self.uav.step()
         unix_s, now_s = time.time(), time.monotonic()
         self.endpoint.unix_at_zero_s = unix_s + self._signed.clock_offset_s - now_s
         self._send(self.endpoint.tick(now_s), unix_s)
 
     def receive_frames(self) -> None:
-        """All that has come in, and the answers."""
+        """Process all received frames, and send the answers."""
         is_lost = self._is_link_lost
         for frame, address in self.radio.received():
             unix_s = time.time()
@@ -60,7 +60,7 @@ class FlyingUav:
             self._send(self.endpoint.receive(message, Station(frame.system, frame.component, link), time.monotonic()), unix_s)
 
     def change(self, *, weather: Weather | None = None, faults: Faults | None = None) -> None:
-        """In flight."""
+        """Change weather and faults in flight."""
         if weather is not None:
             self.uav.weather = weather
         if faults is not None:

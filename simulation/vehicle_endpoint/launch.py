@@ -1,4 +1,4 @@
-"""From what is wanted to UAVs that stand on the ground and talk."""
+"""Creates UAVs with endpoints on the ground."""
 
 import math
 from collections.abc import Sequence
@@ -14,13 +14,13 @@ from simulation.vehicle_endpoint.flying_uav import FlyingUav
 from simulation.vehicle_endpoint.radio import Address, Radio
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
-MAX_SYSTEM_ID = 250  # those above are ground stations
+MAX_SYSTEM_ID = 250  # higher ids are ground stations
 METRES_PER_DEGREE = 111_195.0
 
 
 @dataclass(frozen=True)
 class Launch:
-    """One UAV. `airframe` is one of AIRFRAMES, with a battery of its own where `battery_wh` is said; `key` has 32 bytes."""
+    """One UAV. `airframe` is one of AIRFRAMES, with another battery if `battery_wh` is set; `key` has 32 bytes."""
 
     system: int
     home: LonLat
@@ -39,7 +39,7 @@ class Launch:
 
 
 def fleet_of(launches: Sequence[Launch], *, speed: float = 1.0) -> Fleet:
-    """Raises OSError where a socket cannot be had; then none is kept."""
+    """Return the fleet. Raises OSError if a socket cannot be opened, and closes all of them."""
     uavs: list[FlyingUav] = []
     try:
         for launch in launches:
@@ -67,6 +67,6 @@ def _airframe(launch: Launch) -> Airframe:
 
 
 def in_a_row(first: LonLat, count: int, spacing_m: float) -> list[LonLat]:
-    """Places from west to east."""
+    """Return places from west to east."""
     step_deg = spacing_m / (METRES_PER_DEGREE * math.cos(math.radians(first.lat)))
     return [LonLat(first.lon + number * step_deg, first.lat) for number in range(count)]

@@ -1,4 +1,4 @@
-"""Changes in flight as lines of JSON, for whoever drives a fleet from outside its process."""
+"""Changes in flight as lines of JSON, to control a fleet from another process."""
 
 import json
 import math
@@ -9,20 +9,20 @@ from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
 from simulation.flight.faults import Faults, ImpossibleWeather, Weather, WrongFaults, faults_from
 from simulation.vehicle_endpoint.fleet import VehicleChange
 
-WIND_MEASURED_AGL_M = 10.0  # one layer holds for all heights
+WIND_MEASURED_AGL_M = 10.0  # a single layer applies at all heights
 ORDER = frozenset({"system", "weather", "faults", "speed"})
 WEATHER = frozenset({"wind", "gusts_mps", "turbulence_mps", "temperature_c"})
 
 
 class WrongOrder(ValueError):
-    """A line that says nothing that could be done."""
+    """The line is invalid."""
 
 
 def change_of(line: str) -> VehicleChange:
-    """`{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "speed": 5}`, or parts of it.
+    """Parse `{"system": 3, "weather": {"wind": [8, 270], "gusts_mps": 2}, "faults": {"link_lost_for_s": 20}, "speed": 5}`, or parts of it.
 
-    Without a system all UAVs are meant. Weather is as the line has it, calm in all that it leaves out; faults it leaves out stay as they
-    are, and those that last for a time count from now on in simulated seconds. Raises WrongOrder.
+    Without a system it applies to all UAVs. Omitted weather is calm; omitted faults stay unchanged. Faults with a duration count from now
+    on in simulated seconds. Raises WrongOrder.
     """
     try:
         order = json.loads(line)
@@ -41,7 +41,7 @@ def change_of(line: str) -> VehicleChange:
 
 
 def weather_of(reported: Any) -> Weather:
-    """Raises WrongOrder."""
+    """Return the weather. Raises WrongOrder."""
     _known(reported, WEATHER)
     wind = reported.get("wind", [0.0, 0.0])
     if not (isinstance(wind, list) and len(wind) == 2):
@@ -57,7 +57,7 @@ def weather_of(reported: Any) -> Weather:
 
 
 def faults_of(reported: Any) -> Callable[[Faults, float], Faults]:
-    """From the faults before and simulated seconds to those from now on. Raises WrongOrder."""
+    """Return a function from previous faults and simulated seconds to the new faults. Raises WrongOrder."""
     try:
         return faults_from(reported)
     except WrongFaults as error:

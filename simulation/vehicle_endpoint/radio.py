@@ -1,4 +1,4 @@
-"""One UAV's socket: it talks to the addresses it was given and to whoever talked to it, by UDP."""
+"""The UDP socket of one UAV: sends to given addresses, and to each station that sent to it."""
 
 import contextlib
 import ipaddress
@@ -11,21 +11,21 @@ from dataclasses import dataclass, field
 from mavlink.frames import Damage, Frame, frames_of_datagram
 
 MAX_DATAGRAM_BYTES = 65_535
-MAX_DATAGRAMS = 100  # that are heard before something else has its turn
+MAX_DATAGRAMS = 100  # received before other work
 MAX_PEERS = 16
 HEARTBEAT = 0  # its message id
 MIN_HEARTBEATS = 3  # of a station that sends them regularly
-SILENT_AFTER_S = 2.0  # of wall time; such stations send one a second
-FORGOTTEN_AFTER_S = 60.0  # of silence; the addresses it was given never
+SILENT_AFTER_S = 2.0  # of real time; such stations send one per second
+FORGOTTEN_AFTER_S = 60.0  # of silence; given addresses are kept
 Address = tuple[str, int]
 
 
 class InvalidStationAddress(ValueError):
-    """Text that is no HOST:PORT, or a host that is not known."""
+    """The text is not HOST:PORT, or the host is unknown."""
 
 
 def address_of(text: str) -> Address:
-    """HOST:PORT, with an IPv6 host in brackets; the host is looked up. Raises WrongAddress."""
+    """Parse HOST:PORT, with an IPv6 host in brackets, and resolve the host. Raises InvalidStationAddress."""
     host, _, port = text.strip().rpartition(":")
     if not host or not port.isdecimal() or not 0 < int(port) < 65_536:
         raise InvalidStationAddress(f"{text!r} is not HOST:PORT.")
@@ -45,7 +45,7 @@ class _Peer:
 
 @dataclass
 class Radio:
-    """`damages` counts what was no frame. A peer is named by a number, its link, which is not given away again."""
+    """The socket. `damages` counts bytes that were not frames. A peer's number, its link, is never reused."""
 
     given: Sequence[Address]
     listen: Address | None = None
@@ -70,7 +70,7 @@ class Radio:
 
     @property
     def _host(self) -> str:
-        """Who only talks to this machine is heard by it alone."""
+        """Return the address to bind: loopback if all given addresses are local."""
         hosts = [ipaddress.ip_address(host) for host, _ in self.given]
         if any(not host.is_loopback for host in hosts):
             return ""
@@ -84,13 +84,13 @@ class Radio:
         return int(self.socket.getsockname()[1])
 
     def received(self) -> Iterator[tuple[Frame, Address]]:
-        """What has come in, with who sent it."""
+        """Yield received frames with their sender."""
         for _ in range(MAX_DATAGRAMS):
             try:
                 datagram, address = self.socket.recvfrom(MAX_DATAGRAM_BYTES)
             except BlockingIOError:
                 return
-            except OSError:  # what was sent before could not be delivered
+            except OSError:  # an earlier datagram could not be delivered
                 continue
             for frame in frames_of_datagram(datagram, self.damages):
                 if frame.message_id == HEARTBEAT:
@@ -98,11 +98,11 @@ class Radio:
                 yield frame, (address[0], address[1])
 
     def is_station_silent(self, now_s: float) -> bool:
-        """Whether a station that has sent heartbeats is late with the next one: it may not keep up with what it is sent."""
+        """Return whether a station that sent heartbeats is late: it may be overloaded."""
         return self._heartbeats >= MIN_HEARTBEATS and now_s - self._heartbeat_s > SILENT_AFTER_S
 
     def link_of(self, address: Address) -> int | None:
-        """Of who sent something that was believed; None while too many others are talking."""
+        """Return the link of an authenticated sender; None while too many others are active."""
         peer = self._peers.get(address) or self._add(address, is_given=False)
         if peer is None:
             return None
@@ -110,7 +110,7 @@ class Radio:
         return peer.link
 
     def send(self, frame: bytes, link: int | None) -> None:
-        """To one peer, or to all."""
+        """Send to one peer, or to all."""
         for address, peer in self._peers.items():
             if link is None or peer.link == link:
                 with contextlib.suppress(OSError):  # a full buffer or an unreachable port is a lost datagram

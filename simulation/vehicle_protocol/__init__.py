@@ -1,1 +1,1 @@
-"""The MAVLink side of a simulated UAV: what it tells, what it answers and what it does when told. Pure state machines."""
+"""MAVLink side of a simulated UAV: reports, answers and commands. Pure state machines."""

@@ -1,4 +1,4 @@
-"""Commands as they come in, made safe once: whoever carries them out never sees a NaN, an infinity or a place in whole numbers."""
+"""Parses commands once, so that handlers receive no NaN, infinity or scaled integer positions."""
 
 import math
 from dataclasses import dataclass
@@ -10,22 +10,22 @@ from simulation.vehicle_protocol.item_rules import ABOVE_SEA, PLACED_FRAMES
 from simulation.vehicle_protocol.streams import Outgoing, Station
 
 E7 = 1e7
-NO_PLACE_E7 = 2**31 - 1  # of COMMAND_INT: as NaN in COMMAND_LONG
+NO_PLACE_E7 = 2**31 - 1  # in COMMAND_INT: same as NaN in COMMAND_LONG
 Seven = tuple[
     float | None, float | None, float | None, float | None, float | None, float | None, float | None
 ]  # fmt: skip
 
 
 class NotFinite(ValueError):
-    """A parameter is infinite, which no command means."""
+    """A parameter is infinite, which is invalid in every command."""
 
 
 @dataclass(frozen=True)
 class ReceivedCommand:
-    """`values` are its seven parameters, None where it left the choice to the vehicle; 5 and 6 of a place are latitude and longitude [deg].
+    """A command. `values` are its seven parameters, None for the vehicle's choice; 5 and 6 of a place are latitude and longitude [deg].
 
-    `is_above_sea` tells how the seventh counts, where the message said so; COMMAND_LONG does not. `is_frame_known` is False where it said
-    something else, such as above the ground.
+    `is_above_sea` is the reference of the seventh, if the message has it; COMMAND_LONG does not. `is_frame_known` is False for other
+    references, such as above ground.
     """
 
     number: int
@@ -34,17 +34,17 @@ class ReceivedCommand:
     is_frame_known: bool = True
 
     def __getitem__(self, number: int) -> float | None:
-        """Parameters count from 1."""
+        """Return a parameter, counted from 1."""
         return self.values[number - 1]
 
     def whole(self, number: int) -> int | None:
-        """Its parameter as a whole number; None where it is none, or none was given."""
+        """Return the parameter as an integer; None if it is none or not set."""
         value = self[number]
         return int(value) if value is not None and value == int(value) else None
 
 
 def command_of(message: Any) -> ReceivedCommand:
-    """Of COMMAND_LONG or COMMAND_INT. Raises NotFinite."""
+    """Parse COMMAND_LONG or COMMAND_INT. Raises NotFinite."""
     first = (message.param1, message.param2, message.param3, message.param4)
     if message.get_type() == "COMMAND_LONG":
         return ReceivedCommand(message.command, _finite(*first, message.param5, message.param6, message.param7))

@@ -1,6 +1,6 @@
-"""A simulated UAV as a MAVLink system: what comes in is answered, and what is due goes out.
+"""MAVLink endpoint of a simulated UAV: answers messages, and sends what is due.
 
-Streams go by the UAV's own clock, which may run faster than the one on the wall; heartbeats and the tries of protocols go by the wall's.
+Streams use the UAV's clock, which may run faster than real time; heartbeats and protocol retries use real time.
 """
 
 import math
@@ -38,17 +38,17 @@ SEVERITIES = {
 
 
 def text_messages(text: str, severity: int, number: int) -> list[Message]:
-    """In pieces where it is long; `number` (1 to 65535) names what belongs together. Words are cut where they would go on for ever."""
+    """Return the text in pieces if it is long, truncated to MAX_PIECES; `number` (1 to 65535) identifies the pieces of one text."""
     words = text.encode("ascii", "replace")[: PIECE * MAX_PIECES]
     pieces = [words[start : start + PIECE] for start in range(0, len(words), PIECE)] or [b""]
     identity = number if len(pieces) > 1 else 0
     if identity and len(pieces[-1]) == PIECE and len(pieces) < MAX_PIECES:
-        pieces.append(b"")  # a full last piece would not tell that it is the last
+        pieces.append(b"")  # a full last piece would not show that it is the last
     return [mavlink.MAVLink_statustext_message(severity, piece, identity, place) for place, piece in enumerate(pieces)]
 
 
 class Endpoint:
-    """Times are monotonic seconds of the wall; `unix_at_zero_s` is the time of day when they were 0, by the vehicle's own clock."""
+    """The endpoint. Times are monotonic seconds of real time; `unix_at_zero_s` is the vehicle's time of day when they were 0."""
 
     def __init__(self, vehicle: Vehicle, *, autopilot_type: SimulatedAutopilot, system: int, unix_at_zero_s: float) -> None:
         self.vehicle = vehicle
@@ -69,7 +69,7 @@ class Endpoint:
         self._texts = 0
 
     def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        """Whatever it bears, it is answered or ignored: nothing that comes in makes this fail."""
+        """Return the answers to a message. Never raises, whatever the message contains."""
         if station.system == self.system or not is_for(message, self.system):
             return []
         handler = _HANDLERS.get(message.get_type())
@@ -80,7 +80,7 @@ class Endpoint:
         return [*answers, *self._refusal(), *self._changed_heartbeat(now_s)]
 
     def tick(self, now_s: float) -> list[Outgoing]:
-        """After each step of the flight, and as often as one likes."""
+        """Return what is due; call it after each step of the flight, or more often."""
         self._now_s = now_s
         messages: list[Message] = []
         for event in self.vehicle.take_events():
@@ -93,10 +93,10 @@ class Endpoint:
         messages += [REPORTS[number](report) for number in self.streams.due(state.at_s)]
         return [*map(Outgoing, messages), *self._heartbeat(report, now_s), *self.missions.tick(now_s)]
 
-    # What comes in
+    # Receiving
 
     def _command(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        """Always one acknowledgement."""
+        """Return one acknowledgement in any case."""
         wanted: list[Message] = []
         try:
             command = command_of(message)
@@ -109,7 +109,7 @@ class Endpoint:
                 result = self.pilot.carry_out(command)
         except NotFinite:
             result = DENIED
-        except (ValueError, ArithmeticError):  # of a figure that nobody thought of
+        except (ValueError, ArithmeticError):  # unexpected values
             result = FAILED
         return [acknowledgement(message.command, result, station), *(Outgoing(one, station) for one in wanted)]
 
@@ -137,7 +137,7 @@ class Endpoint:
     def _ping(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
         return requests.ping_answer(message, station)
 
-    # What changes
+    # State changes
 
     def _configure(self, settings: Settings) -> None:
         self.vehicle.settings = settings
@@ -168,7 +168,7 @@ class Endpoint:
             self.pilot.set_mode(MODES[action])
         return self._text(f"Fence broken: {action.value}", mavlink.MAV_SEVERITY_CRITICAL)
 
-    # What is told
+    # Reports
 
     def _report(self) -> SimulatedReport:
         return SimulatedReport(
@@ -182,7 +182,7 @@ class Endpoint:
         )
 
     def _current_item(self) -> int:
-        """Of a list that is done the last."""
+        """Return the present item; the last for a completed list."""
         count = len(self.vehicle.items)
         return min(self.vehicle.state.current_item, count - 1) + self.autopilot_type.first_item if count else 0
 
@@ -193,7 +193,7 @@ class Endpoint:
         return MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL, nothing, longitude_e7, latitude_e7, state.home_amsl_m)
 
     def _heartbeat(self, report: SimulatedReport, now_s: float) -> list[Outgoing]:
-        """Each second, and as soon as the mode or the arming is another."""
+        """Return a heartbeat every second, and at each change of mode or arming."""
         shows = (report.custom_mode, report.state.is_armed)
         if now_s < self._heartbeat_due_s and shows == self._reported:
             return []
@@ -214,7 +214,7 @@ class Endpoint:
         return text_messages(words, severity, self._texts)
 
     def _reached(self, event: events.ItemReached) -> list[Message]:
-        """Before the heartbeat that tells of a landing, so that nobody takes the flight for broken off."""
+        """Report the item before the heartbeat of a landing, so that the flight does not appear interrupted."""
         reached = mavlink.MAVLink_mission_item_reached_message(event.index + self.autopilot_type.first_item)
         return [reached, mission_current(self._report())]
 

@@ -1,4 +1,4 @@
-"""Whether a place lies outside the fence that a vehicle was given."""
+"""The geofence of a simulated vehicle."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 from simulation.vehicle_protocol.parameters import Parameters
 
 E7 = 1e7
-METRES_PER_DEGREE = 111_195.0  # of a sphere; a fence is small
+METRES_PER_DEGREE = 111_195.0  # on a sphere; fences are small
 EXCLUSIONS = frozenset({mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION})
 
 
@@ -25,7 +25,7 @@ class _Polygon:
     is_exclusion: bool
 
     def covers(self, place: LonLat) -> bool:
-        """By the number of edges to the east of it."""
+        """Return whether the place is inside, by counting edges to its east."""
         is_inside = False
         before = self.corners[-1]
         for corner in self.corners:
@@ -50,7 +50,7 @@ class _Circle:
 
 @dataclass(frozen=True)
 class SimulatedFence:
-    """A UAV is to be in all inclusions and in no exclusion."""
+    """A fence: the UAV must be inside all inclusions and outside all exclusions."""
 
     areas: tuple[_Polygon | _Circle, ...] = ()
 
@@ -59,7 +59,7 @@ class SimulatedFence:
 
 
 def fence_of(items: Sequence[MissionItem]) -> SimulatedFence:
-    """Of items that were taken as a fence (see item_rules)."""
+    """Return the fence of items accepted as a fence (see item_rules)."""
     areas: list[_Polygon | _Circle] = []
     place = 0
     while place < len(items):
@@ -96,7 +96,7 @@ COPTER_ACTIONS = {
 
 @dataclass
 class FenceWatch:
-    """Asked with where the UAV flies; tells the action to be taken now."""
+    """Monitors the fence and returns the action to take."""
 
     autopilot_type: SimulatedAutopilot
     parameters: Parameters
@@ -105,7 +105,7 @@ class FenceWatch:
     _next_s: float = 0.0
 
     def check(self, place: LonLat, at_s: float, *, is_in_air: bool) -> FenceAction:
-        """at_s: simulated seconds."""
+        """Check the UAV's position. at_s: simulated seconds."""
         if at_s < self._next_s:
             return FenceAction.NONE
         self._next_s = at_s + INTERVAL_S
@@ -114,7 +114,7 @@ class FenceWatch:
         return self.action if self.is_broken and not was_broken else FenceAction.NONE
 
     def switch(self, wanted: int | None) -> int:
-        """As DO_FENCE_ENABLE asks: a MAV_RESULT. PX4 knows no such command."""
+        """Apply DO_FENCE_ENABLE and return its MAV_RESULT. PX4 does not support it."""
         if self.autopilot_type is SimulatedAutopilot.PX4:
             return int(mavlink.MAV_RESULT_UNSUPPORTED)
         if wanted not in (0, 1):
@@ -136,7 +136,7 @@ class FenceWatch:
 
 
 def rally_points_of(items: Sequence[MissionItem], home_amsl_m: float) -> tuple[RallyPoint, ...]:
-    """Of items that were taken as rally points (see item_rules)."""
+    """Return the rally points of items accepted as such (see item_rules)."""
     return tuple(
         RallyPoint(
             LonLat(item.longitude_e7 / E7, item.latitude_e7 / E7),

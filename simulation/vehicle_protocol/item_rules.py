@@ -1,4 +1,4 @@
-"""Which items a simulated UAV takes: what it would not fly, or keep as a fence, is refused with the reason that MAVLink has for it."""
+"""Items that a simulated UAV accepts. Others are refused with the matching MAVLink result."""
 
 import math
 from collections.abc import Sequence
@@ -27,9 +27,9 @@ INVALID_PARAMETERS = {
 
 
 def refusal_of(item: MissionItem, kind: MissionType) -> int | None:
-    """A MAV_MISSION_RESULT for an item that is refused by itself; None for one that is taken."""
+    """Return the MAV_MISSION_RESULT for an item that is refused by itself; None if accepted."""
     if kind is MissionType.MISSION:
-        # Where a jump leads is seen once the list is whole.
+        # The destination of a jump is checked with the complete list.
         return None if item.command == mavlink.MAV_CMD_DO_JUMP else _refusal_of_mission((item,))
     if item.command not in (FENCE if kind is MissionType.FENCE else {mavlink.MAV_CMD_NAV_RALLY_POINT}):
         return int(mavlink.MAV_MISSION_UNSUPPORTED)
@@ -37,17 +37,17 @@ def refusal_of(item: MissionItem, kind: MissionType) -> int | None:
 
 
 def refusal_of_list(items: Sequence[MissionItem], kind: MissionType) -> int | None:
-    """The same for a list whose items were taken one by one."""
+    """Return the result for a list of accepted items; None if accepted."""
     if kind is MissionType.MISSION:
         return _refusal_of_mission(items)
     return _refusal_of_fence(items) if kind is MissionType.FENCE else None
 
 
 def begins_with_take_off(items: Sequence[MissionItem]) -> bool:
-    """Whether the first that is flown of a list without home is a take-off; what is done on the way does not count, nor does an empty list.
+    """Return whether the first navigation command of a list without home is a take-off; True for a list without any.
 
-    ArduCopter flies no list from the ground that begins otherwise (AP_Mission::starts_with_takeoff_cmd); navigation commands are those
-    below MAV_CMD_NAV_LAST.
+    ArduCopter flies no other list from the ground (AP_Mission::starts_with_takeoff_cmd). Navigation commands are those below
+    MAV_CMD_NAV_LAST.
     """
     flown = next((item.command for item in items if item.command < mavlink.MAV_CMD_NAV_LAST), None)
     return flown in (None, mavlink.MAV_CMD_NAV_TAKEOFF)
@@ -77,7 +77,7 @@ def _refusal_of_place(item: MissionItem) -> int | None:
 
 
 def _refusal_of_fence(items: Sequence[MissionItem]) -> int | None:
-    """Each vertex of a polygon tells how many there are, and they follow each other."""
+    """Check polygons: each vertex has the number of vertices, and they are consecutive."""
     place = 0
     while place < len(items):
         item = items[place]

@@ -1,7 +1,7 @@
-"""The vehicle's side of MAVLink's mission protocol: lists in and out, one by one, and a list is replaced as a whole or not at all.
+"""Vehicle side of MAVLink's mission protocol. One transfer at a time; a list is replaced completely or not at all.
 
-Rules beyond the MAVLink guide, so that no station waits in vain: an announcement made again begins anew, an item sent again is answered
-again, one out of turn draws the request for the right one, and a station that falls silent is told that its upload is over.
+Rules beyond the MAVLink guide avoid time-outs: a repeated count restarts, a repeated item is answered again, an item out of order causes a
+request for the right one, and a silent station is notified that its upload has ended.
 """
 
 import math
@@ -23,7 +23,7 @@ _MAX_E7 = 2**31 - 1
 WITH_PLACE = frozenset(
     {16, 17, 18, 19, 21, 22, 31, 82, 195, 201}
 )  # of a mission: waypoints, loiter, land, take-off, splines, regions of interest
-# How many of its parameters ArduCopter keeps, as whole numbers (read in its AP_Mission.cpp); the others come back as 0.
+# Number of parameters that ArduCopter stores, as integers (read in its AP_Mission.cpp); the others become 0.
 KEPT_BY_ARDUPILOT = {
     mavlink.MAV_CMD_NAV_WAYPOINT: 1, mavlink.MAV_CMD_NAV_TAKEOFF: 1, mavlink.MAV_CMD_NAV_LAND: 1, mavlink.MAV_CMD_NAV_LOITER_TIME: 1,
     mavlink.MAV_CMD_DO_SET_ROI_LOCATION: 1, mavlink.MAV_CMD_DO_SET_ROI_NONE: 1, mavlink.MAV_CMD_DO_SET_ROI: 1,
@@ -35,11 +35,11 @@ REQUEST_INTERVAL_S = 0.25
 MAX_REQUESTS = 20  # of one item
 ALL_LISTS = mavlink.MAV_MISSION_TYPE_ALL
 ACCEPTED, DENIED = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_DENIED)
-Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # a MAV_MISSION_RESULT; nothing has changed unless it is ACCEPTED
+Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # returns a MAV_MISSION_RESULT; unchanged unless ACCEPTED
 
 
 def item_of(message: Any) -> MissionItem:
-    """Of a MISSION_ITEM_INT or a MISSION_ITEM, whose places are in degrees of 32 bits. Never raises: what is no number stays none."""
+    """Return the item of a MISSION_ITEM_INT, or of a MISSION_ITEM with positions in float degrees. Never raises; NaN is kept."""
     parameters = (message.param1, message.param2, message.param3, message.param4)
     if message.get_type() == "MISSION_ITEM_INT":
         return MissionItem(message.command, message.frame, parameters, message.y, message.x, message.z)
@@ -54,7 +54,7 @@ def item_message(item: MissionItem, number: int, kind: MissionType, to: Station,
 
 
 def float_item_message(item: MissionItem, number: int, kind: MissionType, to: Station, *, is_current: bool) -> Message:
-    """For who asks by MISSION_REQUEST, as stations did before places became whole numbers."""
+    """Return the answer to MISSION_REQUEST, the older protocol with float positions."""
     return mavlink.MAVLink_mission_item_message(
         *to.target, number, item.frame, item.command, int(is_current), 1, *item.parameters,
         item.latitude_e7 / E7, item.longitude_e7 / E7, item.altitude_m, int(kind),
@@ -62,7 +62,7 @@ def float_item_message(item: MissionItem, number: int, kind: MissionType, to: St
 
 
 def as_kept(item: MissionItem, kind: MissionType, autopilot_type: SimulatedAutopilot) -> MissionItem:
-    """What is stored, flown and given back. PX4 keeps all; ArduPilot cuts altitudes to whole centimetres and forgets parameters."""
+    """Return the item as stored. PX4 keeps all; ArduPilot truncates altitudes to centimetres and discards parameters."""
     if autopilot_type is SimulatedAutopilot.PX4:
         return item
     parameters = [0.0 if math.isnan(value) else value for value in item.parameters]
@@ -80,7 +80,7 @@ def as_kept(item: MissionItem, kind: MissionType, autopilot_type: SimulatedAutop
 
 
 def _e7(degrees: float) -> int:
-    """Out of range where it is no number, so that it is refused for its place."""
+    """Return scaled degrees; out of range for NaN, so that the position is refused."""
     return max(-_MAX_E7, min(_MAX_E7, round(degrees * E7))) if math.isfinite(degrees) else _MAX_E7
 
 
@@ -100,9 +100,9 @@ class _Upload:
 
 @dataclass
 class MissionServer:
-    """`held` are the lists without home; `replace` is told of each new one before it counts, and may refuse it.
+    """The lists of a vehicle. `held` are the lists without home; `replace` is called with each new list first, and may refuse it.
 
-    `home` is item 0 of what ArduPilot gives back, `current` the number of the item that is being flown, as the autopilot counts.
+    `home` is item 0 in ArduPilot's readback, `current` the number of the present item, as the autopilot counts.
     """
 
     autopilot_type: SimulatedAutopilot
@@ -111,10 +111,10 @@ class MissionServer:
     current: Callable[[], int]
     held: dict[MissionType, tuple[MissionItem, ...]] = field(default_factory=lambda: dict.fromkeys(MissionType, ()))
     _upload: _Upload | None = None
-    _done: tuple[Station, MissionType, int] | None = None  # whose last item, of which number, ended an upload
+    _done: tuple[Station, MissionType, int] | None = None  # of the completed upload: station, list, and number of its last item
 
     def receive(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        """Of all messages those of the mission protocol are answered."""
+        """Return the answers to messages of the mission protocol."""
         name = message.get_type()
         if name == "MISSION_CLEAR_ALL":
             return self._clear(message.mission_type, station)
@@ -139,7 +139,7 @@ class MissionServer:
     def is_uploading(self) -> bool:
         return self._upload is not None
 
-    # A list comes in
+    # Upload
 
     def _announced(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
         if self._upload is not None and self._upload.station != station:
@@ -157,7 +157,7 @@ class MissionServer:
         upload = self._upload
         if upload is None or (upload.station, upload.kind) != (station, kind):
             if upload is None and self._done == (station, kind, message.seq):
-                return [_ack(ACCEPTED, kind, station)]  # the answer to it was lost
+                return [_ack(ACCEPTED, kind, station)]  # the acknowledgement was lost
             result = mavlink.MAV_MISSION_INVALID_SEQUENCE if upload is None or upload.station == station else DENIED
             return [_ack(result, kind, station)]
         if message.seq != len(upload.items):
@@ -182,14 +182,14 @@ class MissionServer:
         return [_ack(result, upload.kind, upload.station)]
 
     def put(self, kind: MissionType, items: tuple[MissionItem, ...]) -> int:
-        """In place of the list that is held, or, with any other result than ACCEPTED, not at all."""
+        """Replace the list; unchanged unless the result is ACCEPTED."""
         result = self.replace(kind, items)
         if result == ACCEPTED:
             self.held[kind] = items
         return result
 
     def _ask(self, upload: _Upload, now_s: float) -> list[Outgoing]:
-        """ArduPilot asks by the older message, and takes the newer items for an answer."""
+        """Request the next item. ArduPilot uses the older message, and accepts the newer items as answers."""
         upload.asked_s = now_s
         message: type[Message] = mavlink.MAVLink_mission_request_int_message
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
@@ -211,7 +211,7 @@ class MissionServer:
         results = [self.put(kind, ()) for kind in kinds]
         return [_ack(next((result for result in results if result != ACCEPTED), ACCEPTED), mission_type, station)]
 
-    # A list goes out
+    # Download
 
     def _listed(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
         return [Outgoing(mavlink.MAVLink_mission_count_message(*station.target, len(self._reported(kind)), int(kind)), station)]
@@ -228,7 +228,7 @@ class MissionServer:
         return self.held[kind] if self._first(kind) == 0 else (self.home(), *self.held[kind])
 
     def _partial(self, message: Any, kind: MissionType, station: Station, now_s: float) -> list[Outgoing]:
-        """A list is never changed in part."""
+        """Refuse partial changes of a list."""
         return [_ack(mavlink.MAV_MISSION_UNSUPPORTED, kind, station)]
 
     def _first(self, kind: MissionType) -> int:

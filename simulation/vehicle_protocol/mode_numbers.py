@@ -1,4 +1,4 @@
-"""The modes as heartbeats bear them.
+"""Mode numbers in heartbeats.
 
 Sources: PX4's px4_custom_mode.h (main mode and sub mode), ArduCopter's mode.h.
 """
@@ -12,19 +12,19 @@ from simulation.flight.states import FlightMode
 
 
 class SimulatedAutopilot(StrEnum):
-    """PX4 flies item 0 of its list; on ArduPilot item 0 is home, and is not flown."""
+    """PX4 flies item 0 of its list; on ArduPilot item 0 is home, and not flown."""
 
     PX4 = "px4"
     ARDUPILOT = "ardupilot"
 
     @property
     def autopilot(self) -> int:
-        """MAV_AUTOPILOT."""
+        """Return the MAV_AUTOPILOT."""
         return int(mavlink.MAV_AUTOPILOT_PX4 if self is SimulatedAutopilot.PX4 else mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA)
 
     @property
     def first_item(self) -> int:
-        """The number of the first item that is flown."""
+        """Return the number of the first flown item."""
         return 0 if self is SimulatedAutopilot.PX4 else 1
 
 
@@ -49,7 +49,7 @@ COPTER_ORDERED = {
     6: FlightMode.RETURN, 9: FlightMode.LAND,
     16: FlightMode.HOLD, BRAKE: FlightMode.HOLD,
 }  # fmt: skip
-COPTER_BY_HAND = frozenset({STABILIZE, 2})  # fall without a pilot: only on the ground
+COPTER_BY_HAND = frozenset({STABILIZE, 2})  # these fall without a pilot: only on the ground
 COPTER_NOT_ARMABLE = frozenset({AUTO, 6, 9, BRAKE})
 
 
@@ -58,12 +58,12 @@ def px4_number(main: int, sub: int = 0) -> int:
 
 
 def usual_number(autopilot_type: SimulatedAutopilot, mode: FlightMode) -> int:
-    """The custom mode that shows a mode nobody asked for by a number."""
+    """Return the custom mode number of a mode that was not requested by number."""
     return px4_number(PX4_AUTO, PX4_SUB_MODES[mode]) if autopilot_type is SimulatedAutopilot.PX4 else COPTER_MODES[mode]
 
 
 def ordered_mode(autopilot_type: SimulatedAutopilot, number: int) -> FlightMode | None:
-    """What a custom mode asks for; None for one that a simulated UAV does not fly, as nobody holds its sticks."""
+    """Return the mode of a custom mode number; None for modes that need a pilot's sticks."""
     if autopilot_type is SimulatedAutopilot.ARDUPILOT:
         return COPTER_ORDERED.get(number)
     main, sub = number >> 16 & 0xFF, number >> 24 & 0xFF
@@ -74,7 +74,7 @@ def ordered_mode(autopilot_type: SimulatedAutopilot, number: int) -> FlightMode 
 
 @dataclass
 class ShownMode:
-    """The number in the heartbeat: the one that was asked for, as long as the vehicle still does what it means."""
+    """The number in the heartbeat: the requested one while the vehicle is in that mode."""
 
     autopilot_type: SimulatedAutopilot
     asked: int
@@ -86,7 +86,7 @@ class ShownMode:
         )
 
     def number(self, mode: FlightMode, *, is_in_air: bool) -> int:
-        """ArduPilot stands in a mode from which it can be armed, as if its switch had been put back after the landing."""
+        """Return the number. On the ground ArduPilot shows a mode that permits arming, as if its switch were reset after the landing."""
         if ordered_mode(self.autopilot_type, self.asked) is mode:
             return self.asked
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT and mode is FlightMode.HOLD and not is_in_air:

@@ -1,6 +1,6 @@
-"""The parameters of a simulated UAV: few, each with the effect that its name promises, or fixed at what the vehicle does anyway.
+"""Parameters of a simulated UAV: each has its effect, or is fixed at the value that matches the vehicle's behaviour.
 
-All are sent as 32-bit floats, so that the two ways of packing whole numbers never differ.
+All are sent as 32-bit floats, so that both encodings of integers agree.
 """
 
 import math
@@ -23,9 +23,9 @@ Configure = Callable[[Settings], None]
 
 @dataclass(frozen=True)
 class Parameter:
-    """Settable between `lowest` and `highest`; fixed where these are the same.
+    """Settable between `lowest` and `highest`; fixed if these are equal.
 
-    `setting` is the autopilot's setting that it shows, of which it counts `per_unit` to one; without one it shows `value`.
+    `setting` is the autopilot's setting that it shows, multiplied by `per_unit`; without one it shows `value`.
     """
 
     name: str
@@ -70,7 +70,7 @@ ARDUPILOT = (
     fixed("RALLY_TOTAL", 0.0),
     fixed("FENCE_TOTAL", 0.0),
     fixed("MIS_RESTART", 0.0),
-    fixed("AUTO_OPTIONS", 2.0),  # takes off in AUTO without a stick being moved
+    fixed("AUTO_OPTIONS", 2.0),  # takes off in AUTO without stick input
     fixed("FS_GCS_ENABLE", 0.0),
     Parameter("WPNAV_RADIUS", 50.0, 5_000.0, "acceptance_m", 100.0),
     Parameter("DISARM_DELAY", 1.0, 127.0, "disarm_on_ground_s"),
@@ -82,7 +82,7 @@ ARDUPILOT = (
 
 
 def settings_at_start(settings: Settings, autopilot_type: SimulatedAutopilot) -> Settings:
-    """What no parameter sets, and each autopilot does in its own way."""
+    """Return the settings that no parameter controls and that differ by autopilot."""
     return replace(settings, return_adds_to_rally_point=autopilot_type is SimulatedAutopilot.PX4)
 
 
@@ -93,7 +93,7 @@ def parameters_of(autopilot_type: SimulatedAutopilot, system: int, settings: Set
 
 
 class Parameters:
-    """Read and set by the messages PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET; every question has an answer."""
+    """Handles PARAM_REQUEST_LIST, PARAM_REQUEST_READ and PARAM_SET; each request is answered."""
 
     def __init__(self, parameters: Iterable[Parameter], settings: Settings, configure: Configure) -> None:
         self._parameters = {parameter.name: parameter for parameter in parameters}
@@ -109,7 +109,7 @@ class Parameters:
         return name in self._values
 
     def show(self, name: str, value: float) -> None:
-        """What one of this name, if there is one, tells from now on; not for those that show a setting."""
+        """Set the value of a parameter that shows no setting, if it exists."""
         if name in self._values:
             self._values[name] = value
 
@@ -130,7 +130,7 @@ class Parameters:
         return [self._reported(number, station)]
 
     def _set(self, message: Any, station: Station) -> list[Outgoing]:
-        """Answered by the value that holds from now on; what is refused is told besides."""
+        """Answer with the value in force; a refusal adds an error."""
         parameter = self._parameters.get(message.param_id)
         if parameter is None:
             return [_error(message.param_id, BY_NAME, mavlink.MAV_PARAM_ERROR_DOES_NOT_EXIST, station)]
@@ -145,7 +145,7 @@ class Parameters:
         if parameter.setting:
             self._settings = replace(self._settings, **{parameter.setting: value / parameter.per_unit})
             self._configure(self._settings)
-        return [Outgoing(self._reported(number, station).message)]  # to all: what another station shows is no longer so
+        return [Outgoing(self._reported(number, station).message)]  # to all, as other stations show the old value
 
     def _reported(self, number: int, station: Station) -> Outgoing:
         name = self._names[number]

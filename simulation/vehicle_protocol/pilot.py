@@ -1,6 +1,6 @@
-"""Commands to orders for the UAV, as each autopilot understands them.
+"""Converts commands to orders for the UAV, by the rules of each autopilot.
 
-Sources: what QGroundControl, MAVSDK and MAVProxy send; PX4's Commander; ArduCopter 4.6 in its simulator.
+Sources: commands of QGroundControl, MAVSDK and MAVProxy; PX4's Commander; ArduCopter 4.6 in its simulator.
 """
 
 import math
@@ -35,7 +35,7 @@ PAUSE, GO_ON = 0, 1
 
 @dataclass
 class Pilot:
-    """`refusal` is why the last order was refused, in words, for the people at the stations; whoever tells it takes it out."""
+    """`refusal` is the text of why the last order was refused; the code that sends it clears it."""
 
     vehicle: Vehicle
     autopilot_type: SimulatedAutopilot
@@ -51,12 +51,12 @@ class Pilot:
         return self.shown.number(state.mode, is_in_air=state.is_in_air)
 
     def carry_out(self, command: ReceivedCommand) -> int:
-        """A MAV_RESULT; UNSUPPORTED for what is not a pilot's matter."""
+        """Return a MAV_RESULT; UNSUPPORTED for other commands."""
         order = _ORDERS.get(command.number)
         return UNSUPPORTED if order is None else order(self, command)
 
     def set_mode_number(self, number: int) -> int:
-        """By the number that heartbeats bear."""
+        """Set the mode by its number in heartbeats."""
         mode = ordered_mode(self.autopilot_type, number)
         if mode is None:
             return self._refused("This mode needs a pilot at the sticks, and there is none.", UNSUPPORTED)
@@ -76,7 +76,7 @@ class Pilot:
         return self.set_mode_number(usual_number(self.autopilot_type, mode))
 
     def set_current(self, number: int) -> int:
-        """number: as the autopilot counts; ArduPilot's home means the first that is flown."""
+        """Set the present item. number: as the autopilot counts; ArduPilot's home selects the first flown item."""
         outcome = self.vehicle.set_current(max(number - self.autopilot_type.first_item, 0))
         return self._result(outcome, DENIED)
 
@@ -95,7 +95,7 @@ class Pilot:
         return DENIED
 
     def _take_off(self, command: ReceivedCommand) -> int:
-        """PX4 is told before it is armed, by the height above sea level; ArduCopter armed in GUIDED, by the height above home."""
+        """Take off. PX4 takes it before arming, by altitude AMSL; ArduCopter armed in GUIDED, by height above home."""
         state, height_m = self.vehicle.state, command[7]
         if not command.is_frame_known:
             return DENIED
@@ -125,7 +125,7 @@ class Pilot:
         return self.set_mode_number(px4_number(main, sub or 0))
 
     def _start(self, command: ReceivedCommand) -> int:
-        """PX4 arms by itself; ArduCopter agrees while it is disarmed, and does nothing."""
+        """Start the mission. PX4 arms by itself; a disarmed ArduCopter accepts and does nothing."""
         first = command.whole(1)
         if self.autopilot_type is SimulatedAutopilot.ARDUPILOT:
             return self.set_mode(FlightMode.MISSION) if self.vehicle.state.is_armed else ACCEPTED
@@ -141,7 +141,7 @@ class Pilot:
         return self.set_mode(FlightMode.HOLD if wanted == PAUSE else FlightMode.MISSION)
 
     def _go_to(self, command: ReceivedCommand) -> int:
-        """What is left open stays as it is; everything left open is a pause."""
+        """Go to a place. Open values stay unchanged; with all open it is a pause."""
         state = self.vehicle.state
         lat, lon, height_m = command[5], command[6], command[7]
         if not state.is_in_air:
@@ -168,7 +168,7 @@ class Pilot:
         return self._result(outcome)
 
     def _change_speed(self, command: ReceivedCommand) -> int:
-        """-1 is no change, -2 back to what is usual."""
+        """Change the speed; -1 is no change, -2 the default speed."""
         if (command[1] or AIRSPEED) not in (AIRSPEED, GROUND_SPEED):
             return UNSUPPORTED
         speed_mps = command[2]

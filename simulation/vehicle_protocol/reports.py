@@ -1,4 +1,4 @@
-"""A UAV's state as MAVLink messages."""
+"""State of a UAV as MAVLink messages."""
 
 import math
 from collections.abc import Callable
@@ -40,9 +40,9 @@ MISSION_STATES = {
 
 @dataclass(frozen=True, slots=True)
 class SimulatedReport:
-    """What messages are written from: the UAV's state, and what the MAVLink side adds to it.
+    """Input of messages: the UAV's state, and values of the endpoint.
 
-    `current_item` and `item_count` are as the autopilot counts; `unix_s` is the vehicle's idea of the time of day.
+    `current_item` and `item_count` are as the autopilot counts; `unix_s` is the vehicle's time of day.
     """
 
     state: SimulatedState
@@ -65,7 +65,7 @@ def heartbeat(report: SimulatedReport) -> Message:
     status = mavlink.MAV_STATE_STANDBY
     if state.is_crashed:
         status = mavlink.MAV_STATE_EMERGENCY
-    elif state.is_armed and (state.is_in_air or report.autopilot_type is SimulatedAutopilot.PX4):  # ArduPilot tells by it whether it flies
+    elif state.is_armed and (state.is_in_air or report.autopilot_type is SimulatedAutopilot.PX4):  # in ArduPilot it shows whether it flies
         status = mavlink.MAV_STATE_ACTIVE
     return mavlink.MAVLink_heartbeat_message(
         mavlink.MAV_TYPE_QUADROTOR, report.autopilot_type.autopilot, mode, report.custom_mode, status, 3
@@ -118,7 +118,7 @@ def attitude_quaternion(report: SimulatedReport) -> Message:
 
 
 def local_position(report: SimulatedReport) -> Message:
-    """From home, north, east and down."""
+    """Return the position relative to home, north, east and down."""
     state = report.state
     north_m = (state.position.lat - state.home.lat) * METRES_PER_DEGREE
     east_m = (state.position.lon - state.home.lon) * METRES_PER_DEGREE * math.cos(math.radians(state.home.lat))
@@ -151,7 +151,7 @@ def landed(report: SimulatedReport) -> Message:
 
 
 def mission_current(report: SimulatedReport) -> Message:
-    """The number of items leaves out ArduPilot's home, as its autopilot counts here."""
+    """Return the present item. The total excludes ArduPilot's home, as its autopilot counts here."""
     return mavlink.MAVLink_mission_current_message(report.current_item, report.item_count, MISSION_STATES[report.state.mission_state])
 
 
@@ -174,14 +174,14 @@ def origin(report: SimulatedReport) -> Message:
 
 
 def wind(report: SimulatedReport) -> Message:
-    """ArduPilot's: from where it blows."""
+    """Return ArduPilot's wind, which names where it blows from."""
     north_mps, east_mps, down_mps = report.state.wind_ned_mps
     from_deg = math.degrees(math.atan2(-east_mps, -north_mps)) % 360
     return mavlink.MAVLink_wind_message(from_deg, math.hypot(north_mps, east_mps), down_mps)
 
 
 def wind_estimate(report: SimulatedReport) -> Message:
-    """PX4's: to where the air moves."""
+    """Return PX4's wind, which names where the air moves to."""
     state = report.state
     return mavlink.MAVLink_wind_cov_message(int(state.at_s * 1e6), *state.wind_ned_mps, 0.0, 0.0, state.altitude_amsl_m, 0.5, 0.5)
 

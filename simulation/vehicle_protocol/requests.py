@@ -1,4 +1,4 @@
-"""Commands that ask for messages, or say how often they are to come."""
+"""Commands that request messages or set their intervals."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ CAPABILITIES = (
     | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
     | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
 )  # fmt: skip
-DEVELOPMENT = 0  # of the firmware's types: one that is no release is not compared with the latest release
+DEVELOPMENT = 0  # firmware type: a development version is not compared with the latest release
 VERSIONS = {SimulatedAutopilot.PX4: (1, 15, 0), SimulatedAutopilot.ARDUPILOT: (4, 6, 0)}
 VENDOR, PRODUCT = 0x5350, 0x5349
 NO_NETWORK = 0
@@ -29,11 +29,11 @@ OPENING = frozenset({4, 11})  # for reading, for writing; 6 would create a file
 ACK, NAK = 128, 129
 UNKNOWN_COMMAND, FILE_NOT_FOUND = 7, 10
 _MAX_NS = 2**63 - 1
-Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
+Answer = tuple[int, list[Message]]  # a MAV_RESULT, and the requested messages
 
 
 def version(autopilot_type: SimulatedAutopilot, system: int) -> Message:
-    """Its unique id is its system id, with letters before it that tell a simulated UAV."""
+    """Return AUTOPILOT_VERSION; the unique id is the system id, with a prefix for simulated UAVs."""
     major, minor, patch = VERSIONS[autopilot_type]
     firmware = major << 24 | minor << 16 | patch << 8 | DEVELOPMENT
     nothing = [0] * 8
@@ -44,7 +44,7 @@ def version(autopilot_type: SimulatedAutopilot, system: int) -> Message:
 
 
 def refused(message: Any, station: Station) -> list[Outgoing]:
-    """The answer to FILE_TRANSFER_PROTOCOL; there is never a session, so that ending one is easily granted."""
+    """Return the answer to FILE_TRANSFER_PROTOCOL. There are no sessions, so only ending one succeeds."""
     asked = bytes(message.payload[:HEADER])
     if len(asked) < HEADER or asked[3] >= ACK:
         return []
@@ -62,7 +62,7 @@ def refused(message: Any, station: Station) -> list[Outgoing]:
 
 
 def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoing]:
-    """now_s: by one clock that never goes back. A message that bears a time of ours already is itself an answer."""
+    """Return the answer to TIMESYNC. now_s: of a monotonic clock. A message with a remote time is an answer itself."""
     if message.tc1 != 0:
         return []
     now_ns = min(int(now_s * 1e9), _MAX_NS)
@@ -70,7 +70,7 @@ def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoi
 
 
 def ping_answer(message: Any, station: Station) -> list[Outgoing]:
-    """A ping to everybody is answered to who sent it; one that names somebody is the answer to a ping."""
+    """Return the answer to a PING to all; a PING with a target is an answer itself."""
     if (message.target_system, message.target_component) != (0, 0):
         return []
     return [Outgoing(mavlink.MAVLink_ping_message(message.time_usec, message.seq, *station.target), station)]
@@ -78,7 +78,7 @@ def ping_answer(message: Any, station: Station) -> list[Outgoing]:
 
 @dataclass
 class Requests:
-    """`report` is the vehicle's state of this moment."""
+    """`report` returns the vehicle's present state."""
 
     autopilot_type: SimulatedAutopilot
     system: int
@@ -86,7 +86,7 @@ class Requests:
     report: Callable[[], SimulatedReport]
 
     def answer(self, command: ReceivedCommand) -> Answer | None:
-        """None for a command that asks for nothing."""
+        """Return the answer; None for a command that requests nothing."""
         asked = _ANSWERS.get(command.number)
         return None if asked is None else asked(self, command)
 
@@ -101,7 +101,7 @@ class Requests:
         return ACCEPTED, [REPORTS[number](self.report())]
 
     def _set_interval(self, command: ReceivedCommand) -> Answer:
-        """Heartbeats go by the wall's clock, whatever anybody wants."""
+        """Set an interval; heartbeats always use real time."""
         number = command.whole(1)
         if number is None or number not in REPORTS or number == mavlink.MAVLINK_MSG_ID_HEARTBEAT:
             return UNSUPPORTED, []

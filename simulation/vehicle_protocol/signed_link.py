@@ -1,4 +1,4 @@
-"""What a vehicle with a key believes, and how it signs."""
+"""Signing of a vehicle with a key: authentication of received frames, and its own signatures."""
 
 from dataclasses import dataclass, field
 
@@ -9,10 +9,10 @@ from simulation.vehicle_protocol.streams import AUTOPILOT
 
 @dataclass
 class SignedLink:
-    """Frames in and out of one vehicle; without a key nothing is signed and everything believed.
+    """Signs and checks the frames of one vehicle; without a key nothing is signed and everything is accepted.
 
-    `clock_offset_s` is by how much the vehicle's clock is wrong. One that is slow is set by the first rightly signed frame, as the MAVLink
-    guide has it; one that is fast stays so, and its frames are refused by others.
+    `clock_offset_s` is the error of the vehicle's clock. A slow clock is set by the first valid signature, as the MAVLink guide requires. A
+    fast one stays wrong, and others refuse its frames.
     """
 
     system: int
@@ -25,12 +25,12 @@ class SignedLink:
         self._writer = FrameWriter(self.system, AUTOPILOT, key=self.key)
 
     def is_believed(self, frame: Frame, unix_s: float) -> bool:
-        """unix_s: the right time."""
+        """Return whether a frame is accepted. unix_s: the true time."""
         if self.key is None:
             return True
         check = self._checks.setdefault(frame.system, SignatureCheck(self.key))
         refusal = check.refusal(frame, unix_s + self.clock_offset_s)
-        if refusal is Refusal.FROM_THE_FUTURE and frame.timestamp is not None:  # told only of right signatures
+        if refusal is Refusal.FROM_THE_FUTURE and frame.timestamp is not None:  # only returned for valid signatures
             self.clock_offset_s = EPOCH_UNIX_S + frame.timestamp / UNITS_PER_S - unix_s
             refusal = check.refusal(frame, unix_s + self.clock_offset_s)
         return refusal is None

@@ -1,4 +1,4 @@
-"""Which messages a vehicle sends by itself, and how often, by its own clock."""
+"""Messages that a vehicle sends by itself, and their intervals by its own clock."""
 
 import math
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.frames import Message
 from simulation.vehicle_protocol.mode_numbers import SimulatedAutopilot
 
-# Seconds of simulated time. What MAVSDK, MAVProxy and a gateway need without asking.
+# Seconds of simulated time; needed by MAVSDK, MAVProxy and a gateway without a request.
 INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_SYS_STATUS: 1.0,
     mavlink.MAVLINK_MSG_ID_BATTERY_STATUS: 2.0,
@@ -29,11 +29,11 @@ WIND_INTERVAL_S = 2.0
 WIND = {SimulatedAutopilot.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, SimulatedAutopilot.ARDUPILOT: mavlink.MAVLINK_MSG_ID_WIND}
 MIN_DURATION_S = 0.04  # a step of the flight
 MAX_DURATION_S = 3_600.0
-GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # multiples of it lie evenly, however many there are
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0  # its multiples are evenly distributed, however many there are
 
 
 class Streams:
-    """Intervals by message. `phase` (any number) spreads the messages of one vehicle, and those of many, over their intervals."""
+    """Intervals by message. `phase` (any number) spreads messages of one vehicle, and of many, over their intervals."""
 
     def __init__(self, autopilot_type: SimulatedAutopilot, phase: float = 0.0) -> None:
         self._usual = {**INTERVALS_S, WIND[autopilot_type]: WIND_INTERVAL_S}
@@ -48,7 +48,7 @@ class Streams:
         return self._intervals_s
 
     def due(self, at_s: float) -> list[int]:
-        """Messages to be sent at this simulated time. What was missed is not made up for."""
+        """Return the messages to send at this simulated time. Missed ones are not sent later."""
         if at_s < self._next_s:
             return []
         found = [message for message, due_s in self._due_s.items() if due_s <= at_s]
@@ -59,12 +59,12 @@ class Streams:
         return found
 
     def send_now(self, message: int) -> None:
-        """At the next occasion, if it is sent at all."""
+        """Send the message at the next opportunity, if it has an interval."""
         if message in self._due_s:
             self._due_s[message] = self._next_s = -math.inf
 
     def set_interval(self, message: int, interval_us: float | None) -> bool:
-        """As SET_MESSAGE_INTERVAL has it: below 0 is never, 0 as usual. Whether it can be had; None cannot."""
+        """Set an interval as in SET_MESSAGE_INTERVAL: negative is never, 0 the default. Returns False for None."""
         if interval_us is None:
             return False
         if interval_us < 0:
@@ -78,16 +78,16 @@ class Streams:
         return True
 
     def interval_us(self, message: int) -> int:
-        """As MESSAGE_INTERVAL has it."""
+        """Return the interval as in MESSAGE_INTERVAL."""
         return round(self._intervals_s[message] * 1e6) if message in self._intervals_s else -1
 
 
-AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1, the one component there is
+AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1, the only component
 
 
 @dataclass(frozen=True, slots=True)
 class Station:
-    """A component of another system, and the link by which it was heard: two stations may bear the same ids."""
+    """A component of another system, and its link: two stations may have the same ids."""
 
     system: int
     component: int
@@ -95,18 +95,18 @@ class Station:
 
     @property
     def target(self) -> tuple[int, int]:
-        """As messages name whom they are for."""
+        """Return its system and component as a message target."""
         return (self.system, self.component)
 
 
 @dataclass(frozen=True, slots=True)
 class Outgoing:
-    """`to` is None for what everybody is told."""
+    """A message to send. `to` is None for all stations."""
 
     message: Message
     to: Station | None = None
 
 
 def is_for(message: Any, system: int) -> bool:
-    """Whether a vehicle with this system id has to do with it: 0 names all, a message without a target is for all."""
+    """Return whether a message is for this system id: 0 addresses all, and a message without a target is for all."""
     return getattr(message, "target_system", 0) in (0, system) and getattr(message, "target_component", 0) in (0, AUTOPILOT)

@@ -1,4 +1,4 @@
-"""What the MAVLink side needs of a UAV; SimulatedUav is one."""
+"""The interface of a UAV for the MAVLink side, implemented by SimulatedUav."""
 
 from collections.abc import Iterable, Sequence
 from typing import Protocol
@@ -11,7 +11,7 @@ from simulation.flight.states import FlightMode, Outcome, RallyPoint, SimulatedS
 
 
 class Vehicle(Protocol):
-    """Orders are carried out or refused at once; `state` and the events show the rest. Items count from 0 without home."""
+    """Orders are accepted or refused at once; `state` and the events show their effect. Items count from 0 without home."""
 
     settings: Settings
     items: tuple[MissionItem, ...]

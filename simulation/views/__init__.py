@@ -1,1 +1,1 @@
-"""Doors of simulation to the API."""
+"""API views of rehearsals and simulations."""

@@ -1,4 +1,4 @@
-"""Which simulated airframes there are, which one flies for a type of UAV, and whether approval asks for a rehearsal."""
+"""Simulated airframes, the airframe of a UAV type, and the rehearsal rule of approvals."""
 
 from django.db import transaction
 from django.shortcuts import get_object_or_404
@@ -26,11 +26,11 @@ from workspace.models import User
 
 
 class NoSuchAirframe(ValueError):
-    """There is no airframe of that code."""
+    """There is no airframe with this code."""
 
 
 def choose_airframe(*, uav_type: UavType, airframe: str | None, actor: User) -> None:
-    """None: whichever is nearest. Raises NoSuchAirframe."""
+    """Choose the airframe of a type; None: the nearest. Raises NoSuchAirframe."""
     if airframe is not None and airframe not in AIRFRAMES:
         raise NoSuchAirframe(airframe)
     with transaction.atomic():

@@ -1,4 +1,4 @@
-"""Demo missions and UAVs: what there is of them, made, removed."""
+"""Demo missions and UAVs: state, creation and removal."""
 
 from django.db import transaction
 from django.utils.translation import gettext as _

@@ -1,4 +1,4 @@
-"""Rehearsals of missions: start, look, follow, cancel."""
+"""Rehearsals of missions: start, list, detail, track and cancel."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -37,12 +37,12 @@ from workspace.tasks import send_job_on_commit
 
 
 def scenarios_of(asked: Sequence[Any], planned: Conditions) -> list[WeatherScenario]:
-    """Names and own figures, given the conditions that were planned with. Raises ApiProblem."""
+    """Return the scenarios of names and own values, given the planned conditions. Raises ApiProblem."""
     return [scenario_of(entry, planned, f"conditions.{number}") for number, entry in enumerate(asked)]
 
 
 def scenario_of(entry: Any, planned: Conditions, place: str = "conditions") -> WeatherScenario:
-    """Raises ApiProblem, with `place` as where the fault stands."""
+    """Return one scenario. Raises ApiProblem with `place` as the place of the fault."""
     try:
         return named_scenario(Named(entry), planned) if isinstance(entry, str) else own_scenario(entry, planned)
     except InvalidConditions as error:
@@ -164,7 +164,7 @@ def rehearsal_or_404(user: User, mission_id: UUID, rehearsal_id: UUID) -> Rehear
 
 
 def _known(mission: Mission) -> dict[str, Any]:
-    """What a rehearsal is compared with: the present plan and the present ground."""
+    """Return what a rehearsal is compared with: the present plan and ground revision."""
     try:
         content: str | None = plan_to_fly(mission).content_sha256
     except Refused:

@@ -1,4 +1,4 @@
-"""Simulated UAVs in real time: those of missions and those of the pool, started, changed in flight, ended."""
+"""Simulated UAVs in real time, of missions and of the pool: start, change in flight, end."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""Flies simulated UAVs that speak MAVLink, until it is told to stop. Needs no database."""
+"""Flies simulated UAVs with MAVLink until it is stopped. Needs no database."""
 
 import gc
 import json
@@ -80,7 +80,7 @@ class Command(BaseCommand):
         self.stdout.flush()
         if options["orders"]:
             threading.Thread(target=self._take_orders, args=(fleet,), daemon=True).start()
-        gc.freeze()  # what there is by now stays: looking through it again and again would make steps late
+        gc.freeze()  # existing objects stay: collecting them again and again would delay steps
         seconds = options["seconds"]
         uav = fleet.uavs[0].uav
         report = fleet.run(lambda: seconds is not None and uav.now_s >= seconds)
@@ -98,7 +98,7 @@ class Command(BaseCommand):
 
 
 def _launches(options: dict[str, Any]) -> list[Launch]:
-    """Raises WrongAddress, WrongOrder, and ValueError in words."""
+    """Return the launches. Raises InvalidStationAddress, WrongOrder, and ValueError with a message."""
     places = [_place(text) for text in options["at"]]
     if options["count"] != 1:
         if len(places) != 1:
@@ -139,7 +139,7 @@ def _place(text: str) -> LonLat:
 
 
 def _keys(path: Path | None) -> dict[int, bytes]:
-    """What is wrong with the file is told without what it says."""
+    """Return the keys by system id. Error messages do not include the file's content."""
     if path is None:
         return {}
     try:

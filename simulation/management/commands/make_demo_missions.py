@@ -1,4 +1,4 @@
-"""manage.py make_demo_missions: ask for the demo missions; a worker makes them once the site is up."""
+"""manage.py make_demo_missions: requests the demo missions; a worker makes them once the site is up."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Runs a simulator until it is told to stop (SIGTERM)."""
+"""Runs a simulator until it is stopped by SIGTERM."""
 
 import os
 import signal
@@ -15,11 +15,11 @@ from simulation.simulator.process import Simulator, figures_of
 from simulation.vehicle_endpoint.radio import InvalidStationAddress
 
 ENDS_WITHIN_S = 9.5
-SWITCH_S = 0.001  # between threads: a step of ten times real time is due every 4 ms
+SWITCH_S = 0.001  # between threads: at ten times real time a step is due every 4 ms
 
 
 class Command(BaseCommand):
-    requires_system_checks = ()  # set-up has made them; it starts again at once when it has been killed
+    requires_system_checks = ()  # checked at set-up; a killed process restarts without delay
     help = (
         "Run a simulator: it flies simulated UAVs in real time, those of missions through the gateway and those of the pool at ports of "
         "their own. Any number can run at once; each simulation is flown by one of them, and begins anew at another when that is gone."
@@ -38,7 +38,7 @@ class Command(BaseCommand):
 
         def stop(*_: Any) -> None:
             simulator.stop()
-            last_resort = threading.Timer(ENDS_WITHIN_S, os._exit, [1])  # a database that neither answers nor refuses holds up nothing
+            last_resort = threading.Timer(ENDS_WITHIN_S, os._exit, [1])  # exits even if the database does not respond
             last_resort.daemon = True
             last_resort.start()
 

@@ -1,4 +1,4 @@
-"""Fly a route of a file in simulation, without database, queue and sockets."""
+"""Flies the route of a file in simulation, without database, queue and sockets."""
 
 import argparse
 import json
@@ -12,7 +12,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import ImpossibleWeather, Weather
 from simulation.flight.route_flight import InvalidRoute, fly_route, read_route
 
-WIND_AGL_M = 10.0  # one layer is the wind at all heights
+WIND_AGL_M = 10.0  # a single layer applies at all heights
 MAX_BYTES = 10_000_000
 
 
