@@ -12,7 +12,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-Message = Any  # pymavlink's message classes are made at run time
+Message = Any  # pymavlink creates its message classes at run time
 
 MARKER_V1, MARKER_V2 = 0xFE, 0xFD
 HEADER_V1, HEADER_V2 = 6, 10  # bytes, with the marker

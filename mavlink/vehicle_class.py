@@ -59,7 +59,7 @@ def class_of(mav_type: int | None) -> VehicleClass:
 
 
 def type_name(mav_type: int) -> str:
-    """ "fixed wing"."""
+    """Return the name of a MAV_TYPE, as "fixed wing"."""
     entry = mavlink.enums["MAV_TYPE"].get(mav_type)
     return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {mav_type}"
 

@@ -10,7 +10,7 @@ class SimulationConfig(AppConfig):
 
     def ready(self) -> None:
         label(self.get_models())
-        from missions.hooks.approval import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.hooks.approval import register_check  # noqa: PLC0415 (models are loaded by then)
         from missions.hooks.events import register_sources  # noqa: PLC0415
 
         register_check("simulation.services.rehearsals.reasons_without_rehearsal")

@@ -10,7 +10,7 @@ class TelemetryConfig(AppConfig):
 
     def ready(self) -> None:
         label(self.get_models())
-        from missions.hooks.approval import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
+        from missions.hooks.approval import register_check, register_start_check  # noqa: PLC0415 (models are loaded by then)
         from missions.hooks.events import register_sources  # noqa: PLC0415
         from missions.hooks.flights import register_flight_teller  # noqa: PLC0415
         from missions.hooks.in_air import (  # noqa: PLC0415

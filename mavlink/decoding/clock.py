@@ -46,7 +46,7 @@ class VehicleClock:
 
     def measured_s(self, boot_s: float) -> float:
         """Return the server's time of a vehicle time. Only valid after the first `receive`."""
-        assert self.offset_s is not None  # noqa: S101 - as the docstring asks
+        assert self.offset_s is not None  # noqa: S101 - precondition
         return self.offset_s + boot_s / self.rate
 
     def lateness_s(self, boot_s: float, now_s: float) -> float:

@@ -46,7 +46,7 @@ VALUES = {value: Reason(f"value_{value}") for value in ("missing", "nothing", "y
 
 class ReadbackMatch(StrEnum):
     NOTHING = "nothing"
-    APPROVED = "approved"  # the list that is wanted
+    APPROVED = "approved"  # the wanted list
     KNOWN = "known"  # another complete approved list
     MIXED = "mixed"  # parts of approved lists
     FOREIGN = "foreign"  # includes an item of none of these
@@ -230,7 +230,7 @@ def _is_same_altitude(wanted_m: float, held_m: float, autopilot_type: AutopilotT
         return True
     if autopilot_type is not AutopilotType.ARDUPILOT or not (math.isfinite(wanted_m) and math.isfinite(held_m)):
         return False
-    rounding_m = max(abs(wanted_m), 1.0) * 2.0**-22  # of two figures of 32 bits
+    rounding_m = max(abs(wanted_m), 1.0) * 2.0**-22  # of two 32-bit values
     lost_m = abs(wanted_m) - abs(held_m)
     return wanted_m * held_m >= 0 and -rounding_m <= lost_m < CENTIMETRE_M + rounding_m
 

@@ -52,13 +52,13 @@ def unknown_items(items: Sequence[MissionItem], autopilot_type: AutopilotType, f
 
 
 def firmware_words(autopilot_type: AutopilotType | None, firmware: Version | None) -> str:
-    """ "ArduPilot 4.6.0"."""
+    """Return name and version, as "ArduPilot 4.6.0"; the name only if the version is unknown."""
     name = "The autopilot" if autopilot_type is None else NAMES.get(autopilot_type, "The autopilot")
     return name if firmware is None else f"{name} {'.'.join(map(str, firmware))}"
 
 
 def command_words(command: int) -> str:
-    """ "DO_SET_ROI (201)"."""
+    """Return name and number, as "DO_SET_ROI (201)"."""
     entry = mavlink.enums["MAV_CMD"].get(command)
     return f"command {command}" if entry is None else f"{entry.name.removeprefix('MAV_CMD_')} ({command})"
 

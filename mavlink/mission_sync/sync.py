@@ -266,7 +266,7 @@ class MissionSync:
             self._reason = outcome.code
         return TransferState(outcome.state)
 
-    # after a failure
+    # failure
 
     def _give_up(self) -> Course[SyncOutcome]:
         self._is_restoring = True

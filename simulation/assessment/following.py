@@ -21,7 +21,7 @@ class Error:
 class Following:
     across: Error
     height: Error
-    worst_across_waypoint: int | None  # to which it was flying then
+    worst_across_waypoint: int | None  # the waypoint flown to at that moment
     worst_height_waypoint: int | None
 
 

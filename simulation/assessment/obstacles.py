@@ -83,7 +83,7 @@ def nearest_standing(flown: FlownFlight, standing: Standing, *, column_m: float)
 def in_columns(flown: FlownFlight, column_m: float) -> BoolArray:
     """Return (n,) whether each moment is above the flight's take-off or landing place."""
     track = flown.track
-    assert track is not None  # noqa: S101 - callers look
+    assert track is not None  # noqa: S101 - checked by callers
     ends = [np.array(flown.flight.take_off.position)]
     if track.is_coming_down.any():
         ends.append(track.position[np.flatnonzero(track.is_coming_down)[-1]])

@@ -176,7 +176,7 @@ class Body:
         self.motion: Motion = self.plant.motion
         self._before: Motion = self.motion
 
-    # --- where it is ---------------------------------------------------------------------------------------------------------------
+    # --- position ----------------------------------------------------------------------------------------------------------------------
 
     @property
     def position(self) -> LonLat:
@@ -204,7 +204,7 @@ class Body:
         east_m = (position.lon - self.home.lon) * self.frame.metres_per_degree_east
         return east_m, (position.lat - self.home.lat) * self.frame.metres_per_degree_north
 
-    # --- what happens to it --------------------------------------------------------------------------------------------------------
+    # --- motion ------------------------------------------------------------------------------------------------------------------------
 
     def navigate(self, *, is_gps_lost: bool) -> None:
         self._navigation.step(GUIDANCE_STEP_S, is_gps_lost=is_gps_lost)
@@ -250,7 +250,7 @@ class Body:
         """Return its speed before the legs absorbed it."""
         return math.hypot(self._before.east_mps, self._before.north_mps, self._before.down_mps)
 
-    # --- its battery ---------------------------------------------------------------------------------------------------------------
+    # --- battery -----------------------------------------------------------------------------------------------------------------------
 
     @property
     def used_wh(self) -> float:

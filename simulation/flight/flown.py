@@ -10,7 +10,7 @@ from simulation.flight.states import FlightMode, MissionItemState, OrderRefused,
 from simulation.flight.uav import SimulatedUav
 
 MAX_DURATION_S = 4 * 3_600.0  # longer than any battery lasts
-SETTLES_S = 2.0  # after the last item, until it hovers there
+SETTLES_S = 2.0  # after the last item, until it hovers
 
 
 class Ending(StrEnum):

@@ -134,7 +134,7 @@ class MissionManoeuvre:
             self._pass(context, mark)
         if not context.is_there(STOPPED_WITHIN_M) or self.index == context.faults.stuck_item:
             return False
-        assert self._run_end is not None  # noqa: S101 - asked by the caller
+        assert self._run_end is not None  # noqa: S101 - checked by the caller
         self._pass(context, self._run_end - 1)
         self._run_end = None
         order = self.orders[self.index]

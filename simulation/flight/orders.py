@@ -83,14 +83,14 @@ class SetSpeed:
 
 @dataclass(frozen=True, slots=True)
 class LookAt:
-    """None: along the course again."""
+    """Look at a place; None: along the course again."""
 
     place: OrderPlace | None
 
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """To a heading, or by an angle."""
+    """Turn to a heading, or by an angle."""
 
     angle_deg: float
     is_relative: bool

@@ -41,7 +41,7 @@ class BlockedGround:
         return south_m + north * (high[column] + east * (high[column + 1] - high[column]) - south_m)
 
     def _read(self, block_column: int, block_row: int) -> list[list[float]]:
-        assert self._heights_m is not None  # noqa: S101 - callers look
+        assert self._heights_m is not None  # noqa: S101 - checked by callers
         lon = (block_column * BLOCK + np.arange(BLOCK + 1)) * STEP_DEG
         lat = (block_row * BLOCK + np.arange(BLOCK + 1)) * STEP_DEG
         places = np.column_stack([np.tile(lon, BLOCK + 1), lat.repeat(BLOCK + 1)])

@@ -7,11 +7,11 @@ from typing import Any
 
 from planning.energy.conditions import MAX_WIND_MPS, Conditions, InvalidConditions, WindLayer, conditions_from_json, conditions_to_json
 
-FRESH_BREEZE_MPS = 8.0  # Beaufort 5 begins there (WMO-No. 306, code table 1100)
+FRESH_BREEZE_MPS = 8.0  # the lower limit of Beaufort 5 (WMO-No. 306, code table 1100)
 STRONGER = 1.5  # factor on the planned wind, if that gives more
 STRONG_GUSTS_MPS = 2.0
 WIND_TURBULENT_FROM_MPS = 1.0  # no turbulence below it
-WORN_BATTERY_PERCENT = 80.0  # of its rated energy, at which batteries are commonly taken out of service
+WORN_BATTERY_PERCENT = 80.0  # of the rated energy, at which batteries are commonly replaced
 PREVAILING_FROM_DEG = 270.0
 LOW_AGL_M = 10.0  # 33 feet: the height of reported winds
 MAX_NAME_LENGTH = 60

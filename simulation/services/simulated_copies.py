@@ -76,7 +76,7 @@ def _copy_in_use(mission: Mission) -> Mission | None:
 def _bring_back_twins(copy: Mission, actor: User) -> None:
     """Reactivate the twins of a copy whose simulation ended before it was sent to them."""
     for place in copy.mission_uavs.filter(uav__state=UavState.RETIRED).select_related("uav"):
-        assert place.uav is not None  # noqa: S101 - of the filter
+        assert place.uav is not None  # noqa: S101 - by the filter
         change_uav(uav=place.uav, actor=actor, position=None, values={"state": UavState.ACTIVE})
 
 
@@ -110,7 +110,7 @@ def _why_not(place: MissionUav) -> RefusalReason | None:
 def _twin(place: MissionUav, actor: User) -> Uav:
     """Return the twin of a mission's UAV, with that UAV's present data, at its take-off in the mission."""
     uav = place.uav
-    assert uav is not None  # noqa: S101 - _why_not looks
+    assert uav is not None  # noqa: S101 - checked by _why_not
     values = {name: getattr(uav, name) for name in FIGURES} | {"battery_percent": 100.0, "state": UavState.ACTIVE}
     position = LonLat(*place.start.coords[:2])
     twin = Uav.objects.filter(twin_of=uav).first()
@@ -121,7 +121,7 @@ def _twin(place: MissionUav, actor: User) -> Uav:
 
 
 def _free_name(uav: Uav) -> str:
-    """ "Inspector 1 (simulated)", then "Inspector 1 (simulated 2)"."""
+    """Return an unused name: "Inspector 1 (simulated)", then "Inspector 1 (simulated 2)"."""
     stem = uav.name[:TWIN_NAME_LENGTH]
     taken = set(Uav.objects.filter(organisation=uav.organisation_id, name__startswith=stem).values_list("name", flat=True))
     name, number = _("{name} (simulated)").format(name=stem), 2

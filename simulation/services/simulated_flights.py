@@ -38,7 +38,7 @@ def start_simulated_flights(
 ) -> Simulation:
     """Start the simulation of a mission loaded by selectors.mission_of_organisation.
 
-    Raises QuotaReached, and Refused with every reason: real UAVs are never replaced, whoever requests it.
+    Raises QuotaReached, and Refused with every reason: real UAVs are never replaced, for any user.
     """
     if mission.state not in FLOWN:
         raise refuse("not_approved", _("Only an approved mission is flown in simulation. Approve it first, or rehearse it."))
@@ -59,7 +59,7 @@ def start_simulated_flights(
         )
         for route, stand_in in zip(plan.routes, plan.stand_ins, strict=True):
             uav = places[route.uav].uav
-            assert uav is not None  # noqa: S101 - _why_not looks
+            assert uav is not None  # noqa: S101 - checked by _why_not
             _vehicle(simulation, route, stand_in, reachable(uav, actor), scenario, autopilot_type).save()
         note_start(simulation, actor, speed=speed, uavs=len(plan.routes), faults=faults)
     return simulation

@@ -35,4 +35,4 @@ def options_of_settings(*, name: str | None = None, most_uavs: int | None = None
 def gateway_address(text: str) -> Address:
     """Return the address to connect to; a gateway on all interfaces is reached on this host. Raises InvalidStationAddress."""
     host, port = address_of(text)
-    return {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host), port  # noqa: S104 - told apart, not bound
+    return {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host), port  # noqa: S104 - compared, not bound

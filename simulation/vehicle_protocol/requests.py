@@ -62,7 +62,7 @@ def refused(message: Any, station: Station) -> list[Outgoing]:
 
 
 def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoing]:
-    """Return the answer to TIMESYNC. now_s: of a monotonic clock. A message with a remote time is an answer itself."""
+    """Return the answer to TIMESYNC. now_s: of a monotonic clock. A message with tc1 set is itself an answer."""
     if message.tc1 != 0:
         return []
     now_ns = min(int(now_s * 1e9), _MAX_NS)

@@ -113,7 +113,7 @@ class Moving:
     is_twin: bool = False
 
     def heights_at(self, steps: int) -> FloatArray:
-        """Return the height at each of so many steps (steps,); NaN: unknown."""
+        """Return the height at each of the first steps (steps,); NaN: unknown."""
         if self.height_m is None:
             return np.full(steps, math.nan)
         if self.heights_m is not None:
@@ -188,7 +188,7 @@ def moving_of(inputs: DetectorInput, within_s: float) -> Moving | None:
 
 
 def conflicts(moving: Sequence[Moving], within_s: float) -> dict[int, list[Conflict]]:
-    """Return the conflicts within so many seconds, by the UAV with the smaller key of each pair. In a crowd only the nearest are kept.
+    """Return the conflicts within a time, by the UAV with the smaller key of each pair. In a crowd only the nearest are kept.
 
     A pair has one conflict for each two of their paths that come near, the nearest first.
     """
@@ -206,7 +206,7 @@ def conflicts(moving: Sequence[Moving], within_s: float) -> dict[int, list[Confl
     near = (group[ones] == group[others]) & (np.abs(rate[ones] - rate[others]) <= SAME_RATE * np.maximum(rate[ones], rate[others]))
     twin = np.array([one.is_twin for one in moving])
     near &= (key[ones] != key[others]) & (twin[ones] == twin[others])
-    near &= ~(_least_apart_m(heights, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
+    near &= ~(_least_apart_m(heights, ones, others) > NEAR_HEIGHT_M)  # NaN: unknown
     ones, others = ones[near], others[near]
     lateral_m, height_m, in_s = _closest(way[ones] - way[others], heights[ones] - heights[others])
     met = Counter[int]()

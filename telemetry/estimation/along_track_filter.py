@@ -20,7 +20,7 @@ PLACES = 12
 SPREAD = np.linspace(-2.8, 2.8, 15)
 SPREAD_WEIGHT = np.exp(-0.5 * SPREAD**2) / np.exp(-0.5 * SPREAD**2).sum()
 GRID = 241
-# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/telemetry/estimator.py.
+# Calibrated on the truth generator, with seeds that no test uses; see benchmarks/telemetry/estimator.py.
 SPEED_FACTOR_SD = 0.06  # before its flight
 SPEED_FACTOR_DRIFT = 0.008  # per second
 SUREST_SD = 0.02  # lower bound for the speed factor, after any observation

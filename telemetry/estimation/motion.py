@@ -13,7 +13,7 @@ from telemetry.estimation.state_estimate import CHI2_95, StateEstimate, gate2_of
 
 FloatArray = NDArray[np.float64]
 
-# Calibrated on the truth generator, on seeds that no test uses; see benchmarks/telemetry/estimator.py.
+# Calibrated on the truth generator, with seeds that no test uses; see benchmarks/telemetry/estimator.py.
 ASIDE_S = 8.0  # decay time of an offset from its route
 TURNS_S = 1.6  # decay time of a velocity other than its route's
 OFF_ROUTE_M = 0.7  # standard deviation across the route, each way

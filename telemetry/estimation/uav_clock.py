@@ -15,7 +15,7 @@ RATES_KEPT = 32
 
 @dataclass(frozen=True, slots=True)
 class _Stretch:
-    """From `server_s` on, when its own clock showed `uav_s`."""
+    """A period with one rate, from `server_s` on, when the UAV's own clock showed `uav_s`."""
 
     server_s: float
     uav_s: float
@@ -34,7 +34,7 @@ class UavClock:
         return self._stretches[-1].rate
 
     def run_at(self, rate: float | None, from_s: float) -> None:
-        """From a moment of the server's clock on. None, and what cannot be: as the server's."""
+        """Set the rate from a moment of the server's clock on. None and implausible rates count as the server's."""
         rate = plausible_rate(rate)
         if abs(rate - self.rate) <= SAME_RATE * self.rate:
             return

@@ -47,7 +47,7 @@ def _incident(one: IncidentRow, position: LonLat) -> str:
 
 def _target(row: ResultRow) -> str:
     position = row.position
-    assert position is not None  # noqa: S101 - the caller asks for it
+    assert position is not None  # noqa: S101 - checked by the caller
     words = ". ".join(part for part in (row.line, row.result_words, row.reason, row.uav) if part)
     when = "" if row.reached_at is None else time_text(row.reached_at)
     return _mark(row.asset, f"{position.lon:.7f},{position.lat:.7f}", words, when, row.result)

@@ -1,4 +1,4 @@
-"""Text in XML."""
+"""Text of XML elements."""
 
 import re
 from xml.sax.saxutils import escape

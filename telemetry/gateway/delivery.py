@@ -217,7 +217,7 @@ class Delivery:
         return await reason_not_to_load(task.load, self.session, is_wanted=lambda: self.is_ours)
 
     async def _order(self, task: DeliveryTask) -> None:
-        assert task.order is not None  # noqa: S101 - of two only one is None
+        assert task.order is not None  # noqa: S101 - exactly one of the two is None
         order, parameters = task.order, task.parameters
         if task.onboard is not None and not await self._is_onboard(task.onboard, task.before):
             return
@@ -312,7 +312,7 @@ class Delivery:
             await self._end(note_failed, outcome.code or "failed", outcome.why or (Reason("not_done"),))
 
     async def _load(self, task: DeliveryTask) -> None:
-        assert task.load is not None  # noqa: S101 - the caller has looked
+        assert task.load is not None  # noqa: S101 - checked by the caller
         if not await self._surely(begin_loading, self.carried):
             await self._end(note_released)
             return

@@ -322,7 +322,7 @@ class Session:
         return signing and signing | {"sent": self._writer.last_timestamp}
 
     def _answer_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
-        """Answer a vehicle that has the key but not the time by a signed heartbeat, which sets its clock, whoever else sends its frames."""
+        """Answer a vehicle that has the key but not the time by a signed heartbeat, which sets its clock, regardless of other senders."""
         self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, HEARTBEAT_AGAIN_S)}
         if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
             self._greeted[peer.name] = now_s

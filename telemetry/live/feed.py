@@ -15,7 +15,7 @@ from workspace.live.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
-POLL_INTERVAL_S = 1.0  # without a notification
+POLL_INTERVAL_S = 1.0  # poll interval without a notification
 POLL_PAUSE_S = 0.1  # between two polls, however many notifications arrive
 
 SnapshotReader = Callable[[int, Collection[UUID], Collection[str], LiveSnapshot], Awaitable[LiveSnapshot]]
@@ -72,7 +72,7 @@ class Feed:
             logger.debug("live pages cannot be told: %r", error)
             self._waiting |= newcomers & self.readers
             return
-        except Exception:  # one object that cannot be shown must not stop the rest for good
+        except Exception:  # one object that cannot be shown must not stop the others
             logger.exception("live pages of organisation %s cannot be told", self.organisation_id)
             self._waiting |= newcomers & self.readers
             return

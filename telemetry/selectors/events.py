@@ -31,7 +31,7 @@ JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry 
 JOIN telemetry_vehicletext said ON said.uav_id = place.uav_id AND said.received_at >= mission.started_at
     AND said.received_at <= coalesce(mission.ended_at + interval '2 minutes', now())
 WHERE mission.id = ANY(%(missions)s) AND said.severity <= {WARNING_SEVERITY} AND said.text ~* '\mcrash'
-"""  # noqa: S608 (a number of ours)
+"""  # noqa: S608 (a constant number)
 
 
 def _read_alerts(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:

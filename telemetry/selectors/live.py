@@ -118,7 +118,7 @@ SELECT 'offers', offer.id::text, hashtextextended(ROW(offer.state, offer.code, o
 FROM asked JOIN missions_mission mission ON mission.organisation_id = asked.organisation_id AND mission.deleted_at IS NULL
     JOIN missions_replanoffer offer ON offer.mission_id = mission.id
 WHERE offer.state IN ('computing', 'open') OR coalesce(offer.decided_at, offer.created_at) > now() - interval '10 minutes'
-"""  # noqa: S608 - a number of ours
+"""  # noqa: S608 - a constant number
 
 
 def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, ShownObject]:

@@ -38,7 +38,7 @@ class PresentPosition:
         return max(self.along_m, self.across_m)
 
     def places(self) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
-        """Return the position, and the ends of both axes of the ellipse where it has any: (n, 2), lon, lat [deg]."""
+        """Return the position, and the ends of both axes of the ellipse if it has one: (n, 2), lon, lat [deg]."""
         middle = np.array([self.position], dtype=np.float64)
         if self.uncertainty_m <= 0.0:
             return middle

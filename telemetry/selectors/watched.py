@@ -64,7 +64,7 @@ WHERE mission.deleted_at IS NULL AND (mission.state = ANY(%(on_its_way)s)
 ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, mission.state = ANY(%(over)s),
     sent.mission_id IS NOT DISTINCT FROM mission.id DESC, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
     mission.updated_at DESC
-"""  # noqa: S608 (texts of ours)
+"""  # noqa: S608 (constants)
 _BOOT_MS = "CASE WHEN stream.link = 'mavlink' THEN record.sequence END"  # other links count something else
 _VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
 _STREAMS = "JOIN telemetry_telemetrystream stream ON stream.id = record.stream_id"
@@ -72,7 +72,7 @@ _NEW = f"""
 SELECT record.id, record.uav_id, measured_at, received_at, stream_id, {_BOOT_MS}, {_VALUES}
 FROM telemetry_telemetryrecord record {_STREAMS}
 WHERE record.id > %s AND record.id <> ALL(%s) AND record.uav_id = ANY(%s) AND NOT is_from_future ORDER BY record.id
-"""  # noqa: S608 (names of columns, all from here)
+"""  # noqa: S608 (column names, all from here)
 _NEWEST = f"""
 SELECT record.id, record.uav_id, measured_at, received_at, stream_id, {_BOOT_MS}, {_VALUES}
 FROM unnest(%s::bigint[]) AS uav(id), LATERAL (

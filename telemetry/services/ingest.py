@@ -100,7 +100,7 @@ def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set
             WHERE place.uav_id = ANY(%s) AND mission.state = ANY(%s) AND mission.deleted_at IS NULL
             ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, sent.mission_id IS NOT DISTINCT FROM mission.id DESC,
                 array_position(%s, mission.state::text), mission.updated_at DESC
-            """,  # noqa: S608 - a text of ours
+            """,  # noqa: S608 - a constant
             [list(known), list(FLYING), list(FLYING)],
         )
         known.update(dict(cursor.fetchall()))
@@ -204,7 +204,7 @@ FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS r({",
 ORDER BY number
 ON CONFLICT (stream_id, sequence) DO NOTHING
 RETURNING stream_id, sequence
-"""  # noqa: S608 (names of columns, all from here)
+"""  # noqa: S608 (column names, all from here)
 
 
 def _insert(rows: Sequence[_Row]) -> list[_Row]:

@@ -39,7 +39,7 @@ ON CONFLICT (uav_id) DO UPDATE SET version = watch.version + 1, updated_at = sta
     measured = coalesce(watch.measured, '{{}}')
         || (SELECT jsonb_object_agg(key, value) FROM jsonb_each(excluded.measured) WHERE {_IS_NEWER})
 WHERE EXISTS (SELECT FROM jsonb_each(excluded.measured) WHERE {_IS_NEWER})
-"""  # noqa: S608 (nothing is put in but the line above)
+"""  # noqa: S608 (only inserts the constant above)
 
 
 def note_latest(reports: Iterable[LatestReport]) -> None:

@@ -42,7 +42,7 @@ MORE_WIND_MPS = 3.0  # above the planned wind: warning
 AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # from the planned take-off: up to the first OK, above the second no start
 HOME_AT_M = 15.0  # from the planned take-off, up to which it is OK; a start reads the home again and refuses one too far away
 FENCE_PARAMETERS = {ARDUPILOT: "FENCE_ENABLE", PX4: "GF_ACTION"}  # parameters that enable a fence
-Reported = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
+Reported = Mapping[str, Mapping[str, Any]]  # groups of the newest reported values; see services/latest.py
 
 
 class CheckState(StrEnum):

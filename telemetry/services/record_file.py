@@ -44,7 +44,7 @@ _ESTIMATED = (
 
 def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
     """Return the file, positioned at its beginning; deleted when closed."""
-    whole = tempfile.SpooledTemporaryFile(max_size=IN_MEMORY_BYTES)  # noqa: SIM115 - whoever sends it closes it
+    whole = tempfile.SpooledTemporaryFile(max_size=IN_MEMORY_BYTES)  # noqa: SIM115 - closed by the sender
     records = records_that_match(organisation, LogFilter(mission_id=mission.pk))
     approval = approval_on_record(mission)
     with zipfile.ZipFile(whole, "w", zipfile.ZIP_DEFLATED) as packed:

@@ -54,7 +54,7 @@ INSERT INTO telemetry_positionestimate (position, {", ".join(_STORED_AS_THEY_ARE
 SELECT ST_SetSRID(ST_MakePoint(longitude_deg, latitude_deg), 4326), {", ".join(_STORED_AS_THEY_ARE)}
 FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS made({", ".join(_COLUMNS)})
 WHERE uav_id IN (SELECT id FROM missions_uav) ON CONFLICT (uav_id, estimated_for) DO NOTHING
-"""  # noqa: S608 (names of columns, all from here)
+"""  # noqa: S608 (column names, all from here)
 
 
 def estimate_to_json(estimate: Estimate) -> dict[str, Any]:

@@ -82,7 +82,7 @@ _ACCESS = f"""
     SELECT credential.id, credential.last_used_at, uav.id, uav.organisation_id, ST_X(uav.location), ST_Y(uav.location)
     FROM missions_uavcredential AS credential JOIN missions_uav AS uav ON uav.id = credential.uav_id
     WHERE credential.token_sha256 = %s AND credential.kind = '{CredentialKind.LINK_TOKEN.value}' AND credential.revoked_at IS NULL
-        AND uav.state <> '{UavState.RETIRED.value}'"""  # noqa: S608 - of constants
+        AND uav.state <> '{UavState.RETIRED.value}'"""  # noqa: S608 - constants
 
 
 def _access_of(token: bytes) -> UavAccess | None:
@@ -97,7 +97,7 @@ def _access_of(token: bytes) -> UavAccess | None:
 
 
 class UavTokenScheme(OpenApiAuthenticationExtension):
-    """Describes the UAV's token in the OpenAPI document."""
+    """OpenAPI description of the UAV's token."""
 
     target_class = UavTokenAuthentication
     name = "uavToken"

@@ -55,7 +55,7 @@ def given_json(*, uav_id: int, upload: UavCommand | None, load: ApprovedLoad | N
 
 
 def _route(upload: UavCommand, load: ApprovedLoad) -> dict[str, Any]:
-    assert upload.approval is not None  # noqa: S101 - the database keeps it
+    assert upload.approval is not None  # noqa: S101 - a database constraint
     document = upload.approval.document
     content = load.content
     assert content is not None  # noqa: S101 - a UAV with a companion computer

@@ -121,7 +121,7 @@ class Watched:
 
     flight: WatchedFlight
     tracker: Tracker
-    newest: Report | None = None  # record
+    newest: Report | None = None  # the newest report that is a record
     has_learnt: bool = False
     judged_s: float = 0.0
     battery: dict[str, Any] | None = None  # forecast at the last poll

@@ -16,7 +16,7 @@ JUMPED = "The position of %(uav)s has jumped by %(metres)s m."
 FEW = "%(uav)s sees %(satellites)s satellites only."
 WEAK = "The position of %(uav)s is weak: its HDOP is %(hdop)s."
 # The autopilot's own reaction: ArduCopter's EKF failsafe (FS_EKF_ACTION 1, after 1 s above FS_EKF_THRESH); PX4's failsafe of a lost
-# position (Commander, blind descend), once EKF2 has been without aiding for EKF2_NOAID_TOUT.
+# position (Commander, blind descend), after EKF2_NOAID_TOUT without aiding of EKF2.
 OWN_ARDUPILOT = "ArduPilot usually lands by itself within seconds (FS_EKF_ACTION) and drifts with the wind."
 OWN_PX4 = "PX4 usually descends by itself 5 s after it lost its position (EKF2_NOAID_TOUT) and drifts with the wind."
 OWN_UNKNOWN = "What its autopilot does by itself is not known."

@@ -85,7 +85,7 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
 
 def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[int], now: datetime) -> set[int]:
     """Close them unless an estimator still monitors their UAVs; this process monitors those of `but`. Returns the organisations."""
-    is_away = Exists(Alert.objects.filter(uav=OuterRef("uav"), code=down.CODE, closed_at=None))  # none of its alerts closes
+    is_away = Exists(Alert.objects.filter(uav=OuterRef("uav"), code=down.CODE, closed_at=None))  # such a UAV's alerts stay open
     over = Alert.objects.filter(~is_away, closed_at=None, code__in=codes, mission__isnull=False)
     over = over.exclude(mission__state__in=WATCHED_STATES)
     over = over.exclude(uav__in=but).exclude(uav__watch__mission=F("mission"), uav__watch__lease_expires_at__gt=Now())

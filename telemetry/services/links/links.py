@@ -126,7 +126,7 @@ SET {", ".join(f"{name} = heard.{name}" for name in _COLUMNS if name not in _MAD
     home = ST_SetSRID(ST_MakePoint(home_longitude_deg, home_latitude_deg), 4326)
 FROM unnest({", ".join(f"%s::{kind}[]" for kind in _COLUMNS.values())}) AS heard({", ".join(_COLUMNS)})
 WHERE link.uav_id = heard.uav_id AND link.holder = %s
-"""  # noqa: S608 (names of columns, all from here)
+"""  # noqa: S608 (column names, all from here)
 
 
 def save_links(*, states: Sequence[LinkState], holder: str) -> None:

@@ -117,7 +117,7 @@ def _note_upload(command: UavCommand, reported: Acknowledgement, holding: dict[s
 
 
 def _hold(command: UavCommand, load: ApprovedLoad | None, *, is_known: bool = True) -> None:
-    """Store what the UAV holds. After a failed upload it is unknown, and the last reported state is kept."""
+    """Store what the UAV holds. After a failed upload it is unknown, and an open alert stays open."""
     if command.kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION}:
         return
     if load is not None or (is_known and command.kind == CommandKind.CLEAR_MISSION):

@@ -1,4 +1,4 @@
-"""What is below a UAV that would land at its position, according to the map data."""
+"""Map data below a UAV that would land at its position."""
 
 import math
 from dataclasses import dataclass

@@ -253,7 +253,7 @@ def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[ReturningUav, Time
 def _going_on(one: ReturningUav) -> TimedRoute:
     """Return its route by its present mode: returning, along its route, or holding."""
     received, present = one.received, one.received.present
-    assert present is not None  # noqa: S101 - asked by the caller
+    assert present is not None  # noqa: S101 - checked by the caller
     mode = mode_kind(received.mode)
     if mode is ModeKind.RETURN and one.straight is not None:
         return one.straight.after(0.0)
