@@ -16,7 +16,7 @@ export interface components {
          * @enum {string}
          */
         AboveEnum: "ground" | "sea" | "open";
-        /** @description Who is signed in, and what they prefer. What is stored and sent stays metric and UTC whatever they prefer. */
+        /** @description The authenticated user and their preferences. Stored and sent values are always metric and UTC. */
         Account: {
             readonly id: number;
             /** @description Required. 150 characters or fewer. Letters, digits and @/./+/-/_ only. */
@@ -46,7 +46,7 @@ export interface components {
             /** Format: date-time */
             readonly last_login: string | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AcknowledgementInputRequest: {
             /** @default  */
             note: string;
@@ -59,7 +59,7 @@ export interface components {
              */
             seen_level?: components["schemas"]["AlertLevel"];
         };
-        /** @description What became of a command: it is here, it is done, it is not done and why. May be sent again. */
+        /** @description State of a command: received, done, or failed with a reason. May be sent again. */
         AcknowledgementRequest: {
             /** Format: uuid */
             command: string;
@@ -75,7 +75,7 @@ export interface components {
          * @enum {string}
          */
         AcknowledgementStateEnum: "acknowledged" | "applied" | "failed";
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AcknowledgementsRequest: {
             acknowledgements: components["schemas"]["AcknowledgementRequest"][];
         };
@@ -88,7 +88,7 @@ export interface components {
          * @enum {string}
          */
         ActionEnum: "new" | "changed" | "vanished" | "kept" | "not_read";
-        /** @description Either `uav`, which gets the system id, or what a new UAV is made from. */
+        /** @description Either `uav`, which receives the system id, or the data of a new UAV. */
         AdoptionRequest: {
             /** Format: int64 */
             uav?: number;
@@ -241,7 +241,7 @@ export interface components {
          * @enum {string}
          */
         AlertLevel: "critical" | "warning" | "advisory";
-        /** @description By name, each ends with its unit. */
+        /** @description Alert limits by name; each name ends with its unit. */
         AlertLimits: {
             /** @description here */
             stated: {
@@ -266,11 +266,11 @@ export interface components {
             /** Format: date-time */
             written_at: string;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         AlertNoteInputRequest: {
             text: string;
         };
-        /** @description That it returns or lands already, by its failsafe, a pilot or a command. */
+        /** @description The UAV already returns or lands, by its failsafe, a pilot or a command. */
         AlertOwnAct: {
             kind: components["schemas"]["AlertOwnActKindEnum"];
             /**
@@ -339,7 +339,7 @@ export interface components {
              */
             landing_percent: number | null;
         };
-        /** @description The nearest thing to another assignment: one target of this route on the route of another UAV. */
+        /** @description The smallest change to another assignment: one target of this route on the route of another UAV. */
         Alternative: {
             target: number;
             /** @description index of the other UAV */
@@ -391,7 +391,7 @@ export interface components {
             /** @description routes with their flights and items, zones, conditions, ground, lost link, separation, figures of UAVs: as approved */
             document: unknown;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ApproveInputRequest: {
             /**
              * Format: double
@@ -587,7 +587,7 @@ export interface components {
             position: number[];
             note?: string;
         };
-        /** @description What became of a batch for one UAV. */
+        /** @description Outcome of a batch for one UAV. */
         BatchAnswer: {
             /** Format: uuid */
             mission: string;
@@ -604,7 +604,7 @@ export interface components {
         BatchAnswers: {
             results: components["schemas"]["BatchAnswer"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         BatchInputRequest: {
             /** @default  */
             why: string;
@@ -634,7 +634,7 @@ export interface components {
          * @enum {string}
          */
         BatchKind: "hold" | "land" | "pause" | "resume" | "return";
-        /** @description Percent of the full battery. */
+        /** @description Percentages of the full battery. */
         BatteryAtLanding: {
             /** Format: double */
             left_percent: number | null;
@@ -658,7 +658,7 @@ export interface components {
             /** @description why it is not known what is left at the landing; empty where it is */
             unknown: string;
         };
-        /** @description What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own. */
+        /** @description Battery forecast of a UAV, by its drain in the same kind of flight; seconds are the UAV's own. */
         BatteryForecast: {
             /**
              * @description of now; an alert keeps its worst
@@ -802,7 +802,7 @@ export interface components {
             /** Format: double */
             radius_m: number;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CloseInputRequest: {
             /** @description why each target that is still open is left */
             reasons?: components["schemas"]["OpenTargetReasonRequest"][];
@@ -820,7 +820,7 @@ export interface components {
              */
             at_s: number;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ClosingInputRequest: {
             /** @description what became of the UAV; kept as a note */
             reason: string;
@@ -911,7 +911,7 @@ export interface components {
             /** Format: date-time */
             recorded_at: string;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CommandInputRequest: {
             /** @default  */
             why: string;
@@ -956,7 +956,7 @@ export interface components {
             results: components["schemas"]["Command"][];
             next: string | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CommandParametersRequest: {
             /**
              * Format: double
@@ -1009,13 +1009,13 @@ export interface components {
             /** @description no real aircraft */
             is_simulated: boolean;
         };
-        /** @description The air that is flown through; without wind it is calm. */
+        /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsOutput: {
             wind: components["schemas"]["WindLayerOutput"][];
             /** Format: double */
             temperature_c: number;
         };
-        /** @description The air that is flown through; without wind it is calm. */
+        /** @description Wind and temperature during the flight; without wind it is calm. */
         ConditionsRequest: {
             wind?: components["schemas"]["WindLayerRequest"][];
             /**
@@ -1047,7 +1047,7 @@ export interface components {
             /** Format: date-time */
             revoked_at: string | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         CredentialInputRequest: {
             /** @description administrators alone: why it is done although the UAV flies or something is on its way to it */
             insist_reason?: string;
@@ -1189,7 +1189,7 @@ export interface components {
             /** @default  */
             note: string;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         DispatchInputRequest: {
             /** @default  */
             why: string;
@@ -1245,7 +1245,7 @@ export interface components {
         EndedAlerts: {
             results: components["schemas"]["EndedAlertOutcome"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         EndedAlertsInputRequest: {
             /** @description ids of those that were seen */
             alerts: number[];
@@ -1256,14 +1256,14 @@ export interface components {
          * @enum {string}
          */
         EndedFlightOutcomeEnum: "flown" | "failed";
-        /** @description How a flight ended. May be sent again. */
+        /** @description End of a flight. May be sent again. */
         EndedFlightRequest: {
             /** Format: uuid */
             approval: string;
             flight: number;
             outcome: components["schemas"]["EndedFlightOutcomeEnum"];
         };
-        /** @description Every error of the API has this shape: `error`, and beside it a problem of RFC 9457. */
+        /** @description The shape of every error of the API: `error`, and beside it a problem of RFC 9457. */
         Error: {
             error: components["schemas"]["ErrorDetail"];
             /** @description `urn:problem-type:spanwise:` and the error's code */
@@ -1302,7 +1302,7 @@ export interface components {
             /** Format: date-time */
             latest: string | null;
         };
-        /** @description Half axes of the ellipse in which the UAV is 95 of 100 times, and bounds of height and speed. */
+        /** @description Semi-axes of the 95 % ellipse of the UAV's position, and bounds of height and speed. */
         EstimateBound: {
             /** Format: double */
             along_m: number;
@@ -1335,7 +1335,7 @@ export interface components {
             geometry: components["schemas"]["Point"];
             properties: components["schemas"]["EstimateProperties"];
         };
-        /** @description Bounds hold 95 of 100 times: an ellipse around the position, with semi-axes along a bearing and across it, heights and speed ±. */
+        /** @description Bounds hold with 95 %: an ellipse around the position, with semi-axes along a bearing and across it; heights and speed ±. */
         EstimateProperties: {
             uav: number;
             /**
@@ -1381,7 +1381,7 @@ export interface components {
             /** Format: double */
             bound_speed_mps: number;
         };
-        /** @description What telemetry/services/watches.py writes. */
+        /** @description The estimate that telemetry/services/watches.py stores. */
         EstimateShape: {
             /** Format: date-time */
             at: string;
@@ -1423,7 +1423,7 @@ export interface components {
             report_interval_s: number | null;
             battery?: components["schemas"]["BatteryForecast"] | null;
         };
-        /** @description How good the estimates between reports were, by what was measured of the same moments. */
+        /** @description Quality of the estimates between reports, compared with measurements of the same moments. */
         Estimates: {
             /** @description estimates that a measurement tells of */
             compared: number;
@@ -1459,7 +1459,7 @@ export interface components {
             fault: string;
             explanation: components["schemas"]["RouteExplanation"] | null;
         };
-        /** @description A waypoint from which a UAV that has lost its link cannot return as wished. */
+        /** @description A waypoint from which a UAV with a lost link cannot return as requested. */
         FailedReturn: {
             /** @description index of the UAV */
             route: number;
@@ -1486,7 +1486,7 @@ export interface components {
             /** @description lon, lat */
             position: number[] | null;
         };
-        /** @description What goes wrong from now on; what is left out stays as it is. */
+        /** @description Faults from now on; omitted ones stay unchanged. */
         FaultsRequest: {
             /**
              * Format: double
@@ -1587,7 +1587,7 @@ export interface components {
             /** @description a flight of it failed: it is not set in motion again in this mission */
             has_failed: boolean;
         };
-        /** @description A time in the air without reports for over 60 s. No other figure speaks of it. */
+        /** @description A time in the air without reports for over 60 s. It is not included in other values. */
         FlownGap: {
             /** Format: date-time */
             began_at: string;
@@ -1724,7 +1724,7 @@ export interface components {
              */
             unreported_m: number;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         FollowUpRequest: {
             /** @description without one: the name with “follow-up” */
             name?: string;
@@ -1791,7 +1791,7 @@ export interface components {
             /** @description the most urgent first */
             commands: components["schemas"]["WaitingCommand"][];
         };
-        /** @description Those of its kind alone. */
+        /** @description Parameters of the command's kind only. */
         GivenParameters: {
             /** Format: double */
             speed_mps?: number;
@@ -1928,7 +1928,7 @@ export interface components {
             code: string;
             message: string;
         };
-        /** @description What keeping these waypoints would say. */
+        /** @description Result of checking these waypoints without saving them. */
         HandLook: {
             /** @description by place, `waypoints.3.altitude_agl_m` or `legs.2` */
             faults: {
@@ -1972,7 +1972,7 @@ export interface components {
              */
             speed_mps: number | null;
         };
-        /** @description A waypoint as it is wished. */
+        /** @description A waypoint as requested. */
         HandPointRequest: {
             /**
              * @description lon, lat [deg], WGS84
@@ -1992,7 +1992,7 @@ export interface components {
              */
             speed_mps?: number | null;
         };
-        /** @description Every waypoint of the route as it would be flown, over hills more than are wished; as in the routes of a plan. */
+        /** @description Every waypoint of the route as it would be flown, with those added over hills; as in the routes of a plan. */
         HandRouteFlown: {
             waypoints: components["schemas"]["Waypoint"][];
             /** Format: double */
@@ -2005,7 +2005,7 @@ export interface components {
             used_wh: number[] | null;
             battery_left_percent: number[] | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         HandRouteRequest: {
             waypoints: components["schemas"]["HandPointRequest"][];
         };
@@ -2183,10 +2183,10 @@ export interface components {
             next: string | null;
         };
         /**
-         * @description Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`.
+         * @description Work that takes longer than a request. `result` is set once the state is `done`, `error` once it is `failed`.
          *
-         *     While a plan is being searched for, `best` is the best until now, at most once a second: `value` and the lower `bound` in `unit`
-         *     (metres, or seconds where the longest route counts), how many targets are left out, and the `routes` as lines.
+         *     During the search for a plan, `best` is the best one so far, updated at most once a second: `value` and the lower `bound` in `unit`
+         *     (metres, or seconds where the longest route counts), the number of unassigned targets, and the `routes` as lines.
          */
         Job: {
             /** Format: uuid */
@@ -2275,7 +2275,7 @@ export interface components {
          * @enum {string}
          */
         Language: "en" | "de";
-        /** @description A plan that another one has replaced, to compare with. */
+        /** @description The plan that the current one replaced, for comparison. */
         LastPlan: {
             /** Format: date-time */
             planned_at: string;
@@ -2376,7 +2376,7 @@ export interface components {
         LegChecks: {
             legs: components["schemas"]["LegCheck"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegChecksInputRequest: {
             legs: components["schemas"]["LegRequest"][];
             /**
@@ -2392,7 +2392,7 @@ export interface components {
             /** @description its place in that mission */
             uav?: number | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegEndRequest: {
             /**
              * @description lon, lat [deg], WGS84
@@ -2410,7 +2410,7 @@ export interface components {
              */
             arrival_s?: number | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegRequest: {
             start: components["schemas"]["LegEndRequest"];
             end: components["schemas"]["LegEndRequest"];
@@ -2420,7 +2420,7 @@ export interface components {
              */
             speed_mps?: number | null;
         };
-        /** @description Departures between two moments, the routes being flown as planned. */
+        /** @description Permitted departures between two moments, with the routes flown as planned. */
         LegalWindows: {
             /** Format: date-time */
             from: string;
@@ -2441,7 +2441,7 @@ export interface components {
             /** @description that the routes meet in space and height, at whatever time */
             zones: components["schemas"]["BlockingZone"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         LegalWindowsInputRequest: {
             /** @description of a plan, as it was answered */
             routes: components["schemas"]["TimedRouteRequest"][];
@@ -2485,7 +2485,7 @@ export interface components {
          * @enum {string}
          */
         LinkKind: "mavlink" | "http";
-        /** @description A job in a list: without what may be large. */
+        /** @description A job in a list, without large fields. */
         ListedJob: {
             /** Format: uuid */
             readonly id: string;
@@ -2641,7 +2641,7 @@ export interface components {
          * @enum {string}
          */
         LoadedDoubtEnum: "rebooted" | "other-station" | "other-length";
-        /** @description Targets that one UAV flies in this order with nothing between, if wished as the first or the last of its route. */
+        /** @description Targets that one UAV flies in this order without others between, optionally as the first or the last of its route. */
         LockRequest: {
             /** @description name of a UAV of the request */
             uav: string;
@@ -2688,7 +2688,7 @@ export interface components {
             /** Format: double */
             hold_s: number;
         };
-        /** @description What UAVs do when their link is lost: go on, or hold for a while and return, or return to their start or the nearest rally point. */
+        /** @description What UAVs do when their link is lost: go on, hold for a while and return, or return to their start or the nearest rally point. */
         LostLinkRequest: {
             behaviour: components["schemas"]["BehaviourEnum"];
             rally_points?: number[][];
@@ -2903,7 +2903,7 @@ export interface components {
             name: string;
             missions: number;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionCopyRequest: {
             /** @description without one: the name with (copy) */
             name?: string;
@@ -2998,7 +2998,7 @@ export interface components {
             name: string;
             missions: number;
         };
-        /** @description What other systems may keep with a mission. */
+        /** @description Data that other systems may store with a mission. */
         MissionInputRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -3211,7 +3211,7 @@ export interface components {
             /** @description meant for this mission alone, whatever becomes of the stored UAV */
             own_figures: components["schemas"]["UavFigure"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionsBatchInputRequest: {
             /** @default  */
             why: string;
@@ -3235,7 +3235,7 @@ export interface components {
             done: string[];
             refused: components["schemas"]["RefusedMission"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         MissionsInputRequest: {
             missions: string[];
         };
@@ -3289,7 +3289,7 @@ export interface components {
              */
             distance_m: number;
         };
-        /** @description Where two UAVs come nearest to each other. */
+        /** @description The closest approach of two UAVs. */
         Nearest: {
             /** Format: double */
             metres: number;
@@ -3328,7 +3328,7 @@ export interface components {
             /** @description the token, or the 32 bytes of the key in hexadecimal; it cannot be read again */
             secret: string;
         };
-        /** @description The one answer that has the link itself. */
+        /** @description The only response that contains the link itself. */
         NewInvitation: {
             readonly id: number;
             /**
@@ -3352,7 +3352,7 @@ export interface components {
             readonly link: string;
             readonly was_mailed: boolean;
         };
-        /** @description The one answer that has the token itself. */
+        /** @description The only response that contains the token itself. */
         NewToken: {
             readonly id: number;
             readonly name: string;
@@ -3425,7 +3425,7 @@ export interface components {
          * @enum {string}
          */
         OfferState: "computing" | "open" | "accepted" | "declined" | "outdated" | "impossible";
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         OpenTargetReasonRequest: {
             /** @description its place in the mission */
             target: number;
@@ -3458,7 +3458,7 @@ export interface components {
              */
             end_tokens: boolean;
         };
-        /** @description Only what is to change. */
+        /** @description Only the fields to change. */
         PatchedAccountChangeRequest: {
             first_name?: string;
             last_name?: string;
@@ -3506,7 +3506,7 @@ export interface components {
             position?: number[];
             note?: string;
         };
-        /** @description What other systems may keep with a mission. */
+        /** @description Data that other systems may store with a mission. */
         PatchedMissionPatchRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -3556,7 +3556,7 @@ export interface components {
                 [key: string]: unknown;
             };
         };
-        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept. */
+        /** @description A name, and targets as in a mission. UAVs, ties, locks, options, external ids and attributes are not saved. */
         PatchedSelectionInputRequest: {
             targets?: components["schemas"]["TargetInputRequest"][];
             /**
@@ -3573,13 +3573,13 @@ export interface components {
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
             name?: string;
         };
-        /** @description Only what is to change. */
+        /** @description Only the fields to change. */
         PatchedServiceAccountChangeRequest: {
             role?: components["schemas"]["Role"];
             /** @description false: none of its tokens works */
             is_active?: boolean;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PatchedSimulationChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
             conditions?: string | {
@@ -3610,7 +3610,10 @@ export interface components {
             geometry?: components["schemas"]["PointRequest"];
             properties?: components["schemas"]["UavPropertiesRequest"];
         };
-        /** @description A UAV as one object: its properties and `position`; a new one without it stands at its base. A GeoJSON Feature is taken too. */
+        /**
+         * @description A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
+         *     too.
+         */
         PatchedUavFlatRequest: {
             name?: string;
             /** Format: int64 */
@@ -3689,7 +3692,7 @@ export interface components {
              */
             position?: number[];
         };
-        /** @description What UAVs of one make have in common. A UAV's own values come before these. */
+        /** @description Values common to UAVs of one make. A UAV's own values override them. */
         PatchedUavTypeRequest: {
             name?: string;
             /**
@@ -3732,7 +3735,7 @@ export interface components {
             sensors?: string[];
         };
         PatchedUavWriteRequest: components["schemas"]["PatchedUavFlatRequest"] | components["schemas"]["PatchedUavFeatureRequest"];
-        /** @description Only what is to change. */
+        /** @description Only the fields to change. */
         PatchedUserChangeRequest: {
             first_name?: string;
             last_name?: string;
@@ -3741,7 +3744,7 @@ export interface components {
             /** @description whether they may sign in */
             is_active?: boolean;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PatchedVehicleChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
             conditions?: string | {
@@ -3775,7 +3778,7 @@ export interface components {
             /** @description lon, lat */
             centre: number[];
         };
-        /** @description How good a plan is: a bound that no plan can be better than, and how far above it this one is. */
+        /** @description Quality of a plan: a bound that no plan can be better than, and this plan's gap above it. */
         Plan: {
             /**
              * Format: double
@@ -3845,7 +3848,7 @@ export interface components {
             routes: components["schemas"]["Route"][];
             unassigned: components["schemas"]["Unassigned"][];
         };
-        /** @description What is to be planned. */
+        /** @description A planning request. */
         PlanInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             targets: components["schemas"]["TargetInputRequest"][];
@@ -3873,7 +3876,7 @@ export interface components {
             charging_w?: number | null;
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
         };
-        /** @description A locked run, as it was asked for. */
+        /** @description A locked run, as requested. */
         PlanLock: {
             /** @description name */
             uav: string;
@@ -4004,7 +4007,7 @@ export interface components {
          * @enum {string}
          */
         PointTypeEnum: "Point";
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PoolUavRequest: {
             /**
              * @description lon, lat [deg], WGS84
@@ -4079,7 +4082,7 @@ export interface components {
             ground_revision: number;
             uav_changes: components["schemas"]["UavChange"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         PresenceInputRequest: {
             /** @description a name that the page made up for itself */
             editor: string;
@@ -4309,7 +4312,7 @@ export interface components {
             licence?: string;
             attribution?: string;
         };
-        /** @description How good a plan is: a bound that no plan can be better than, and how far above it this one is. */
+        /** @description Quality of a plan: a bound that no plan can be better than, and this plan's gap above it. */
         Quality: {
             /**
              * Format: double
@@ -4360,7 +4363,7 @@ export interface components {
             /** @description its name; empty: it lies in the margin round one */
             zone: string;
         };
-        /** @description Whether one UAV could do the target alone. */
+        /** @description Whether one UAV alone could serve the target. */
         Reach: {
             name: string;
             uav_id: number | null;
@@ -4393,7 +4396,7 @@ export interface components {
             graph_version: number;
             ground_revision: number;
         };
-        /** @description UAVs where they stand, or each of them from each of some bases; when they depart, how they end, in which wind. */
+        /** @description UAVs at their positions, or each of them from each of some bases; with departure, end action and wind. */
         ReachabilityInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             return_to_start?: boolean;
@@ -4432,7 +4435,7 @@ export interface components {
          * @enum {string}
          */
         ReachabilityReasonCodeEnum: "partly_reachable" | "beyond_range" | "beyond_energy" | "wind" | "no_path" | "above_height_limit" | "inside_zone" | "no_uav";
-        /** @description Columns of equal length, sorted by id: of 200,000 assets a map then reads five lists of small numbers and no objects. */
+        /** @description Columns of equal length, sorted by id: for 200,000 assets a map reads five lists of small numbers instead of objects. */
         ReachableAssets: {
             ids: number[];
             /** @description 0: can be inspected; n: the n-th of the reasons, from 1 on */
@@ -4450,7 +4453,7 @@ export interface components {
             /** @description the base that it starts from; null: where it stands */
             base: string | null;
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ReasonInputRequest: {
             /** @description kept in the mission's history */
             reason: string;
@@ -4520,7 +4523,7 @@ export interface components {
             continued_by: string | null;
             approval: components["schemas"]["RecordApproval"] | null;
         };
-        /** @description Heights name their reference, angles are degrees, speeds metres a second; null is not known. */
+        /** @description Heights name their reference; angles are in degrees, speeds in m/s; null is unknown. */
         RecordProperties: {
             uav: number;
             uav_name: string;
@@ -5138,7 +5141,7 @@ export interface components {
             results: components["schemas"]["ReplanOffer"][];
             next: string | null;
         };
-        /** @description One report. Heights name their reference, angles are degrees, speeds metres a second; what is not known is left out or null. */
+        /** @description One report. Heights name their reference; angles are in degrees, speeds in m/s. Unknown values are omitted or null. */
         ReportRequest: {
             /**
              * Format: int64
@@ -5390,7 +5393,7 @@ export interface components {
          * @enum {string}
          */
         ReturnState: "clear" | "in_the_way" | "unknown" | "not_checked";
-        /** @description How a UAV returns: after a hold, at a height that is set before, both in this order, or along its route. Empty: straight, at once. */
+        /** @description How a UAV returns: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once. */
         ReturnWayRequest: {
             /**
              * Format: double
@@ -5409,7 +5412,7 @@ export interface components {
             /** @description the state before this entry comes back */
             entry: number;
         };
-        /** @description How far apart its reports come, and how old the newest may be. */
+        /** @description Interval of a UAV's reports, and the ages at which the newest counts as late and as silent. */
         Rhythm: {
             /**
              * Format: double
@@ -5495,7 +5498,7 @@ export interface components {
             geometry: components["schemas"]["Line"] | null;
             waypoints: components["schemas"]["Waypoint"][];
         };
-        /** @description What is flown, and named by `content_sha256`. */
+        /** @description The flight to fly, identified by `content_sha256`. */
         RouteContent: {
             /** @description which of the route's flights, from 1 */
             flight: number;
@@ -5762,7 +5765,7 @@ export interface components {
             /** @description empty: all the time */
             schedule: components["schemas"]["ScheduleEntry"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         ScopeRequest: {
             /** Format: uuid */
             mission: string;
@@ -5793,7 +5796,7 @@ export interface components {
             /** @description what the others were called */
             missing: string[];
         };
-        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept. */
+        /** @description A name, and targets as in a mission. UAVs, ties, locks, options, external ids and attributes are not saved. */
         SelectionInputRequest: {
             targets: components["schemas"]["TargetInputRequest"][];
             /**
@@ -5847,7 +5850,7 @@ export interface components {
             /** @description that its UAV must have; may be empty */
             sensor: string;
         };
-        /** @description What became of a mission that was sent, aborted or closed. */
+        /** @description Outcome of sending, aborting or closing a mission. */
         Sent: {
             /** Format: uuid */
             mission: string;
@@ -5856,7 +5859,7 @@ export interface components {
             revision: number;
             commands: components["schemas"]["Command"][];
         };
-        /** @description How the routes are kept apart: two UAVs are nowhere nearer than this at the same time. */
+        /** @description Separation of the routes: the smallest distance of two UAVs at the same time. */
         Separation: {
             /** Format: double */
             lateral_m: number;
@@ -5910,7 +5913,7 @@ export interface components {
             ends_at: string;
             ends_in_s: number;
         };
-        /** @description A try to sign in, or a signing out. `username` is null where nobody has the name that was typed. */
+        /** @description A login attempt or a logout. `username` is null where the typed name is unknown. */
         SignIn: {
             readonly id: number;
             /** Format: date-time */
@@ -5941,7 +5944,7 @@ export interface components {
          * @enum {string}
          */
         SimulatedAutopilotType: "px4" | "ardupilot";
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         SimulatedFlightsInputRequest: {
             /**
              * @description times real time
@@ -6039,7 +6042,7 @@ export interface components {
             step_timing: components["schemas"]["StepTiming"] | null;
             vehicles: components["schemas"]["SimulatedVehicle"][];
         };
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         SimulationInputRequest: {
             uavs: components["schemas"]["PoolUavRequest"][];
             /**
@@ -6147,7 +6150,7 @@ export interface components {
          * @enum {integer}
          */
         SpeedEnum: 1 | 2 | 5 | 10;
-        /** @description One thing that changed since the mission was planned, and what of the mission it touches. */
+        /** @description One change since the mission was planned, and the part of the mission it affects. */
         StaleCause: {
             what: components["schemas"]["StaleCauseWhatEnum"];
             message: string;
@@ -6208,7 +6211,7 @@ export interface components {
              */
             slipped_s: number;
         };
-        /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
+        /** @description Every record of the batch is stored, known or refused; none needs to be sent again unchanged. */
         StoredReports: {
             /** @description new ones */
             stored: number;
@@ -6220,7 +6223,7 @@ export interface components {
             late: number;
             refused: components["schemas"]["Refused"][];
         };
-        /** @description Every result of the batch is stored, known or refused: none of them needs to be sent again as it is. */
+        /** @description Every result of the batch is stored, known or refused; none needs to be sent again unchanged. */
         StoredResults: {
             stored: number;
             known: number;
@@ -6228,7 +6231,7 @@ export interface components {
             /** @description places of flights that this UAV was never sent */
             refused_flights: number[];
         };
-        /** @description The short of a route's explanation; the long is asked for: `GET /missions/{id}/explanation`, `POST /plans/why-route`. */
+        /** @description Summary of a route's explanation; the full one comes from `GET /missions/{id}/explanation` and `POST /plans/why-route`. */
         Straight: {
             /**
              * Format: double
@@ -6458,7 +6461,7 @@ export interface components {
             /** Format: double */
             hold_s: number;
         };
-        /** @description What is done at a target. Without `hold_s` the kind's own: 5 s to look, 10 s for photos, 30 s to hold. */
+        /** @description What is done at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold. */
         TaskRequest: {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
@@ -6477,14 +6480,14 @@ export interface components {
          * @enum {string}
          */
         Theme: "system" | "light" | "dark";
-        /** @description From a moment up to but without another one. */
+        /** @description A time span; its end is excluded. */
         TimeSpan: {
             /** Format: date-time */
             from: string;
             /** Format: date-time */
             to: string;
         };
-        /** @description A plan's route; more of it may come along and is not read. */
+        /** @description A plan's route; further fields are accepted and ignored. */
         TimedRouteRequest: {
             end_action: components["schemas"]["EndActionEnum"];
             /** Format: double */
@@ -6600,7 +6603,7 @@ export interface components {
             /** @description code of what was chosen; null: the nearest by speed, mass and endurance */
             airframe: string | null;
         };
-        /** @description A UAV that is no longer as the mission has it. Sent again in `uavs` without its figures, the mission takes the present ones. */
+        /** @description A UAV that differs from the mission's copy. Sent again in `uavs` without its values, the mission takes the current ones. */
         UavChange: {
             /** @description index of the UAV */
             uav: number;
@@ -6629,7 +6632,7 @@ export interface components {
             numbers: components["schemas"]["UavNumbers"];
             next: string | null;
         };
-        /** @description What is known of a UAV's connection; null or empty where nothing is. */
+        /** @description State of a UAV's link; null or empty if unknown. */
         UavConnection: {
             /**
              * @description the door by which it is told what to do
@@ -6722,7 +6725,10 @@ export interface components {
          * @enum {string}
          */
         UavFigure: "max_range_m" | "cruise_speed_mps" | "battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps" | "rotor_disk_m2" | "hover_power_w" | "sensors";
-        /** @description A UAV as one object: its properties and `position`; a new one without it stands at its base. A GeoJSON Feature is taken too. */
+        /**
+         * @description A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
+         *     too.
+         */
         UavFlatRequest: {
             name: string;
             /** Format: int64 */
@@ -6801,7 +6807,7 @@ export interface components {
              */
             position?: number[];
         };
-        /** @description A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position. */
+        /** @description A UAV: a stored one by `id`, whose values the others override, or a new one by name and position. */
         UavInputRequest: {
             /**
              * Format: double
@@ -6891,7 +6897,8 @@ export interface components {
             checks: components["schemas"]["PreflightCheck"][];
         };
         /**
-         * @description Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
+         * @description Range, speed, battery, mass, reserve and airspeed are the UAV's own. Where one is `null`, the response has its type's value, and
+         *
          *     `from_type` names it.
          */
         UavProperties: {
@@ -6984,7 +6991,8 @@ export interface components {
             readonly updated_at: string;
         };
         /**
-         * @description Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
+         * @description Range, speed, battery, mass, reserve and airspeed are the UAV's own. Where one is `null`, the response has its type's value, and
+         *
          *     `from_type` names it.
          */
         UavPropertiesRequest: {
@@ -7064,7 +7072,7 @@ export interface components {
          * @enum {string}
          */
         UavState: "active" | "maintenance" | "retired";
-        /** @description What UAVs of one make have in common. A UAV's own values come before these. */
+        /** @description Values common to UAVs of one make. A UAV's own values override them. */
         UavType: {
             readonly id: number;
             name: string;
@@ -7116,7 +7124,7 @@ export interface components {
             results: components["schemas"]["UavType"][];
             next: string | null;
         };
-        /** @description What UAVs of one make have in common. A UAV's own values come before these. */
+        /** @description Values common to UAVs of one make. A UAV's own values override them. */
         UavTypeRequest: {
             name: string;
             /**
@@ -7159,7 +7167,7 @@ export interface components {
             sensors?: string[];
         };
         UavWriteRequest: components["schemas"]["UavFlatRequest"] | components["schemas"]["UavFeatureRequest"];
-        /** @description Alerts that nobody has acknowledged: open ones, and critical ones that have ended. */
+        /** @description Unacknowledged alerts: open ones, and critical ones that have ended. */
         UnansweredAlerts: {
             critical: number;
             warning: number;
@@ -7250,7 +7258,7 @@ export interface components {
          * @enum {string}
          */
         UnknownVehicleStateEnum: "new" | "ignored" | "adopted";
-        /** @description Two flights that could not be kept apart, or with `times_not_known` one of another mission that nobody can keep clear of. */
+        /** @description Two flights that could not be separated. With `times_not_known` one belongs to another mission whose times are unknown. */
         Unresolved: {
             /** @description too_near, hovers_in_the_way or times_not_known; the latter has uavs and missions alone */
             code: string;
@@ -7456,12 +7464,12 @@ export interface components {
          * @enum {string}
          */
         WhyEnum: "chosen" | "nearest";
-        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        /** @description Refuses unknown fields and suggests the most similar known one; in long lists only for the first few. */
         WhyInputRequest: {
             /** @default  */
             why: string;
         };
-        /** @description What is to be planned. */
+        /** @description A planning request. */
         WhyRouteInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             targets: components["schemas"]["TargetInputRequest"][];
@@ -7498,7 +7506,7 @@ export interface components {
              */
             shortest_ways: boolean;
         };
-        /** @description What is to be planned. */
+        /** @description A planning request. */
         WhyTargetInputRequest: {
             uavs: components["schemas"]["UavInputRequest"][];
             targets: components["schemas"]["TargetInputRequest"][];
@@ -7536,7 +7544,7 @@ export interface components {
             /** Format: double */
             from_deg: number;
         };
-        /** @description Wind at a height above ground; between two heights it is interpolated, beyond them it stays. */
+        /** @description Wind at a height above ground: interpolated between two heights, constant beyond them. */
         WindLayerRequest: {
             /** Format: double */
             altitude_agl_m: number;
@@ -7548,7 +7556,7 @@ export interface components {
              */
             from_deg: number;
         };
-        /** @description What the locks cost: the plan less the plan that would be made without them. */
+        /** @description Cost of the locks: this plan less the plan without them. */
         Wish: {
             /**
              * Format: double
