@@ -202,8 +202,9 @@ def _is_ordered_to_fly(state: VehicleState) -> bool:
 
 
 def _first_item(state: VehicleState) -> CommandStep:
-    """Select the first item. Otherwise a mission flown before would resume where it stopped, over an unchecked leg. ArduPilot's item 0 is
-    home.
+    """Select the first item. Otherwise a mission flown before would resume where it stopped, over an unchecked leg.
+
+    ArduPilot's item 0 is home.
     """
     return _item(state, 0)
 

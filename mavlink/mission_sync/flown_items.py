@@ -33,11 +33,11 @@ class FlownMissionItem:
 
 @dataclass
 class FlightWatch:
-    """Tracks one flight, from the first report in the air until the vehicle is down. Check it after each message that the state has
-    received.
+    """Tracks one flight, from the first report in the air until the vehicle is down.
 
-    ArduPilot resets its list to the beginning on landing, before or after it reports disarmed and on the ground. The item that it flew
-    towards is therefore kept, and replaced by the first one only if that is reported for longer than `RESET_S`.
+    Call `check` after each message that the state has received. ArduPilot resets its list to the beginning on landing, before or after it
+    reports disarmed and on the ground. The item that it flew towards is therefore kept, and replaced by the first one only if that is
+    reported for longer than `RESET_S`.
     """
 
     has_flown_list: bool = False

@@ -25,12 +25,12 @@ SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "resto
 
 
 class MissionSync:
-    """Reads the vehicle's lists, sends those that differ, reads them back and compares. A failed list is restored or cleared, and read
-    again.
+    """Reads the vehicle's lists, sends those that differ, reads them back and compares.
 
-    Ready means that all three lists were read back and match the approved ones. An armed vehicle receives lists only while it holds (see
-    `VehicleState.is_held`): ArduPilot flies a new item at once, even from an upload that it then refuses, and PX4 flies a new mission from
-    its first item. If the vehicle leaves its hold, `is_endangered` says whether to cancel.
+    A failed list is restored or cleared, and read again. Ready means that all three lists were read back and match the approved ones. An
+    armed vehicle receives lists only while it holds (see `VehicleState.is_held`): ArduPilot flies a new item at once, even from an upload
+    that it then refuses, and PX4 flies a new mission from its first item. If the vehicle leaves its hold, `is_endangered` is whether to
+    cancel.
 
     If the load has no fence or no rally points, lists from another sender stay on the vehicle, and those of `known` loads are cleared.
 

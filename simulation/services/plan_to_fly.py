@@ -64,10 +64,10 @@ class PlanToFly:
 
 
 def plan_to_fly(mission: Mission) -> PlanToFly:
-    """Return the plan of a mission loaded by selectors.mission_of_organisation. Raises Refused without a plan, or for one that cannot be
-    flown.
+    """Return the plan of a mission loaded by selectors.mission_of_organisation.
 
-    Approved routes are read from the approval's document, as for UAVs; others are made from the stored plan in the same way.
+    Raises Refused without a plan, or for one that cannot be flown. Approved routes are read from the approval's document, as for UAVs;
+    others are made from the stored plan in the same way.
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     if not flown:

@@ -33,10 +33,9 @@ class Here:
 
 @dataclass(frozen=True)
 class ReturnPath:
-    """`first` is the index of the waypoint that it flies to directly, `sequence` that in the stored route. `speed_mps` applies from there
-    on.
+    """A path. `first` is the index of the waypoint that it flies to directly, `sequence` that in the stored route.
 
-    `targets` are the sequences of the mission's targets that it still visits.
+    `speed_mps` applies from there on. `targets` are the sequences of the mission's targets that it still visits.
     """
 
     first: int

@@ -1,9 +1,8 @@
-"""Along-track filter: the position of a UAV along its profile as a distribution over the profile's clock, predicted by time and updated by
-reports.
+"""Along-track filter: the position of a UAV along its profile, predicted by time and updated by reports.
 
-The clock of a flight is its profile's, with the time in motion divided by the UAV's speed factor (flown over planned speed). It counts real
-seconds: a UAV that flies its profile at this factor advances one second per second. The uncertainty grows with the time in motion (speed
-factor, gusts) and with each turn, stop and climb. The UAV never moves back.
+The position is a distribution over the profile's clock. The clock of a flight is its profile's, with the time in motion divided by the
+UAV's speed factor (flown over planned speed). It counts real seconds: a UAV that flies its profile at this factor advances one second per
+second. The uncertainty grows with the time in motion (speed factor, gusts) and with each turn, stop and climb. The UAV never moves back.
 """
 
 import math

@@ -120,8 +120,9 @@ def _is_to_us(message: Message) -> bool:
 
 @dataclass
 class Session:
-    """The session. `records`, `texts` and `flown` are to be stored, and removed by the code that stores them. It serves once it has a
-    lease.
+    """The session, which serves the vehicle once it has a lease.
+
+    `records`, `texts` and `flown` are to be stored, and removed by the code that stores them.
     """
 
     uav: KnownUav
@@ -270,8 +271,9 @@ class Session:
         self.is_unsaved |= bool(messages)
 
     def tick(self, now_s: float, *, is_manned: bool = True) -> None:
-        """Send the heartbeat and due requests, once a second. Without `is_manned` no heartbeat is sent, so that the vehicle detects the
-        loss of its ground station.
+        """Send the heartbeat and due requests, once a second.
+
+        Without `is_manned` no heartbeat is sent, so that the vehicle detects the loss of its ground station.
         """
         self.texts += self._collector.tick(now_s)
         if self.lease is None or not self._has_address(now_s):

@@ -12,8 +12,7 @@ OTHERS = frozenset({Doubt.OTHER_STATION, Doubt.OTHER_LENGTH})
 
 
 def note_flown(*, uav_id: int, flown: FlownMissionItem) -> None:
-    """Record progress of the flight last read back from the vehicle. Ignored for other lists, or if another list may have been uploaded
-    since.
+    """Record progress of the flight last read back from the vehicle; ignored if another list may have been uploaded since.
 
     Idempotent. An interrupted flight is neither flown nor failed: it can start again. note_down_off_plan records one that ended off plan.
     """

@@ -19,8 +19,9 @@ from workspace.locale_negotiation import language_of_request
 
 class Live(APIView):
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        """Drop the view's reference to the response, which is often 1 MB: view and request form a cycle that waits for the garbage
-        collector.
+        """Drop the view's reference to the response, which is often 1 MB.
+
+        View and request form a reference cycle, which would keep the response until the next garbage collection.
         """
         response = super().dispatch(request, *args, **kwargs)
         del self.response

@@ -92,8 +92,9 @@ def _degrees(line: RouteLine, along_m: float) -> tuple[float, float]:
 
 
 def _reached_in_s(way: list[tuple[float, float]], zone: NearZone, inputs: DetectorInput) -> float | None:
-    """Return the end of the first step that touches the zone while it applies [server seconds]; None if none does. Steps are of the UAV's
-    clock.
+    """Return the end of the first step that touches the zone while it applies [server seconds]; None if none does.
+
+    Steps are equal times on the UAV's clock.
     """
     if not zone.polygon.intersects(shapely.LineString(way)):
         return None

@@ -17,8 +17,9 @@ from telemetry.models import UavLink
 
 @dataclass(frozen=True)
 class LoadedLists:
-    """The onboard lists. `sha256` is a FlightLoad's. `beside` has the hashes of the vehicle's own lists kept beside it, by kind: fence or
-    rally.
+    """The onboard lists. `sha256` is a FlightLoad's.
+
+    `beside` has the hashes of the vehicle's own lists kept beside it, by kind: fence or rally.
     """
 
     sha256: str

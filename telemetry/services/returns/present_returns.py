@@ -55,11 +55,11 @@ class MetOnReturn:
 
 @dataclass(frozen=True)
 class PresentReturn:
-    """The return of one UAV. check.warnings list all obstructions. `present` None: its position is unknown, and its whole route was
-    checked.
+    """The return of one UAV. check.warnings list all obstructions.
 
-    along: the return by the rest of its approved route; None if not clear or unknown. safest: the best parameters of a return; None if no
-    path is clear. Its `is_straight` is True if an immediate straight return is as good.
+    `present` None: its position is unknown, and its whole route was checked. along: the return by the rest of its approved route; None if
+    not clear or unknown. safest: the best parameters of a return; None if no path is clear. Its `is_straight` is True if an immediate
+    straight return is as good.
     """
 
     check: ReturnCheck
