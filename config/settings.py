@@ -275,7 +275,7 @@ CELERY_TASK_ROUTES = {
 }
 CELERY_BEAT_SCHEDULE = {
     "rebuild a graph that is out of date": {"task": "inspection.tasks.refresh_graph", "schedule": 5.0, "options": {"expires": 5}},
-    "search changed map data for issues": {"task": "inspection.tasks.find_issues", "schedule": 10.0, "options": {"expires": 10}},
+    "search changed map data for issues": {"task": "inspection.tasks.find_gaps", "schedule": 10.0, "options": {"expires": 10}},
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 3.0, "options": {"expires": 3}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
     "look after offers of another plan": {"task": "missions.tasks.look_after_offers", "schedule": 2.0, "options": {"expires": 2}},

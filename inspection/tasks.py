@@ -30,7 +30,7 @@ def refresh_graph() -> None:
     services.refresh_graph()
 
 
-@shared_task(time_limit=900, soft_time_limit=870)
+@shared_task(name="inspection.tasks.find_gaps", time_limit=900, soft_time_limit=870)  # as the version before sends it
 def find_issues() -> None:
     """Look for issues if the ground has changed since the last search; several changes make one search, and one runs at a time."""
     services.find_issues()

@@ -4,7 +4,20 @@ from operation.reasons import gettext_noop, ngettext_noop, register_sentences
 
 SENTENCES = register_sentences({
     # codes with which the outbox ends commands
-    "superseded": gettext_noop("A later command took its place."),
+    "superseded": gettext_noop("A later command took its place: %(command)s."),
+    "command_upload-mission": gettext_noop("Send the mission"),
+    "command_clear-mission": gettext_noop("Take the mission off the UAV"),
+    "command_arm": gettext_noop("Arm"),
+    "command_take-off": gettext_noop("Take off"),
+    "command_start": gettext_noop("Start the mission"),
+    "command_pause": gettext_noop("Pause"),
+    "command_resume": gettext_noop("Resume"),
+    "command_hold": gettext_noop("Hold"),
+    "command_return": gettext_noop("Return"),
+    "command_land": gettext_noop("Land"),
+    "command_abort": gettext_noop("Abort the mission"),
+    "command_change-speed": gettext_noop("Change speed"),
+    "command_set-return-height": gettext_noop("Set the return height"),
     "not_delivered": gettext_noop("It could not be delivered in time."),
     "not_sent_in_time": gettext_noop("It was not sent in time."),
     "unconfirmed": gettext_noop("It was sent; whether it was done is not known."),

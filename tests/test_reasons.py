@@ -12,6 +12,7 @@ from django.utils.translation import override
 from mavlink.commands.actions import Order
 from mavlink.vehicle_class import VehicleClass, refusal_of
 from mavlink.vehicle_plan import MissionType
+from missions.models import CommandKind
 from operation.reasons import SENTENCES, Reason, english, reason_from_json, register_sentences, text_reason
 from simulation.flight.airframe import OwnAction
 from simulation.serializers.words import reason_of
@@ -55,6 +56,7 @@ def test_every_code_of_the_source_has_a_sentence(package: str) -> None:
 
 def test_the_codes_that_are_put_together_have_sentences() -> None:
     codes = {f"order_{order}" for order in Order} | {f"list_{kind.name.lower()}" for kind in MissionType}
+    codes |= {f"command_{kind}" for kind in CommandKind}
     codes |= {refusal_of(kind).params["kind"].code for kind in VehicleClass}
     codes |= {f"{one}_{origin}" for one in ("item", "items") for origin in ("new", "before", "neither", "not_approved")}
     acts = [action for action in OwnAction if action is not OwnAction.NONE]

@@ -17,7 +17,7 @@ from workspace.api.fields import FiniteFloatField
 from workspace.api.reasons import WhySerializer
 from workspace.jobs.serializers import Declared
 from workspace.models import Job, JobState, User
-from workspace.reason_texts import column_text, why_text, with_message
+from workspace.reason_texts import column_text, reasons_of_column, why_text, with_message
 
 
 class UploadInputSerializer(serializers.Serializer):
@@ -77,6 +77,7 @@ class ProposalJobSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=JobState.choices)
     progress = serializers.FloatField()
     message = serializers.CharField()
+    why = WhySerializer(many=True, help_text="the message for programs; empty where only a text is known")
 
 
 class HeldBackSerializer(serializers.Serializer):
@@ -151,8 +152,9 @@ def upload_json(upload: Upload) -> dict[str, Any]:
 
 
 def _job_json(job: Job) -> dict[str, Any]:
+    why = reasons_of_column(job.message_why, job.message)
     message = column_text(job.message_why, job.message)
-    return {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": message}
+    return {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": message, "why": why}
 
 
 def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = False) -> dict[str, Any]:

@@ -82,7 +82,7 @@ def _decide(issue: DataIssue, state: DataIssueState, note: str, actor: User) -> 
             organisation=actor.organisation,
             actor=actor,
             action="changed",
-            subject_type="issue",
+            subject_type="gap",
             subject_id=kept.pk,
             before=before,
             after={"state": state.value, "note": note},

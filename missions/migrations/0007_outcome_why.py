@@ -1,66 +1,6 @@
-"""What became of commands as reasons. The text in English stays beside them for the version before; rows with a fixed sentence get its code."""
+"""What became of commands as reasons. The text in English stays beside them for the version before."""
 
 from django.db import migrations, models
-from django.db.models import F, JSONField, Value
-from django.db.models.functions import JSONObject
-
-# by outcome_code: the outbox ended these, with one sentence for each
-ENDED = {
-    "superseded": "superseded",
-    "not-delivered": "not_delivered",
-    "unconfirmed": "unconfirmed",
-    "unheard": "unacknowledged",
-    "withdrawn": "withdrawn",
-    "revoked": "revoked",
-    "simulation-ended": "simulation_ended",
-}
-SENTENCES = {
-    "The gateway failed; the error is in its log.": "gateway_failed",
-    "The vehicle did not do it.": "not_done",
-    "The vehicle did it, and left it again.": "undone",
-    "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.": "only_known_autopilots",
-    "The UAV does not tell whether it stands or flies.": "in_air_unknown",
-    "The UAV is on the ground: a mission is started there, not resumed.": "resume_on_ground",
-    "The UAV is on the ground: this route begins in the air.": "mid_air_start_on_ground",
-    "This route begins in the air, and the UAV does not fly.": "mid_air_start_not_flying",
-    "The UAV is on the ground.": "on_ground",
-    "The UAV does not surely hold its approved route: it cannot return along it.": "list_not_sure",
-    "From where the UAV is now no way along its route is clear.": "no_clear_return",
-    "The UAV is not on the way on which its route begins. Plan the rest again.": "off_first_leg",
-    "The UAV has not told its height above sea level.": "height_unknown",
-    "The UAV does not hold this flight of the approved mission: send it first.": "flight_not_loaded",
-    "The UAV does not hold a flight of the approved mission.": "no_flight_loaded",
-    "Only a mission that was approved can be flown.": "not_approved",
-    "Only a mission that is being flown can be resumed.": "only_active_resumed",
-    "The approval was taken back.": "approval_revoked",
-    "The approval is not the one that was given: its hash is another one.": "damaged_approval",
-    "The approval has no such flight of this UAV.": "no_such_flight",
-    "The UAV does not tell where its home is, from which it counts its heights.": "home_unknown",
-    "The UAV does not tell where it stands.": "stand_unknown",
-    "The UAV does not tell where it flies.": "position_unknown",
-    "The UAV does not tell which waypoint it would fly to.": "waypoint_unknown",
-    "The UAV has flown its mission to the end: there is nothing to go on with.": "flown_to_end",
-    "Nothing was sent: what the vehicle holds could not be read.": "holdings_unreadable",
-    "The UAV has not told how far apart waypoints may be.": "limits_unknown",
-    "The mission could not be sent whole, and what was there of it was taken off: the vehicle holds none.": "mission_taken_off",
-    "The vehicle holds what it held before.": "holds_what_before",
-    "The vehicle has not told how high it returns.": "return_height_unknown",
-    "The UAV holds something else than what was approved.": "uav_holds_other",
-    "The UAV does not say what it holds.": "uav_holds_unknown",
-    "The UAV gave no reason.": "no_reason_given",
-}
-
-
-def give_codes(apps, schema_editor):
-    rows = apps.get_model("missions", "UavCommand").objects.filter(outcome_why__isnull=True).exclude(outcome="")
-    for outcome_code, code in ENDED.items():
-        rows.filter(outcome_code=outcome_code).update(outcome_why=_column(code))
-    for sentence, code in SENTENCES.items():
-        rows.filter(outcome=sentence).update(outcome_why=_column(code))
-
-
-def _column(code):
-    return JSONObject(text=F("outcome"), reasons=Value([{"code": code, "params": {}}], JSONField()))
 
 
 class Migration(migrations.Migration):
@@ -82,5 +22,4 @@ class Migration(migrations.Migration):
             name="unassigned_why",
             field=models.JSONField(blank=True, db_default=[], default=list, help_text="the reasons as codes; see operation/reasons.py"),
         ),
-        migrations.RunPython(give_codes, migrations.RunPython.noop, elidable=True),
     ]

@@ -184,14 +184,17 @@ def _of_command(command: UavCommand, step: str) -> MissionEvent:
 
 
 def _read_targets(places: Sequence[EventPlace]) -> Mapping[EventPlace, MissionEvent]:
-    rows = InspectionTarget.objects.only("label", "sequence", "state", "state_reason").in_bulk([int(place.row) for place in places])
+    rows = InspectionTarget.objects.only("label", "sequence", "state", "state_reason", "state_why").in_bulk(
+        [int(place.row) for place in places]
+    )
     found = {}
     for place in places:
         row = rows.get(int(place.row))
         if row is not None and row.state == place.step:
             kind, words = _TARGET_KINDS[TargetState(row.state)]
-            why = f": {row.state_reason}" if row.state_reason else ""
-            values = {"target": row.sequence, "label": row.label, "reason": row.state_reason}
+            reason = column_text(row.state_why, row.state_reason)
+            why = f": {reason}" if reason else ""
+            values = {"target": row.sequence, "label": row.label, "reason": reason}
             found[place] = MissionEvent(kind, f"{row.label}: {words}{why}", values=values)
     return found
 

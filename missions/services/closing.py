@@ -42,8 +42,9 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
             raise refuse("reason_missing", _("Say why each open target is left: %(targets)s.") % {"targets": ", ".join(missing)})
         for place, target in still_open.items():
             target.state, target.state_reason, target.state_at = TargetState.SKIPPED, stated[place][:MAX_REASON_LENGTH], timezone.now()
+            target.state_why = None
         facts = {"targets": {str(place): target.state_reason for place, target in still_open.items()}}
-        InspectionTarget.objects.bulk_update(still_open.values(), ["state", "state_reason", "state_at"])
+        InspectionTarget.objects.bulk_update(still_open.values(), ["state", "state_reason", "state_why", "state_at"])
         if held.state in ENDED_STATES:
             note(held, actor, "close", before={"state": str(held.state)}, after={"state": str(held.state), **facts})
         else:

@@ -22,7 +22,8 @@ COPIED = (
     "lost_link_check", "external_id", "attributes",
 )  # fmt: skip
 NOT_FLOWN: dict[str, Any] = {
-    "state": TargetState.PENDING, "state_at": None, "state_reason": "", "reached_at": None, "held_s": None, "visit_stored_at": None,
+    "state": TargetState.PENDING, "state_at": None, "state_reason": "", "state_why": None, "reached_at": None, "held_s": None,
+    "visit_stored_at": None,
 }  # fmt: skip
 
 

@@ -4290,6 +4290,8 @@ export interface components {
             /** Format: double */
             progress: number;
             message: string;
+            /** @description the message for programs; empty where only a text is known */
+            why: components["schemas"]["Why"][];
         };
         ProposalPage: {
             results: components["schemas"]["Proposal"][];

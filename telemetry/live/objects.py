@@ -16,6 +16,7 @@ from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
 from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
+from workspace.reason_texts import column_text
 
 SAME_IN_ALL = ""  # language key of objects without text
 
@@ -58,7 +59,7 @@ def _mission_json(mission: Mission, uavs: list[dict[str, Any]], targets: list[In
                 "label": target.label,
                 "state": target.state,
                 "state_at": target.state_at,
-                "state_reason": target.state_reason,
+                "state_reason": column_text(target.state_why, target.state_reason),
                 "uav": places.get(target.pk),
             }
             for target in targets

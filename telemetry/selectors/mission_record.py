@@ -22,7 +22,7 @@ from telemetry.selectors.estimates import estimate_quality_of
 from telemetry.selectors.incidents import incidents_of
 from telemetry.selectors.report_words import reason_words
 from workspace.models import Organisation
-from workspace.reason_texts import reasons_of_column
+from workspace.reason_texts import column_text, reasons_of_column, why_text
 
 _FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
 HASTE = 1.5  # factor on the planned speed that a UAV may reach with tailwind or flown manually
@@ -310,6 +310,13 @@ def _reasons_of(target: InspectionTarget) -> list[dict[str, Any]]:
     return reasons_of_column(target.state_why, target.state_reason) if target.state_reason else target.unassigned_why
 
 
+def _reason_text(target: InspectionTarget) -> str:
+    """The same in the reader's language."""
+    if target.state_reason:
+        return column_text(target.state_why, target.state_reason)
+    return why_text(target.unassigned_why, target.unassigned_message)
+
+
 def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incidents: Sequence[Incident]) -> list[TargetOnRecord]:
     on_route = {point.target: (route, point) for route in routes for point in route.route.waypoints if point.target is not None}
     visits = {visit.target: visit for route in routes for visit in route.visits}
@@ -359,7 +366,7 @@ def _target(target: TargetOnRecord, mission: Mission) -> dict[str, Any]:
         "attributes": row.attributes,
         "state": row.state,
         "state_at": row.state_at,
-        "state_reason": row.state_reason or row.unassigned_message,
+        "state_reason": _reason_text(row),
         "result": target.outcome.result.value,
         "reason": _reason(target.outcome.reason),
         "uav": None if route is None else route.place,

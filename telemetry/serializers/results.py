@@ -12,6 +12,7 @@ from missions.models import MissionState, TargetState
 from missions.serializers.shapes import TaskOutputSerializer
 from workspace.api.external_data import AttributesField
 from workspace.jobs.serializers import Declared
+from workspace.reason_texts import column_text
 
 STATES = [state for state in TargetState.choices if state[0] != TargetState.PENDING]
 
@@ -96,7 +97,7 @@ def result_json(target: Any, reference: AssetReference | None) -> dict[str, Any]
         "planned": _planned(target),
         "state": target.state,
         "state_at": target.state_at,
-        "state_reason": target.state_reason,
+        "state_reason": column_text(target.state_why, target.state_reason),
         "reached_at": target.reached_at,
         "held_s": target.held_s,
         "reported": [

@@ -16,7 +16,7 @@ OBJECTIVES = {"sum": Objective.TOTAL, "max": Objective.MAKESPAN}
 
 
 class Command(BaseCommand):
-    help = "Plans the missions of a JSON file on the graph of an npz file; positions in both are lat, lon. See benchmarks/README.md."
+    help = "Plans the missions of a JSON file on the graph of an npz file; positions in both are lat, lon. See docs/performance.md."
     requires_system_checks: list[str] = []
 
     def add_arguments(self, parser: CommandParser) -> None:

@@ -74,7 +74,9 @@ def approve_mission(
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
         approval = Approval.objects.create(mission=held, document=document, content_sha256=content_sha256(document), approved_by=actor)
         held.ground_revision = checked_revision  # the routes have just been checked against it
-        held.targets.update(state=TargetState.PENDING, state_at=None, state_reason="", reached_at=None, held_s=None, visit_stored_at=None)
+        held.targets.update(
+            state=TargetState.PENDING, state_at=None, state_reason="", state_why=None, reached_at=None, held_s=None, visit_stored_at=None
+        )
         held.routes.update(flights_flown=0, has_failed=False)
         facts: dict[str, Any] = {"approval": str(approval.pk), "sha256": approval.content_sha256}
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}

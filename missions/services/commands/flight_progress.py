@@ -147,7 +147,7 @@ def _settle(held: Mission, route: Route, state: TargetState) -> None:
 
 def _put(held: Mission, targets: QuerySet[InspectionTarget], state: TargetState, reason: str = "") -> bool:
     """Return whether any targets were updated. Live pages are notified after the commit."""
-    if not targets.update(state=state, state_at=Now(), state_reason=reason):
+    if not targets.update(state=state, state_at=Now(), state_reason=reason, state_why=None):
         return False
     transaction.on_commit(partial(publish_live, held.organisation_id))
     return True

@@ -70,7 +70,7 @@ def queue_command(
         _end(
             overtaken,
             SUPERSEDED,
-            (Reason("superseded", {"command": str(kind)}),),
+            (Reason("superseded", {"command": Reason(f"command_{kind}")}),),
         )
         last = UavCommand.objects.filter(uav=uav).aggregate(last=Max("sequence"))["last"] or 0
         command = UavCommand.objects.create(

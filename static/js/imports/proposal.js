@@ -96,7 +96,7 @@ class ProposalPanel {
     if (state === "refused") {
       return [refusal(proposal, this.#acts), otherSystem(proposal, readAgain) ?? leaveOut(proposal, readAgain)];
     }
-    const isNew = job?.message && state === "ready" && job.state === "done" && job.message !== "Read";
+    const isNew = job?.message && state === "ready" && job.state === "done" && job.why[0]?.code !== "file_read";
     const isDecided = state === "ready" || state === "applied" || state === "applying";
     const sentence = { class: "import-sentence", id: "import-sentence", role: "status" };
     return [

@@ -78,7 +78,7 @@ def test_a_later_command_about_the_same_thing_takes_the_place_of_the_earlier() -
     pause, speed = give(uav, CommandKind.PAUSE), give(uav, CommandKind.CHANGE_SPEED)
     resume = give(uav, CommandKind.RESUME)
     assert (now(pause).state, pause.outcome_code) == (CommandState.EXPIRED, "superseded")
-    assert pause.outcome_why["reasons"] == [{"code": "superseded", "params": {"command": "resume"}}]
+    assert pause.outcome_why["reasons"] == [{"code": "superseded", "params": {"command": {"code": "command_resume", "params": {}}}}]
     assert claim(uav) == [resume, speed]
 
 

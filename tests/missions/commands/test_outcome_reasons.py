@@ -7,7 +7,7 @@ from django.apps import apps
 from django.db import connection
 from django.utils.translation import override
 
-from missions.models import CommandKind, UavCommand
+from missions.models import CommandKind, CommandState, UavCommand
 from missions.serializers.commands import command_json
 from missions.services.commands.commands import expire_overdue, note_released
 from operation.reasons import Reason
@@ -37,8 +37,8 @@ def test_the_migration_gives_codes_to_fixed_outcomes_alone() -> None:
     }
     rows = [give(a_uav(code), CommandKind.START) for code in outcomes]
     for row, (code, text) in zip(rows, outcomes.items(), strict=True):
-        UavCommand.objects.filter(pk=row.pk).update(outcome_code=code, outcome=text, outcome_why=None)
+        UavCommand.objects.filter(pk=row.pk).update(state=CommandState.FAILED, outcome_code=code, outcome=text, outcome_why=None)
     with connection.schema_editor() as editor:
-        import_module("missions.migrations.0007_outcome_why").give_codes(apps, editor)
+        import_module("missions.migrations.0009_codes_of_fixed_texts").give_codes(apps, editor)
     given = [[reason["code"] for reason in command_json(now(row))["outcome_why"]] for row in rows]
-    assert given == [["stand_unknown"], [], ["superseded"]]
+    assert given == [["stand_unknown"], [], []]

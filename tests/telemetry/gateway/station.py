@@ -32,7 +32,7 @@ def wait_for(fact: Callable[[], Any], what: str = "", *, patience_s: float = TIM
     while time.monotonic() < until_s:
         if found := fact():
             return found
-        time.sleep(0.02)
+        time.sleep(0.05)
     raise AssertionError(f"not within {patience_s:.0f} s: {what or fact}")
 
 

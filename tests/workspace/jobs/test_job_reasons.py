@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from django.apps import apps
 from django.db import connection
+from django.utils import timezone
 
 from operation.reasons import Reason
 from tests.accounts.users import a_user, client_of
@@ -63,10 +64,11 @@ def test_the_migration_gives_codes_to_fixed_sentences_alone() -> None:
     user = a_user()
     ended, other = running(user), running(user)
     failed = "The planner failed; the error is in the log."
-    Job.objects.filter(pk=ended.pk).update(message=failed, message_why=None, error={"code": "internal", "message": failed})
+    error = {"code": "internal", "message": failed}
+    Job.objects.filter(pk=ended.pk).update(finished_at=timezone.now(), message=failed, message_why=None, error=error)
     Job.objects.filter(pk=other.pk).update(message="12.5 MiB from Overpass", message_why=None)
     with connection.schema_editor() as editor:
-        import_module("workspace.migrations.0002_message_why").give_codes(apps, editor)
+        import_module("workspace.migrations.0003_codes_of_fixed_messages").give_codes(apps, editor)
     german = shown(user, ended, "de")
     assert german["message"] == german["error"]["message"] == "Der Planer ist gescheitert; der Fehler steht im Protokoll."
     assert shown(user, other, "de")["why"] == []
