@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from inspection.services.gaps import dismiss_gap
+from inspection.services.data_issues import dismiss_issue
 
 from inspection.models import DataImport, DataIssue, ImportProposal, NoFlyZone
 from inspection.services import find_issues, save_zone
@@ -88,12 +88,12 @@ def in_a_refusal_of_a_decided_import(neighbour: User, folder: Path) -> Callable[
     return lambda client: client.post(address, {}, content_type="application/json").json()["error"]["details"]["decided_by"]
 
 
-def at_a_gap(neighbour: User, folder: Path) -> Callable[[Client], Any]:
+def at_a_data_issue(neighbour: User, folder: Path) -> Callable[[Client], Any]:
     ground.tower((10.0, 56.0))
     ground.tower((10.004, 56.0))
     ground.line((10.0, 56.0), (10.004, 56.0), (10.04, 56.0))
     find_issues()
-    dismiss_gap(gap=DataIssue.objects.all()[0], note="", actor=neighbour)
+    dismiss_issue(issue=DataIssue.objects.all()[0], note="", actor=neighbour)
     return lambda client: client.get("/api/v1/data-issues?state=dismissed").json()["features"][0]["properties"]["decided_by"]
 
 
@@ -105,7 +105,7 @@ PLACES = [
     at_a_version_of_a_set,
     at_an_import,
     in_a_refusal_of_a_decided_import,
-    at_a_gap,
+    at_a_data_issue,
 ]
 
 

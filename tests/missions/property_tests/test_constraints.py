@@ -218,7 +218,7 @@ def test_with_more_targets_than_are_proven_the_cost_of_the_locks_is_told_too(her
     assert plan["lower_bound_m"] is None
     assert 0.0 < plan["lower_bound_s"] <= max(route["duration_s"] for route in plan["routes"])
     assert [item.share for item in reported] == sorted(item.share for item in reported)
-    assert {item.message for item in reported if item.draw is None} >= {"Working out what the locked parts cost"}
+    assert {str(item.message) for item in reported if item.draw is None} >= {"Working out what the locked parts cost"}
 
 
 # --- bound and gap ----------------------------------------------------------------------------------------------------------------
