@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from inspection.services.data_issues import dismiss_issue
 
 from inspection.models import DataImport, DataIssue, ImportProposal, NoFlyZone
 from inspection.services import find_issues, save_zone
+from inspection.services.data_issues import dismiss_issue
 from tests.accounts.users import a_user, client_of
 from tests.inspection import ground
 from tests.inspection.imports.zone_sets import SETS, stored
