@@ -1,4 +1,4 @@
-"""The sentence of each code that tells how far an import is, and why a file is refused or waits for somebody to look at it."""
+"""Texts of the reason codes of imports: progress, refusals, and why one waits for review."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from operation.reasons import Reason, gettext_noop, register_sentences
 
 SENTENCES = register_sentences({
-    # how far it is
+    # progress
     "waiting_to_be_read": gettext_noop("Waiting to be read"),
     "waiting_to_be_applied": gettext_noop("Waiting to be applied"),
     "waiting_to_be_fetched": gettext_noop("Waiting to be fetched"),
@@ -42,19 +42,19 @@ SENTENCES = register_sentences({
     "subscription_changed": gettext_noop("The subscription was changed meanwhile."),
     "new_file_proposed": gettext_noop("A new file is proposed."),
     "nothing_new": gettext_noop("Nothing new."),
-    # why it waits for somebody
+    # why it waits for review
     "columns_not_explained": gettext_noop("The columns of the file are not explained yet."),
     "records_left_out": gettext_noop("Records of the file that have a fault and are left out: %(number)s."),
     "values_unread": gettext_noop("Values of the file that cannot be read and would be empty: %(number)s."),
     "removes_too_many": gettext_noop(
         "It removes %(removed)s of %(known)s rows of its source, %(percent)s %%; at most %(limit)s %% may be removed."
     ),
-    # why it failed
+    # failures
     "not_read_in_time": gettext_noop("Not done within %(minutes)s min. Cut the file into parts."),
     "too_much_processor_time": gettext_noop("Reading the file takes more processor time than a file of its size may need."),
     "too_much_memory": gettext_noop("The file needs more memory than there is. Cut it into parts."),
     "reading_failed": gettext_noop("Reading the file failed inside Spanwise; the error is in the log."),
-    # what is wrong with a file
+    # faults of a file
     "no_file": gettext_noop("There is no file."),
     "file_not_kept": gettext_noop("The file is no longer kept. Send it again."),
     "file_not_read": gettext_noop("The file could not be read."),
@@ -67,7 +67,7 @@ SENTENCES = register_sentences({
     "no_terrain_format": gettext_noop("This is neither a GeoTIFF nor an HGT file, zipped or not."),
     "no_json": gettext_noop("This is no JSON: %(error)s"),
     "no_utf8": gettext_noop("The text is not UTF-8: byte %(byte)s cannot be read."),
-    # of what people should know
+    # notes for users
     "minutes_of_60": gettext_noop("Minutes or seconds of 60 were read as the next degree or minute: %(places)s."),
     "voids": gettext_noop(
         "%(voids)s of %(posts)s posts are void (%(percent)s %%). "
@@ -81,6 +81,6 @@ SENTENCES = register_sentences({
 
 
 def notes_json(notes: Iterable[str | Reason]) -> dict[str, list[Any]]:
-    """Notes in English, and beside each its reason; null for one that is a text alone."""
+    """Return notes in English with the reason of each; None for a note that is only a text."""
     listed = list(notes)
     return {"notes": [str(note) for note in listed], "notes_why": [note.to_json() if isinstance(note, Reason) else None for note in listed]}

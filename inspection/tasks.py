@@ -1,4 +1,4 @@
-"""Doors to the data queue: reading and applying what came in, and keeping the graph up to date."""
+"""Tasks of the data queue: reading and applying files, and keeping the graph up to date."""
 
 from collections.abc import Callable
 
@@ -26,31 +26,31 @@ HARD_LIMIT_S = 900
 
 @shared_task(time_limit=900, soft_time_limit=870)
 def refresh_graph() -> None:
-    """Build a graph if the ground has changed since the newest one; several changes make one build."""
+    """Build a graph if the map data have changed since the newest one; several changes make one build."""
     services.refresh_graph()
 
 
 @shared_task(name="inspection.tasks.find_gaps", time_limit=900, soft_time_limit=870)  # as the version before sends it
 def find_issues() -> None:
-    """Look for issues if the ground has changed since the last search; several changes make one search, and one runs at a time."""
+    """Search for issues if the map data have changed since the last search; several changes make one search, and one runs at a time."""
     services.find_issues()
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def read_proposal(job_id: str) -> None:
-    """Read a file that came in and store what it would change. Safe to run twice: a job is held by one worker, and finished once."""
+    """Read an incoming file and store its changes. Safe to run twice: a job is held by one worker, and finished once."""
     _work(job_id, _read_within_bounds)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def apply_proposal(job_id: str) -> None:
-    """Make the ground what a file says, all of it or nothing."""
+    """Update the map data to a file, completely or not at all."""
     _work(job_id, pipeline.apply_proposal)
 
 
 @shared_task(time_limit=60, soft_time_limit=50)
 def settle_proposals() -> None:
-    """Proposals whose worker was lost for good wait no longer."""
+    """Settle proposals whose worker was lost."""
     for proposal in pipeline.unsettled_proposals():
         if proposal.job is not None:
             pipeline.settle_proposal_of(job=proposal.job)
@@ -58,14 +58,14 @@ def settle_proposals() -> None:
 
 @shared_task(time_limit=60, soft_time_limit=50)
 def fetch_due_subscriptions() -> None:
-    """Start a job for each zone set whose time to be fetched has come."""
+    """Start a job for each zone set that is due to be fetched."""
     for job in subscriptions.start_due_fetches():
         send_job_on_commit(job)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def fetch_subscription(job_id: str) -> None:
-    """Fetch a zone set's next file; what is new becomes a proposal."""
+    """Fetch a zone set's next file; a new one becomes a proposal."""
     _work(job_id, _fetch)
 
 
@@ -121,7 +121,7 @@ def _do(job: Job, do: Callable[..., None]) -> None:
     except MemoryError:
         _fail(job, "too_large", Reason("too_much_memory"))
     except DATABASE_UNAVAILABLE:
-        raise  # the lease runs out, and the job is taken up again
+        raise  # the lease runs out, and the job is retried
     except Exception:
         _fail(job, "internal", Reason("reading_failed"))
         raise

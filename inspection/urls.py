@@ -1,4 +1,4 @@
-"""Addresses of the ground under /api/v1/."""
+"""URLs of map data under /api/v1/."""
 
 from django.urls import path
 

@@ -1,7 +1,7 @@
-"""Quillmoor: a second made region, small and mapped as real regions are, with what Elme Valley is too tidy to have.
+"""Quillmoor: a second synthetic region, small and mapped like real regions, with the irregularities that Elme Valley lacks.
 
-It lies in the same desert, 60 km west of Elme Valley. It is clipped to its box as `osmium extract --strategy=simple` does it: nodes
-beyond the box are not in the file, and ways keep their references to them.
+It is in the same desert, 60 km west of Elme Valley. It is clipped to its box like `osmium extract --strategy=simple`: nodes beyond the box
+are not in the file, and ways keep their references to them.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from inspection.demo_region.osm_file import FIRST_ID, OsmDrawing, Tags
 from inspection.demo_region.place import DEFAULT_SEED, FloatArray, Point, distance_along, offset_path, piece_of, smooth_path, spans_between
 
 GRID_OPERATOR = "Quillmoor Grid"
-RUN = 4  # consecutive vertices that are tagged or not together: mappers leave out whole stretches
+RUN = 4  # consecutive vertices that are tagged or untagged together: mappers omit whole stretches
 NORTH_SUBSTATION = (-2_000.0, 3_500.0)
 SOUTH_SUBSTATION = (-1_800.0, -3_400.0)
 LONG_SPAN_M = 2_400.0  # its towers are not mapped
@@ -28,7 +28,7 @@ def _line(voltage_v: int, ref: str, **tags: str) -> dict[str, str]:
 
 
 class _Mapper:
-    """Draws rows of supports with the same generator."""
+    """Draws rows of supports with one generator."""
 
     def __init__(self, drawing: OsmDrawing, generator: np.random.Generator) -> None:
         self.drawing = drawing

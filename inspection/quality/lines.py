@@ -246,7 +246,7 @@ def _nearest_other_component(network: SupportNetwork, node: IntArray) -> tuple[I
 
 
 def _node_volts(network: SupportNetwork) -> IntArray:
-    """Of each node the highest voltage of its lines, 0 where none is stated."""
+    """Return for each node the highest voltage of its lines, 0 where none is stated."""
     of_way = np.array([max(volts, default=0) for volts in network.ground.line_facts.voltages_v], dtype=np.int64)
     highest = np.zeros(network.node_count, dtype=np.int64)
     np.maximum.at(highest, network.node_of_vertex, of_way[network.way_of_vertex])

@@ -1,4 +1,4 @@
-"""The network that flyable lines make: nodes, legs, how many metres hang together, and what is near what."""
+"""The network of flyable lines: nodes, legs, lengths of connected parts, and nearness."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,27 +21,27 @@ FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
 METRES_PER_DEGREE = np.radians(1.0) * EARTH_RADIUS_M
-_HASH_STEP = np.uint64(0x9E3779B97F4A7C15)  # splitmix64's increment: numbers that do not cancel each other
+_HASH_STEP = np.uint64(0x9E3779B97F4A7C15)  # splitmix64's increment: mixed numbers do not cancel each other
 
 
 @dataclass(frozen=True)
 class NearLegs:
-    """Legs near to places, one row per pair, sorted by place, then metres."""
+    """Legs near places, one row per pair, sorted by place, then metres."""
 
     place: IntArray
     leg: IntArray
     metres: FloatArray
-    fraction: FloatArray  # where on the leg the nearest point is, 0 at its start
+    fraction: FloatArray  # of the nearest point along the leg, 0 at its start
     position: FloatArray  # of that point, lon lat [deg]
 
 
 def metres_by(owner: IntArray, metres: FloatArray, count: int) -> FloatArray:
-    """The sum of the metres that each owner has."""
+    """Return the sum of metres of each owner."""
     return np.bincount(owner, weights=metres, minlength=count).astype(np.float64)
 
 
 class SupportNetwork:
-    """Nodes are the graph's own (join_vertices): supports first, then vertices without one. A leg joins two vertices of one line."""
+    """Nodes are those of the graph (join_vertices): supports first, then vertices without one. A leg joins two vertices of one line."""
 
     def __init__(self, ground: IssueSearchData) -> None:
         self.ground = ground
@@ -51,7 +51,7 @@ class SupportNetwork:
         self.node_of_vertex = joined.node_of_vertex
         self.node_position = joined.position
         self.way_of_vertex = lines.way_of_vertex
-        self.leg_start = lines.leg_start  # vertex numbers; a leg's end is the vertex after it
+        self.leg_start = lines.leg_start  # vertex numbers; a leg ends at the next vertex
         self.leg_way = self.way_of_vertex[self.leg_start]
         self.leg_node = np.column_stack([self.node_of_vertex[self.leg_start], self.node_of_vertex[self.leg_start + 1]])
         self.leg_m = distance_m(lines.position[self.leg_start], lines.position[self.leg_start + 1])
@@ -62,7 +62,7 @@ class SupportNetwork:
 
     @cached_property
     def is_carried(self) -> BoolArray:
-        """Of each support, whether a line passes it."""
+        """Whether each support is on a line."""
         carried = np.zeros(self.support_count, dtype=bool)
         nodes = self.node_of_vertex
         carried[nodes[nodes < self.support_count]] = True
@@ -74,7 +74,7 @@ class SupportNetwork:
 
     @cached_property
     def pairs(self) -> tuple[IntArray, FloatArray, IntArray]:
-        """Distinct pairs of nodes with the metres of the shortest leg between them, and the pair of each leg (-1 for a loop)."""
+        """Return distinct pairs of nodes, the metres of the shortest leg between them, and the pair of each leg (-1 for a loop)."""
         ends = np.sort(self.leg_node, axis=1)
         is_edge = ends[:, 0] != ends[:, 1]
         pair, number = np.unique(ends[is_edge], axis=0, return_inverse=True)
@@ -86,7 +86,7 @@ class SupportNetwork:
 
     @cached_property
     def degree(self) -> IntArray:
-        """Of each node, to how many others legs go."""
+        """Return for each node the number of other nodes to which legs lead."""
         return np.bincount(self.pairs[0].ravel(), minlength=self.node_count).astype(np.int64)
 
     @cached_property
@@ -95,22 +95,25 @@ class SupportNetwork:
 
     @cached_property
     def component_m(self) -> FloatArray:
-        """Of each component, the metres of its legs; two lines along one pair of nodes count once."""
+        """Return the metres of each component's legs; two lines between one pair of nodes count once."""
         pair, metres, _ = self.pairs
         count = int(self.component.max(initial=-1)) + 1
         return metres_by(self.component[pair[:, 0]], metres, count)
 
     def joining_m(self, one: IntArray, other: IntArray) -> FloatArray:
-        """The smaller of the two components that joining the nodes would connect; 0 where they hang together already."""
+        """Return the length of the smaller of the two components that joining the nodes would connect; 0 where they
+        are connected already.
+        """
         first, second = self.component[one], self.component[other]
         return np.where(first == second, 0.0, np.minimum(self.component_m[first], self.component_m[second]))
 
     @cached_property
     def smaller_side_m(self) -> FloatArray:
-        """Of each pair, the metres on its smaller side if nothing else joins the two sides, else 0.
+        """Return for each pair the metres on its smaller side if it is the only link between its sides, else 0.
 
-        A pair is the only link between its sides if it is in the breadth-first forest and no pair outside the forest reaches over it:
-        each of those gets a number of its own, which its two ends cancel wherever both are on one side.
+        It is the only link if it is in the breadth-first forest and no pair outside the forest spans it: each of those gets a number, which
+        its
+        two ends cancel wherever both are on one side.
         """
         pair, metres, _ = self.pairs
         side = np.zeros(len(pair))
@@ -143,7 +146,9 @@ class SupportNetwork:
         return side
 
     def _forest(self) -> tuple[IntArray, IntArray, IntArray]:
-        """Nodes in breadth-first order from a root above all components, each node's parent, and the pair that leads to it (or -1)."""
+        """Return nodes in breadth-first order from a root above all components, each node's parent, and the pair that
+        leads to it (or -1).
+        """
         pair = self.pairs[0]
         root = self.node_count
         _, first = np.unique(self.component, return_index=True)
@@ -166,14 +171,14 @@ class SupportNetwork:
 
     @cached_property
     def _leg_tree(self) -> tuple[STRtree, IntArray]:
-        """The legs that do not cross the antimeridian, and the number of each in the tree."""
+        """Return a tree of the legs that do not cross the antimeridian, and the number of each in it."""
         start = self.ground.lines.position[self.leg_start]
         end = self.ground.lines.position[self.leg_start + 1]
         plain = np.flatnonzero(np.abs(start[:, 0] - end[:, 0]) <= 180.0)
         return STRtree(np.asarray(shapely.linestrings(np.stack([start[plain], end[plain]], axis=1)))), plain
 
     def legs_near(self, places: FloatArray, radius_m: float) -> NearLegs:
-        """All legs within the radius of the places; within a few hundred metres a plane is as good as the ellipsoid."""
+        """Return all legs within the radius of the places; a plane is accurate enough within a few hundred metres."""
         tree, number = self._leg_tree
         if not len(places) or not len(number):
             none = np.zeros(0, dtype=np.int64)
@@ -198,7 +203,7 @@ class SupportNetwork:
 
 
 def _mixed(number: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """splitmix64 of each number: the same on every run, and no few of them cancel by exclusive or."""
+    """Return splitmix64 of each number: the same in every run, and small sets do not cancel by exclusive or."""
     with np.errstate(over="ignore"):
         mixed = number * _HASH_STEP
         mixed = (mixed ^ (mixed >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)

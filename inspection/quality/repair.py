@@ -1,4 +1,4 @@
-"""New courses of lines: an end that moves, vertices that are added, places for towers that are missing."""
+"""New courses of lines: a moved end, added vertices, positions of missing towers."""
 
 from collections.abc import Callable, Sequence
 
@@ -14,16 +14,16 @@ from inspection.quality.supports import lone_towers, long_spans, missing_support
 
 Position = tuple[float, float]  # lon, lat [deg]
 
-SAME_DEG = 2e-9  # less than a millimetre: the same vertex, whatever way its figures went
-MERGE_M = 30.0  # a vertex that a tower stands so near to is meant to be at the tower
+SAME_DEG = 2e-9  # less than a millimetre: the same vertex in spite of rounding
+MERGE_M = 30.0  # a vertex this near to a tower is assumed to be at it
 
 
 class NoSuchVertex(ValueError):
-    """The line has no vertex there any more."""
+    """Raised when the line no longer has a vertex there."""
 
 
 def vertex_at(course: Sequence[Position], place: Sequence[float]) -> int:
-    """The number of the vertex at the place; raises NoSuchVertex."""
+    """Return the number of the vertex at the place. Raises NoSuchVertex."""
     away = np.abs(np.asarray(course, dtype=np.float64) - np.asarray(place, dtype=np.float64)).max(axis=1)
     nearest = int(away.argmin())
     if away[nearest] > SAME_DEG:
@@ -32,7 +32,7 @@ def vertex_at(course: Sequence[Position], place: Sequence[float]) -> int:
 
 
 def leg_between(course: Sequence[Position], start: Sequence[float], end: Sequence[float]) -> int:
-    """The number of the vertex that begins the leg from start to end; raises NoSuchVertex."""
+    """Return the number of the vertex that begins the leg from start to end. Raises NoSuchVertex."""
     points = np.asarray(course, dtype=np.float64)
     away = np.abs(points[:-1] - np.asarray(start)).max(axis=1) + np.abs(points[1:] - np.asarray(end)).max(axis=1)
     if not len(away) or away.min() > 2 * SAME_DEG:
@@ -41,13 +41,13 @@ def leg_between(course: Sequence[Position], start: Sequence[float], end: Sequenc
 
 
 def evenly_between(start: Sequence[float], end: Sequence[float], count: int) -> list[Position]:
-    """`count` positions that part the way from start to end evenly."""
+    """Return `count` positions that divide the path from start to end evenly."""
     first, last = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64)
     return [_position(first + (last - first) * (number / (count + 1))) for number in range(1, count + 1)]
 
 
 def in_order(start: Sequence[float], end: Sequence[float], places: Sequence[Sequence[float]]) -> list[Position]:
-    """The places by how far along the way from start to end they are."""
+    """Return the places sorted by their distance along the path from start to end."""
     first, step = np.asarray(start, dtype=np.float64), np.asarray(end, dtype=np.float64) - np.asarray(start, dtype=np.float64)
     scale = np.array([np.cos(np.radians(first[1])), 1.0])
     along = [float(((np.asarray(place) - first) * scale * step * scale).sum()) for place in places]
@@ -55,19 +55,19 @@ def in_order(start: Sequence[float], end: Sequence[float], places: Sequence[Sequ
 
 
 def with_vertices(course: Sequence[Position], after: int, places: Sequence[Position]) -> list[Position]:
-    """The course with the places put in behind vertex `after`."""
+    """Return the course with the places inserted after vertex `after`."""
     return [*course[: after + 1], *places, *course[after + 1 :]]
 
 
 def end_moved_to(course: Sequence[Position], end: int, place: Position, *, keeps_end: bool) -> list[Position]:
-    """The course with its first or last vertex moved to the place, or led on to it where the vertex itself must stay."""
+    """Return the course with its first or last vertex moved to the place, or extended to it where the vertex must stay."""
     if end == 0:
         return [place, *course] if keeps_end else [place, *course[1:]]
     return [*course, place] if keeps_end else [*course[:-1], place]
 
 
 def nearest_leg(course: Sequence[Position], place: Position) -> tuple[int, float, float]:
-    """The leg that comes nearest to the place: its first vertex, where on it (0 to 1), and how near [m]."""
+    """Return the leg nearest to the place: its first vertex, the fraction along it (0 to 1), and the distance [m]."""
     points = np.asarray(course, dtype=np.float64)
     scale = np.array([np.cos(np.radians(place[1])), 1.0])
     step = (points[1:] - points[:-1]) * scale
@@ -80,7 +80,7 @@ def nearest_leg(course: Sequence[Position], place: Position) -> tuple[int, float
 
 
 def through(course: Sequence[Position], place: Position, taken: FloatArray) -> list[Position]:
-    """The course led through the place: its nearest vertex moved there if that is near and no tower's (`taken`), else one more vertex."""
+    """Return the course through the place: its nearest vertex is moved if it is near and at no tower (`taken`), else a vertex is added."""
     points = np.asarray(course, dtype=np.float64)
     metres = distance_m(points, np.broadcast_to(np.asarray(place, dtype=np.float64), points.shape))
     nearest = int(metres.argmin())
@@ -99,7 +99,7 @@ def _position(point: FloatArray) -> Position:
     return (round(float(point[0]), 7), round(float(point[1]), 7))
 
 
-RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
+RECIPE = 2  # incremented when the rules change, so that unchanged map data are searched again
 
 
 def bridges_without_way(ground: IssueSearchData) -> list[FoundIssue]:
@@ -116,7 +116,7 @@ def bridges_without_way(ground: IssueSearchData) -> list[FoundIssue]:
 
 
 def search(ground: IssueSearchData, progress: Callable[[str], None] | None = None) -> list[FoundIssue]:
-    """Every issue of the ground, the one that cuts off most first; equal grounds give equal lists, each key once."""
+    """Return every issue of the map data, those that disconnect most first; equal inputs give equal lists with unique keys."""
     notify = progress or (lambda message: None)
     notify("joining lines")
     network = SupportNetwork(ground)

@@ -1,4 +1,4 @@
-"""Supports and lines that do not go together: vertices and long spans without towers, towers without a line."""
+"""Issues of supports: vertices and long spans without towers, towers without a line."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,14 +13,14 @@ from inspection.quality.infrastructure import FoundIssue, asset_key, place_key
 from inspection.quality.lines import is_at_terminal
 from inspection.quality.network import BoolArray, FloatArray, IntArray, SupportNetwork, metres_by
 
-MIN_LINE_M = 150.0  # what is shorter may hang between two portals
+MIN_LINE_M = 150.0  # shorter lines may span two portals
 
 
 def missing_supports(network: SupportNetwork) -> list[FoundIssue]:
-    """One issue per line that has vertices without a support.
+    """Return one issue per line that has vertices without a support.
 
-    First and last vertices count only where nothing says that the line ends in a substation there: those hang on portals, which are
-    seldom mapped. A line without any support is "without towers" if it is longer than what may hang between two portals.
+    First and last vertices count only where nothing indicates that the line ends in a substation: those are on portals, which are seldom
+    mapped. A line without any support is "without towers" if it is longer than a span between two portals.
     """
     ground = network.ground
     bare = network.node_of_vertex >= network.support_count
@@ -61,7 +61,7 @@ def _issue_of_line(network: SupportNetwork, line: int, vertices: IntArray, has_s
 
 
 def _is_excused_end(network: SupportNetwork, bare: BoolArray) -> BoolArray:
-    """First and last vertices without support that are known to be in a substation, or where the line goes under ground."""
+    """Return first and last vertices without support that are in a substation, or where the line continues underground."""
     lines = network.ground.lines
     count = np.diff(lines.first) > 0
     ends = np.unique(np.concatenate([lines.first[:-1][count], lines.first[1:][count] - 1]))
@@ -73,19 +73,19 @@ def _is_excused_end(network: SupportNetwork, bare: BoolArray) -> BoolArray:
 
 
 def _without_tower_m(network: SupportNetwork, bare: BoolArray) -> FloatArray:
-    """Of each line, the metres of its legs that have no tower at one end at least."""
+    """Return for each line the metres of its legs that have no tower at one end at least."""
     start = network.leg_start
     is_bare = bare[start] | bare[start + 1]
     return metres_by(network.leg_way[is_bare], network.leg_m[is_bare], len(network.ground.lines))
 
 
-ROW_M = 550.0  # the widest usual span: towers nearer than that may stand in one row
-LINE_REACH_M = 500.0  # how far the nearest line is looked for
-NAMED = 200  # towers of one row whose keys are kept in the details
+ROW_M = 550.0  # the widest usual span: nearer towers may form a row
+LINE_REACH_M = 500.0  # radius of the search for the nearest line
+NAMED = 200  # towers of one row whose keys the details list
 
 
 def lone_towers(network: SupportNetwork) -> list[FoundIssue]:
-    """One issue for each tower, or for each row of towers, that no line passes."""
+    """Return one issue for each tower, or row of towers, that is on no line."""
     supports = network.ground.supports
     lone = np.flatnonzero(~network.is_carried)
     if not len(lone):
@@ -109,7 +109,7 @@ def lone_towers(network: SupportNetwork) -> list[FoundIssue]:
 
 
 def _nearest_pairs(position: FloatArray) -> IntArray:
-    """Pairs of towers that stand in a row. A crowd is thinned to its nearest four, so that the number of pairs stays linear."""
+    """Return pairs of towers that may form a row. In dense groups only the nearest four count, so that the number of pairs stays linear."""
     row, other, _ = nearest_within(position, position, ROW_M, count=5)
     pairs = np.sort(np.column_stack([row, other]), axis=1)
     pairs = np.unique(pairs[pairs[:, 0] != pairs[:, 1]], axis=0)
@@ -119,7 +119,7 @@ def _nearest_pairs(position: FloatArray) -> IntArray:
 
 
 def course_of_row(position: FloatArray) -> IntArray | None:
-    """The towers of a row in the order of their line, or None where they branch or stand too far apart for one row."""
+    """Return the towers of a row in the order of their line, or None where they branch or are too far apart for one row."""
     pairs = pairs_within(position, ROW_M)
     tree = _shortest_tree(position, pairs)
     degree = np.bincount(tree.ravel(), minlength=len(position))
@@ -133,7 +133,7 @@ def course_of_row(position: FloatArray) -> IntArray | None:
 
 
 def _trees(position: FloatArray, pairs: IntArray, row: IntArray) -> tuple[FloatArray, BoolArray]:
-    """Of each row the metres of the shortest tree through it, and whether that is a path without a branch."""
+    """Return for each row the metres of its shortest tree, and whether that is a path without a branch."""
     count = int(row.max()) + 1
     tree = _shortest_tree(position, pairs)
     metres = metres_by(row[tree[:, 0]], distance_m(position[tree[:, 0]], position[tree[:, 1]]), count)
@@ -143,7 +143,7 @@ def _trees(position: FloatArray, pairs: IntArray, row: IntArray) -> tuple[FloatA
 
 
 def _shortest_tree(position: FloatArray, pairs: IntArray) -> IntArray:
-    """The pairs of the shortest trees, one tree for each row."""
+    """Return the pairs of the shortest trees, one tree for each row."""
     if not len(pairs):
         return np.zeros((0, 2), dtype=np.int64)
     metres = np.maximum(distance_m(position[pairs[:, 0]], position[pairs[:, 1]]), 1e-3)
@@ -152,7 +152,7 @@ def _shortest_tree(position: FloatArray, pairs: IntArray) -> IntArray:
 
 
 def _sorting_key(network: SupportNetwork, lone: IntArray) -> IntArray:
-    """OSM ids first: the first tower of a row names it."""
+    """Return a sort key, OSM ids first: a row is named after its first tower."""
     osm_id = network.ground.support_facts.osm_id[lone]
     return np.where(osm_id >= 0, osm_id, np.int64(2) ** 61 + network.ground.supports.asset[lone])
 
@@ -186,18 +186,18 @@ def _gap_of_row(
     )
 
 
-# Volts from which a class begins, the usual span where the data has none to learn from, and the bound: what is shorter is no issue,
-# whatever the line's other spans are. Usual: wooden and concrete poles stand about 80 m apart, towers 300 to 550 m (Darley Power Fight,
-# "dimensions of the towers", 450 to 550 m at 220 and 500 kV; in the OSM data of Nepal at 132 kV the median is 0.32 km and 95 % are below
-# 0.64 km). The bound is about twice the longest usual span: valleys and rivers are crossed in one leap.
+# Volts from which a class begins, the default usual span, and the bound below which a span is no issue, whatever the line's other spans
+# are. Usual: wooden and concrete poles are about 80 m apart, towers 300 to 550 m (Darley Power Fight, "dimensions of the towers", 450 to
+# 550 m at 220 and 500 kV; in the OSM data of Nepal at 132 kV the median is 0.32 km and 95 % are below 0.64 km). The bound is about twice
+# the longest usual span, as single spans cross valleys and rivers.
 CLASSES = ((100_000, 320.0, 1_000.0), (50_000, 250.0, 800.0), (1, 100.0, 450.0), (0, 250.0, 800.0))
 LONGER_THAN_OTHERS = 3.0
-OWN_SPANS = 8  # a line with fewer is judged by all lines of its class: a median of three spans says little
+OWN_SPANS = 8  # a line with fewer is compared with all lines of its class, as a median of three spans is unreliable
 MAX_IN_THE_WORLD_M = 5_376.0  # Ameralik, Greenland
 
 
 def voltage_class(voltage_v: FloatArray) -> NDArray[np.int64]:
-    """Index into CLASSES; 0 V is "not stated"."""
+    """Return the index into CLASSES; 0 V is "not stated"."""
     found = np.full(len(voltage_v), len(CLASSES) - 1, dtype=np.int64)
     for index in range(len(CLASSES) - 2, -1, -1):
         found[voltage_v >= CLASSES[index][0]] = index
@@ -209,7 +209,7 @@ def way_classes(network: SupportNetwork) -> NDArray[np.int64]:
 
 
 def usual_span_m(network: SupportNetwork) -> FloatArray:
-    """Of each line: the median of its own spans, or where it has few the median of all spans of its voltage class."""
+    """Return for each line the median of its own spans, or if it has few, of all spans of its voltage class."""
     classes = way_classes(network)
     usual = np.array([CLASSES[index][1] for index in classes])
     leg_class = classes[network.leg_way]
@@ -227,7 +227,7 @@ def usual_span_m(network: SupportNetwork) -> FloatArray:
 
 
 def long_spans(network: SupportNetwork) -> list[FoundIssue]:
-    """Legs longer than three times the usual span of their line and than the bound of its voltage."""
+    """Return legs longer than both three times the usual span of their line and the bound of its voltage."""
     lines, facts = network.ground.lines, network.ground.line_facts
     usual = usual_span_m(network)[network.leg_way]
     bound = np.array([CLASSES[index][2] for index in way_classes(network)])[network.leg_way]

@@ -1,1 +1,1 @@
-"""How what stands on the ground looks in three dimensions: forms and arms of supports, wires and their sag, decks of bridges. Pure."""
+"""Infrastructure in three dimensions: forms and arms of supports, wires and their sag, decks of bridges. Pure."""

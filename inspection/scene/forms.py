@@ -1,17 +1,17 @@
-"""Which form a support has, by its tags; where they say nothing, what is common for its kind and voltage."""
+"""Form of a support by its tags; untagged ones get what is common for their kind and voltage."""
 
 from collections.abc import Mapping
 from enum import StrEnum
 
-TALL_POLE_V = 60_000  # poles of such lines are of steel or concrete, and the line has an earth wire
-DELTA_V = 300_000  # towers with one circuit of such lines carry it in one level, the middle phase in a window
-BEND_DEG = 10.0  # where a line turns by more its wires are fastened to the support, not hung from it
+TALL_POLE_V = 60_000  # poles of such lines are steel or concrete, and the line has an earth wire
+DELTA_V = 300_000  # towers with one circuit of such lines carry it on one level, the middle phase in a window
+BEND_DEG = 10.0  # at larger bends the wires are anchored at the support instead of suspended
 
 Tags = Mapping[str, str]
 
 
 class Form(StrEnum):
-    """What the support is built like."""
+    """Construction of the support."""
 
     LATTICE = "lattice"
     TUBULAR = "tubular"
@@ -19,11 +19,11 @@ class Form(StrEnum):
     H_FRAME = "h-frame"
     PORTAL = "portal"
     GUYED = "guyed"
-    STAKE = "stake"  # a line bends there, and no support is mapped
+    STAKE = "stake"  # a bend of a line without a mapped support
 
 
 class Layout(StrEnum):
-    """How the phases hang at it."""
+    """Arrangement of the phases."""
 
     ONE_LEVEL = "one-level"
     DELTA = "delta"
@@ -52,7 +52,7 @@ _HUNG = {"suspension", "pin", "pulley"}
 
 
 def form_of(kind: str, tags: Tags, voltage_v: int | None) -> Form:
-    """kind: tower, pole, portal or vertex."""
+    """Return the form. kind: tower, pole, portal or vertex."""
     design, structure = tags.get("design", ""), tags.get("structure", "")
     if kind == "vertex":
         return Form.STAKE
@@ -73,7 +73,7 @@ def form_of(kind: str, tags: Tags, voltage_v: int | None) -> Form:
 
 
 def layout_of(form: Form, tags: Tags, phases: int, voltage_v: int | None) -> Layout:
-    """As the design says; else one level on two legs, and for so many phases what is common."""
+    """Return the layout of the design tag; else one level on two legs, and otherwise what is common for the number of phases."""
     stated = _LAYOUT_OF_DESIGN.get(tags.get("design", ""))
     if stated is not None:
         return stated
@@ -87,7 +87,7 @@ def layout_of(form: Form, tags: Tags, phases: int, voltage_v: int | None) -> Lay
 
 
 def is_anchor(tags: Tags, ways: int, bend_deg: float) -> bool:
-    """Whether wires end at the support: as tagged, else where a line ends, branches or turns."""
+    """Whether wires end at the support: as tagged, else where a line ends, branches or bends."""
     stated = {tags.get(key, "") for key in ("line_attachment", "line_management", "tower:type")}
     if stated & _FASTENED:
         return True

@@ -1,4 +1,4 @@
-"""Supports and the spans between them, from lines as they are mapped: the same places and heights as the network that planners use."""
+"""Supports and spans of mapped lines, with the same positions and heights as the planners' network."""
 
 from dataclasses import dataclass
 
@@ -24,8 +24,8 @@ HALF_TURN_DEG = 180.0
 class Overhead:
     """n supports, or vertices of lines without one, and k spans.
 
-    position (n, 2) lon, lat [deg]; support (n,) primary key, -1 for a vertex; height_m (n,) above ground, and whether it is the support's
-    own tag's or that of a line. span (k, 2) places in these; span_lines: the lines that run there, in ascending order; length_m (k,).
+    position (n, 2) lon, lat [deg]; support (n,) primary key, -1 for a vertex; height_m (n,) above ground, and whether it comes from the
+    support's own tag or a line's. span (k, 2) places in these; span_lines: the lines of the span, in ascending order; length_m (k,).
     """
 
     position: FloatArray
@@ -38,7 +38,7 @@ class Overhead:
     length_m: FloatArray
 
     def where(self, supports: NDArray[np.bool_], spans: NDArray[np.bool_]) -> "Overhead":
-        """Only these supports, and of these spans only those between them."""
+        """Return only these supports, and the given spans between them."""
         spans = spans & supports[self.span].all(axis=1)
         place = np.cumsum(supports) - 1
         return Overhead(
@@ -48,9 +48,9 @@ class Overhead:
 
 
 def overhead(supports: InfrastructurePlaces, lines: InfrastructureWays, box: Box) -> Overhead:
-    """What stands in a box, and every span that touches it, with both its ends.
+    """Return the supports in a box, and every span that touches it, with both its ends.
 
-    The lines have to be all that come to any of these supports.
+    The lines must include all that lead to any of these supports.
     """
     joined = join_vertices(supports, lines)
     tagged_m = support_heights_m(supports, lines, joined)
@@ -92,7 +92,7 @@ def overhead(supports: InfrastructurePlaces, lines: InfrastructureWays, box: Box
 
 
 def _touches(ends: FloatArray, box: Box) -> NDArray[np.bool_]:
-    """Whether the box around each leg, ends (k, 2, 2), meets the box."""
+    """Whether the bounding box of each leg, ends (k, 2, 2), meets the box."""
     low, high = ends.min(axis=1), ends.max(axis=1)
     west, south, east, north = box
     touches: NDArray[np.bool_] = (low[:, 0] <= east) & (high[:, 0] >= west) & (low[:, 1] <= north) & (high[:, 1] >= south)
@@ -100,10 +100,11 @@ def _touches(ends: FloatArray, box: Box) -> NDArray[np.bool_]:
 
 
 def bearings_deg(found: Overhead, weight: FloatArray) -> tuple[FloatArray, IntArray, FloatArray]:
-    """Which way the line runs at each support (n,), how many spans come there (n,), and by how much it turns where two do (n,).
+    """Return the line's direction at each support (n,), the number of its spans (n,), and the bend where there are two (n,).
 
-    weight (k,) of the spans: the heavier line decides. The bearing halves a bend; 0 where no span is. From support to support along a line
-    it stays the same way round.
+    weight (k,) of the spans: the heavier line decides. The bearing bisects a bend; 0 where no span is. Along a line it keeps its
+    orientation
+    from support to support.
     """
     count = len(found.position)
     if not len(found.span):
@@ -113,20 +114,20 @@ def bearings_deg(found: Overhead, weight: FloatArray) -> tuple[FloatArray, IntAr
     along = place[found.span[:, 1]] - place[found.span[:, 0]]
     angle = np.arctan2(along[:, 0], along[:, 1])
     doubled = np.zeros((count, 2))
-    turned = np.zeros((count, 2))  # the directions away from the support, of length 1
+    turned = np.zeros((count, 2))  # unit vectors away from the support
     for side, sign in ((0, 1.0), (1, -1.0)):
         np.add.at(doubled, found.span[:, side], weight[:, None] * np.column_stack([np.sin(2 * angle), np.cos(2 * angle)]))
         np.add.at(turned, found.span[:, side], sign * np.column_stack([np.sin(angle), np.cos(angle)]))
     ways = np.bincount(found.span.ravel(), minlength=count)
     bearing = _one_way(found.span, np.degrees(np.arctan2(doubled[:, 0], doubled[:, 1])) / 2.0)
-    # Two unit vectors that lead away from a place sum up to 2 cos of half the angle between them.
+    # The sum of two unit vectors that point away from a place is 2 cos of half the angle between them.
     half = np.arccos(np.clip(np.hypot(turned[:, 0], turned[:, 1]) / 2.0, 0.0, 1.0))
     bend = np.where(ways == 2, HALF_TURN_DEG - np.degrees(2.0 * half), 0.0)
     return bearing, ways.astype(np.int64), bend
 
 
 def _one_way(span: IntArray, bearing_deg: FloatArray) -> FloatArray:
-    """Each bearing, or the opposite one, so that neighbours differ by less than a right angle; 0 to 360."""
+    """Return each bearing, or the opposite one, so that neighbours differ by less than a right angle; 0 to 360."""
     neighbours: list[list[int]] = [[] for _ in range(len(bearing_deg))]
     for one, other in span.tolist():
         neighbours[one].append(other)
@@ -148,15 +149,16 @@ def _one_way(span: IntArray, bearing_deg: FloatArray) -> FloatArray:
     return opposite
 
 
-CATENARY_M = 1_500.0  # horizontal pull over weight by length: usual for aluminium-steel ropes on a mild day without wind
-MAX_SAG_SHARE = 0.5  # of the lower end's height above ground: very long spans are drawn tighter, or stand on towers nobody has mapped
-EARTH_SHARE = 0.85  # an earth wire is drawn tighter than the phases below it
+CATENARY_M = 1_500.0  # horizontal tension over weight per length: usual for aluminium-steel conductors on a mild day without wind
+MAX_SAG_SHARE = 0.5  # of the lower end's height above ground: very long spans are tighter, or have unmapped towers
+EARTH_SHARE = 0.85  # an earth wire is tighter than the phases below it
 
 
 def sag_m(length_m: float, lowest_slot_m: float) -> float:
-    """Of a phase, below the straight line between its ends, in the middle.
+    """Return the sag of a phase in the middle, below the straight line between its ends.
 
-    lowest_slot_m: above ground, the lower of both ends' lowest slots. A catenary hangs nowhere above the straight line between its ends,
-    so a wire is never higher than planners count it.
+    lowest_slot_m: above ground, the lower of both ends' lowest slots. A catenary is never above the straight line between its ends, so a
+    wire
+    is never higher than planners assume.
     """
     return min(length_m**2 / (8.0 * CATENARY_M), MAX_SAG_SHARE * max(lowest_slot_m, 0.0))

@@ -1,4 +1,4 @@
-"""Supports and spans with forms, arms and sag: from what stands there and what lines say of themselves."""
+"""Supports and spans with forms, arms and sag, from the tags of supports and lines."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -8,12 +8,12 @@ import numpy as np
 from inspection.scene.forms import TALL_POLE_V, Form, Layout, Tags, form_of, is_anchor, layout_of
 from inspection.scene.overhead import Overhead, bearings_deg, sag_m
 
-USUAL_V = 110_000  # where no voltage is stated
-MIN_ARM_SHARE = 0.42  # of the height: arms never come lower
-OVERHANG = 1.06  # of an arm over its outermost phase
+USUAL_V = 110_000  # default voltage
+MIN_ARM_SHARE = 0.42  # of the height: arms are never lower
+OVERHANG = 1.06  # of an arm beyond its outermost phase
 PIN_M = 0.25  # a small insulator on top of an arm
 
-# Levels from the top; the phases' places across in units of the innermost one's. The window of a delta holds the middle phase.
+# Levels from the top; the phases' positions across in units of the innermost one's. The window of a delta holds the middle phase.
 _LEVELS: dict[Layout, tuple[tuple[float, ...], ...]] = {
     Layout.ONE_LEVEL: ((-1.8, 0.0, 1.8),),
     Layout.DELTA: ((-1.7, 0.0, 1.7),),
@@ -26,14 +26,14 @@ _LEVELS: dict[Layout, tuple[tuple[float, ...], ...]] = {
     Layout.THREE_LEVEL: ((-1.0, 1.0), (-1.0, 1.0), (-1.0, 1.0)),
     Layout.BARREL: ((-1.0, 1.0), (-1.4, 1.4), (-1.15, 1.15)),
 }
-_NEXT_PHASE = 0.85  # from one phase to the next one outside it
+_NEXT_PHASE = 0.85  # from one phase to the next outer one
 
 
 @dataclass(frozen=True)
 class Arms:
-    """Metres above the ground and across, to the right positive.
+    """Metres above the ground and across, positive to the right.
 
-    arms: (height, left end, right end); slots: (across, height) of phases, insulators counted; earth: the same of earth wires, at the top.
+    arms: (height, left end, right end); slots: (across, height) of phases, insulators included; earth: the same of earth wires, at the top.
     """
 
     arms: tuple[tuple[float, float, float], ...]
@@ -42,7 +42,7 @@ class Arms:
 
 
 def spacing_m(voltage_v: int | None) -> tuple[float, float, float]:
-    """Between levels, from the axis to the innermost phase, and an insulator's length: what is usual for a voltage, as straight lines."""
+    """Return the usual distances for a voltage, linear in it: between levels, from axis to innermost phase, and an insulator's length."""
     kilovolts = (voltage_v or USUAL_V) / 1000.0
     return 1.0 + 0.02 * kilovolts, 0.8 + 0.0165 * kilovolts, 0.3 + 0.0095 * kilovolts
 
@@ -52,7 +52,7 @@ def has_earth_wire(form: Form, voltage_v: int | None) -> bool:
 
 
 def arms_of(form: Form, layout: Layout, height_m: float, voltage_v: int | None, phases: int, fastened: bool) -> Arms:
-    """For at least so many phases; nothing is higher than height_m."""
+    """Return arms for at least this many phases; nothing is higher than height_m."""
     level_m, across_m, insulator_m = spacing_m(voltage_v)
     levels = _with_room(_LEVELS[layout], phases)
     has_earth = has_earth_wire(form, voltage_v)
@@ -77,7 +77,7 @@ def arms_of(form: Form, layout: Layout, height_m: float, voltage_v: int | None, 
 
 
 def _with_room(levels: tuple[tuple[float, ...], ...], phases: int) -> tuple[tuple[float, ...], ...]:
-    """More places further out, the same on both sides, until there is one for each phase."""
+    """Return levels with outer places added on both sides until there is one for each phase."""
     while sum(map(len, levels)) < phases:
         levels = tuple(tuple(sorted((*places, -_outside(places), _outside(places)))) if abs(places[0]) > 0 else places for places in levels)
     return levels
@@ -87,19 +87,19 @@ def _outside(places: tuple[float, ...]) -> float:
     return max(map(abs, places)) + _NEXT_PHASE
 
 
-USUAL_POLE_V, USUAL_PORTAL_V = 20_000, 110_000  # where no voltage is stated
-# Straight lines through what is common, in metres by kilovolts: wood at 11 to 33 kV, wood and steel up to 220 kV; gantries of substations.
+USUAL_POLE_V, USUAL_PORTAL_V = 20_000, 110_000  # default voltages
+# Linear fits to common heights, in metres by kilovolts: wood at 11 to 33 kV, wood and steel up to 220 kV; gantries of substations.
 _POLE_M, _POLE_M_BY_KV, _TALLEST_POLE_M = 8.0, 0.12, 34.0
 _PORTAL_M, _PORTAL_M_BY_KV = 6.0, 0.045
 MAX_PHASES = 12
 PHASES_OF_CIRCUIT = 3
-_ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railways' lines and direct current: two wires to a circuit
+_ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railway lines and direct current: two wires per circuit
 
 
 def likely_height_m(kind: str, voltage_v: int | None, *, is_of_minor_lines: bool, counted_m: float) -> float:
-    """Of a support without a stated height: tower, pole, portal or vertex. Never more than counted_m.
+    """Return the height of a support without a stated one: tower, pole, portal or vertex; at most counted_m.
 
-    Where a line bends and no support is mapped stands what is common for it: a pole below 60 kV, and where all its lines are minor ones.
+    A bend without a mapped support gets what is common there: a pole below 60 kV, and where all its lines are minor ones.
     """
     is_pole = kind == "pole" or (kind == "vertex" and (voltage_v < TALL_POLE_V if voltage_v else is_of_minor_lines))
     if is_pole:
@@ -111,7 +111,7 @@ def likely_height_m(kind: str, voltage_v: int | None, *, is_of_minor_lines: bool
 
 @dataclass(frozen=True)
 class LineFacts:
-    """What a line says of itself."""
+    """Facts of a line from its tags."""
 
     voltage_v: int | None
     circuits: int | None
@@ -121,7 +121,7 @@ class LineFacts:
 
 @dataclass(frozen=True)
 class SceneSupportFacts:
-    """What a support says of itself; kind: tower, pole or portal."""
+    """Facts of a support from its tags; kind: tower, pole or portal."""
 
     kind: str
     voltage_v: int | None
@@ -132,9 +132,9 @@ class SceneSupportFacts:
 class DrawnSupport:
     kind: str  # "vertex" where no support is mapped
     form: Form
-    height_m: float  # what planners count
+    height_m: float  # as planners count it
     height_source: str  # tag, line, assumed
-    likely_m: float  # what is drawn: its arms are below that
+    likely_m: float  # as drawn: its arms are below that
     voltage_v: int | None
     is_anchor: bool
     bearing_deg: float
@@ -158,7 +158,7 @@ NO_LINE = LineFacts(None, None, {})
 
 
 def phases_of(line: LineFacts) -> int:
-    """Wires to draw of a line, without earth wires: as its cables or circuits say, else one circuit."""
+    """Return the number of wires to draw of a line, without earth wires: from its cables or circuits, else one circuit."""
     cables = line.tags.get("cables", "")
     if cables.isascii() and cables.isdigit() and cables.strip("0"):
         return MAX_PHASES if len(cables) > 3 else min(int(cables), MAX_PHASES)
@@ -169,7 +169,7 @@ def phases_of(line: LineFacts) -> int:
 def drawn(
     found: Overhead, supports: Mapping[int, SceneSupportFacts], lines: Mapping[int, LineFacts]
 ) -> tuple[list[DrawnSupport], list[DrawnSpan]]:
-    """In the order of `found`. supports and lines by primary key."""
+    """Return supports and spans in the order of `found`. supports and lines by primary key."""
     carried = [[lines.get(line, NO_LINE) for line in own] for own in found.span_lines]
     voltage_v = [max((line.voltage_v for line in own if line.voltage_v), default=None) for own in carried]
     phases = [min(sum(map(phases_of, own)), MAX_PHASES) for own in carried]
@@ -202,7 +202,7 @@ def drawn(
 
 
 def _at_ends(found: Overhead, of_span: Sequence[int]) -> list[int]:
-    """The greatest of the spans at each support, 0 where there is none."""
+    """Return the greatest value of the spans at each support, 0 where there is none."""
     greatest = np.zeros(len(found.position), dtype=np.int64)
     for side in (0, 1):
         np.maximum.at(greatest, found.span[:, side], np.array(of_span, dtype=np.int64))

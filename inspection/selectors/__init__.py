@@ -1,4 +1,4 @@
-"""Reads of the ground: what views, commands and the other apps call."""
+"""Reads of map data for views, commands and other apps."""
 
 from inspection.selectors.asset_names import asset_detail, asset_label, voltage_text
 from inspection.selectors.assets import (

@@ -1,7 +1,7 @@
-"""What an asset is called, on pages, in the API and in the tiles of maps; and names that Spanwise made, read back.
+"""Labels of assets on pages, in the API and in map tiles, and the parsing of generated names.
 
-An asset without a ref and a name gets one from its kind and its place: "Tower 18 of 41", "Bridge w42". Label and detail are made in the
-language of whoever reads: here for one row, and as SQL for tiles, which have thousands.
+An asset without a ref and a name gets a name from its kind and its place: "Tower 18 of 41", "Bridge w42". Label and detail are in the
+reader's language: made here for one row, and as SQL for tiles, which have thousands.
 """
 
 import re
@@ -49,7 +49,7 @@ NUMBERED = re.compile(r"(?P<word>\w+) (?P<osm>[nwr])?(?P<number>\d{1,18})", re.I
 
 @dataclass(frozen=True)
 class MadeName:
-    """What a made name says: the kind's word in English, and a place on a line, an OSM id ("w", 42), or the asset's own number."""
+    """A parsed generated name: the kind's English word, and a place on a line, an OSM id ("w", 42), or the asset's own number."""
 
     noun: str
     place: tuple[int, int] | None = None
@@ -57,7 +57,7 @@ class MadeName:
     number: int | None = None
 
     def filter(self) -> Q:
-        """The assets that are called so."""
+        """Return a filter for the assets with this name."""
         subtypes = [subtype for subtype, noun in WORDS.items() if noun == self.noun]
         kinds = [kind for kind, noun in KIND_WORDS.items() if noun == self.noun]
         alike = Q(subtype__in=subtypes) | (Q(kind__in=kinds) & ~Q(subtype__in=list(WORDS)))
@@ -69,12 +69,12 @@ class MadeName:
 
 
 def noun_of(kind: str, subtype: str) -> str:
-    """What such an asset is, in one English word, which is translated where it is shown."""
+    """Return one English word for such an asset; it is translated where it is shown."""
     return WORDS.get(subtype) or KIND_WORDS[AssetKind(kind)]
 
 
 def assets_with_made_names(assets: QuerySet[Asset], names: Collection[MadeName]) -> dict[MadeName, list[int]]:
-    """The primary keys of those of the assets that have these names."""
+    """Return the primary keys of those of the assets that have these names."""
     places = [name.place for name in names if name.place is not None]
     placed = Q(
         ref="", name="", line__isnull=False, place_on_line__in={at for at, _of in places}, places_on_line__in={of for _at, of in places}
@@ -95,7 +95,7 @@ def assets_with_made_names(assets: QuerySet[Asset], names: Collection[MadeName])
 
 
 def made_name(text: str) -> MadeName | None:
-    """Read a made name in any language of the pages; None for a text that is none. Case and double spaces do not matter."""
+    """Parse a generated name in any language of the pages; None for other texts. Case and double spaces do not matter."""
     plain = " ".join(text.split())
     for words, placed in _languages():
         if (match := placed.fullmatch(plain)) and (noun := words.get(match["word"].lower())):
@@ -108,7 +108,7 @@ def made_name(text: str) -> MadeName | None:
 
 @lru_cache(maxsize=1)
 def _languages() -> list[tuple[dict[str, str], re.Pattern[str]]]:
-    """Of each language: its words for kinds, in small letters, with their English; and how a place on a line is said."""
+    """Return for each language its lower-case words for kinds with their English, and the pattern of a place on a line."""
     languages = []
     for code, _name in settings.LANGUAGES:
         with translation.override(code):
@@ -121,7 +121,8 @@ def _languages() -> list[tuple[dict[str, str], re.Pattern[str]]]:
 
 
 def asset_label(asset: Asset) -> str:
-    """What an asset is called: ref, name, a support's place on its line ("Tower 18 of 41"), operator and voltage of a line, else its
+    """Return an asset's label: ref, name, a support's place on its line ("Tower 18 of 41"), operator and voltage of a line, else its
+
     kind and OSM id ("Tower n42").
 
     The same as LABEL_SQL.
@@ -139,7 +140,7 @@ def asset_label(asset: Asset) -> str:
 
 
 def asset_detail(asset: Asset) -> str:
-    """The second fact, which the label does not say: "138 kV AEP" of a support's line or of a line; what a bridge carries. May be empty.
+    """Return what the label omits: "138 kV AEP" of a support's line or of a line; what a bridge carries. It may be empty.
 
     Reads the line of a support: load it with select_related. The same as DETAIL_SQL.
     """
@@ -168,7 +169,7 @@ def voltage_text(voltage_v: int | None) -> str:
 
 
 def _stated(values: Mapping[str, str], column: str, otherwise: str) -> str:
-    """The word of a column's value in the reader's language, as SQL with parameters of `sql_words`."""
+    """Return SQL for a column's value as a word in the reader's language, with parameters of `sql_words`."""
     cases = " ".join(f"WHEN '{value}' THEN %({noun})s" for value, noun in values.items())
     return f"CASE {column} {cases} ELSE {otherwise} END"
 
@@ -179,13 +180,13 @@ def _sql_voltage_and_owner(voltage: str, owner: str) -> str:
 
 
 def sql_words() -> dict[str, str]:
-    """The parameters of LABEL_SQL and DETAIL_SQL, in the reader's language; they are named as their English."""
+    """Return the parameters of LABEL_SQL and DETAIL_SQL in the reader's language, named by their English."""
     words = {noun: _(noun) for noun in {*KIND_WORDS.values(), *WORDS.values(), *CARRIES.values(), VOLTAGE_NOT_STATED}}
     placed = _(PLACED) % {"kind": "%1$s", "place": "%2$s", "places": "%3$s"}
     return words | {"placed": placed, "railway of": _(RAILWAY_OF) % {"operator": "%s"}}
 
 
-# Over the columns of an asset; of a support's line, if it is joined, line_voltage_v and line_owner.
+# From the columns of an asset; of a support's line, if it is joined, line_voltage_v and line_owner.
 LINE_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"
 VOLTAGES_SQL = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
 _VOLTAGE = "trim_scale(max_voltage_v / 1000.0) || ' kV'"

@@ -19,8 +19,8 @@ from inspection.selectors.asset_names import made_name
 COORDINATE_DIGITS = 7  # about a centimetre
 
 VOLTAGE = re.compile(r"(\d{1,4}(?:\.\d{1,3})?)\s*kV\b", re.IGNORECASE)
-KILOVOLTS = re.compile(r"\d{1,4}(?:\.\d{1,3})?")  # said alone: a reference, or a voltage
-# Of the line that is read along with a support.
+KILOVOLTS = re.compile(r"\d{1,4}(?:\.\d{1,3})?")  # alone: a reference, or a voltage
+# Columns of the line that is read with a support.
 UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
 OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
 
@@ -43,7 +43,7 @@ else:
 def assets_on_the_ground(
     *, box: Box | None = None, kinds: list[AssetKind] | None = None, text: str = "", flyable: bool | None = None
 ) -> QuerySet[DrawnAsset]:
-    """Assets that the last import still had, with their geometry as GeoJSON text in `geometry_json`."""
+    """Return the assets of the last import, with their geometry as GeoJSON text in `geometry_json`."""
     assets = Asset.objects.select_related("line").filter(vanished_at=None)
     if box is not None:
         assets = assets.filter(geometry__intersects=area_of(box))
@@ -58,7 +58,7 @@ def assets_on_the_ground(
 
 
 def asset_with_geometry(asset_id: int) -> DrawnAsset:
-    """One asset, also when it has vanished: missions may still point at it. Raises Asset.DoesNotExist."""
+    """Return one asset, including a vanished one, to which missions may still refer. Raises Asset.DoesNotExist."""
     return (
         Asset.objects.select_related("data_import", "asset_set", "line")
         .defer(*UNREAD_OF_A_LINE)
@@ -68,7 +68,7 @@ def asset_with_geometry(asset_id: int) -> DrawnAsset:
 
 
 def assets_near(position: LonLat, within_m: float) -> list[tuple[Asset, float]]:
-    """Assets above the ground within so many metres of a position, the nearest first, each with its distance [m]."""
+    """Return the assets above ground within this distance of a position, nearest first, each with its distance [m]."""
     stretched = METRES_PER_DEGREE_LON * max(math.cos(math.radians(position.lat)), 0.01)
     place = Point(position.lon, position.lat, srid=4326)
     found = Asset.objects.select_related("line").filter(vanished_at=None, geometry__dwithin=(place, within_m / stretched))
@@ -79,18 +79,18 @@ def assets_near(position: LonLat, within_m: float) -> list[tuple[Asset, float]]:
 
 
 def references_of(organisation_id: int, assets: Iterable[int]) -> dict[int, AssetReference]:
-    """What the organisation keeps with these assets, by their primary keys."""
+    """Return the organisation's references of these assets, by primary key."""
     return {row.asset_id: row for row in AssetReference.objects.filter(organisation=organisation_id, asset__in=list(assets))}
 
 
 def with_external_id(assets: QuerySet[DrawnAsset], organisation_id: int, external_id: str) -> QuerySet[DrawnAsset]:
-    """The one asset that has this id in the organisation."""
+    """Return the one asset that has this id in the organisation."""
     named = AssetReference.objects.filter(organisation=organisation_id, external_id=external_id)
     return assets.filter(pk__in=named.values("asset"))
 
 
 def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[DrawnZone]:
-    """All zones, with their geometry as GeoJSON text in `geometry_json`; with the words of the text in name, identifier or reason."""
+    """Return zones with their geometry as GeoJSON text in `geometry_json`; each word of the text is in name, identifier or reason."""
     found = NoFlyZone.objects.select_related("zone_set__data_import")
     for term in text.split():
         found = found.filter(
@@ -114,9 +114,9 @@ def area_of(box: Box) -> Polygon | MultiPolygon:
 
 
 def _text_filter(text: str) -> Q:
-    """Every voltage in the text ("138 kV") must be among the asset's, every other word in its name, ref, operator or OSM id.
+    """Return a filter: every voltage in the text ("138 kV") is one of the asset's, every other word in its name, ref, operator or OSM id.
 
-    A number alone ("138") may be either. A name that Spanwise makes ("Tower 18 of 41") finds what is called so, too.
+    A number alone ("138") may be either. A generated name ("Tower 18 of 41") also finds the assets with that name.
     """
     wanted = Q()
     for kilovolts in VOLTAGE.findall(text):

@@ -1,4 +1,4 @@
-"""Data issues as a list, worst first, and how many of each kind there are."""
+"""Data issues as a list, worst first, and their number by kind."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -34,7 +34,7 @@ class DataIssueSummary:
 def issues(
     *, kinds: list[DataIssueKind] | None = None, state: DataIssueState | None = None, box: Box | None = None, text: str = ""
 ) -> QuerySet[DrawnIssue]:
-    """Data issues with what they are about, and their geometry as GeoJSON text in `geometry_json`."""
+    """Return data issues with their assets, and their geometry as GeoJSON text in `geometry_json`."""
     found = DataIssue.objects.select_related("asset__line", "other_asset__line", "decided_by")
     if kinds:
         found = found.filter(kind__in=kinds)

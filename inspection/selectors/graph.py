@@ -1,4 +1,4 @@
-"""The graph that planners use: the newest network, cleared of the zones that a plan has to keep clear of, memory-mapped."""
+"""The planners' graph: the newest network, cleared of the zones that a plan must avoid, memory-mapped."""
 
 import fcntl
 import logging
@@ -33,18 +33,18 @@ from inspection.zones.reach import BoolArray, ZoneTable
 
 logger = logging.getLogger(__name__)
 
-KEPT = 6  # per process: the sets of zones that plans under way hold, and those that come back
+KEPT = 6  # per process: the sets of zones of current and recent plans
 
 Made = TypeVar("Made")
 SnapshotRow = tuple[int, int, str]  # version, ground_revision, arrays_sha256
 
 
 class NoGraph(Exception):
-    """No snapshot has been built yet, or none of this version is kept."""
+    """Raised when no snapshot has been built yet, or none of this version is stored."""
 
 
 class _MadeOnce(Generic[Made]):
-    """Those used last of what is costly to make. One thread makes it; others that want the same wait for it, others are not held up."""
+    """Cache of expensive values by last use. One thread makes a value; others wait only for the same one."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -88,32 +88,32 @@ _networks: _MadeOnce[Network] = _MadeOnce()
 
 
 def rules_of_snapshots() -> dict[str, Any]:
-    """What a snapshot made now is made by. One that says something else is made anew; one of another layout is not read."""
+    """Return the rules of a snapshot made now. A snapshot with other rules is made again; one of another layout is not read."""
     return {"layout": LAYOUT} | asdict(settings.GRAPH_RULES)
 
 
 def current_graph() -> InspectionGraph:
-    """The newest snapshot's network, cleared of all zones of now. Costs two small queries once the process has it."""
+    """Return the newest snapshot's network, cleared of all current zones. Costs two small queries once the process has it."""
     return graph_for(_rows().first(), zones_in_force())
 
 
 def graph_of_version(version: int) -> InspectionGraph:
-    """The network of a snapshot, cleared of all zones of now."""
+    """Return the network of a snapshot, cleared of all current zones."""
     return graph_for(version, zones_in_force())
 
 
 def zones_in_force() -> ZoneIndex:
-    """The zones of the ground as it is now, whatever graph is in use. Costs one small query until they change."""
+    """Return the current zones, whatever graph is in use. Costs one small query until they change."""
     return zones_of_version(ground_dataset_version())
 
 
 def zones_of_version(key: tuple[int, datetime | None]) -> ZoneIndex:
-    """The zones of a dataset version that has just been read: they are at least as new as that."""
+    """Return the zones of a dataset version that has just been read: they are at least as new."""
     return zones_of_table(zone_table_of_version(key))
 
 
 def zones_of_table(table: ZoneTable, chosen: BoolArray | None = None) -> ZoneIndex:
-    """All zones of a table, or those where the mask (z,) is true, each with the heights above ground that it may reach."""
+    """Return all zones of a table, or those where the mask (z,) is true, each with the heights above ground that it may reach."""
     if chosen is None or chosen.all():
         return _indices.get((table, None), lambda: _index_of(table))
     return _indices.get((table, chosen.tobytes()), lambda: zones_of_table(table).where(chosen))
@@ -124,10 +124,10 @@ def _index_of(table: ZoneTable) -> ZoneIndex:
 
 
 def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> InspectionGraph:
-    """The network of a snapshot, named by its row or version, cleared of these zones at the heights flown.
+    """Return the network of a snapshot, by its row or version, cleared of these zones at the heights flown.
 
-    Costs nothing once the process has it; for a set of zones that no planner of this machine has had, the graph is cleared and indexed
-    first. Raises NoGraph for None, and for a version that is not kept or is of an earlier layout.
+    Costs nothing once the process has it; for a set of zones that is new on this machine, the graph is cleared and indexed first. Raises
+    NoGraph for None, and for a version that is not stored or has an earlier layout.
     """
     row = _rows().filter(version=snapshot).first() if isinstance(snapshot, int) else snapshot
     if row is None:
@@ -137,7 +137,7 @@ def graph_for(snapshot: SnapshotRow | int | None, zones: ZoneIndex) -> Inspectio
 
 
 def network_for(row: SnapshotRow | None) -> Network:
-    """The network of a snapshot, as if there were no zones. Raises NoGraph for None, and for a version that is not kept."""
+    """Return the network of a snapshot without regard to zones. Raises NoGraph for None, and for a version that is not stored."""
     if row is None:
         raise NoGraph
     return _networks.get(row, lambda: _network(row))
@@ -148,7 +148,7 @@ def _network(row: SnapshotRow) -> Network:
 
 
 def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneIndex) -> None:
-    """Write the files of a network and of the graph cleared of these zones, where they are missing; one process at a time."""
+    """Write the missing files of a network and of the graph cleared of these zones; one process at a time."""
     content_sha256 = row[2]
     try:
         with _only_process():
@@ -165,12 +165,12 @@ def prepare_graph(row: SnapshotRow, content: Callable[[], bytes], zones: ZoneInd
 
 
 def _rows() -> "QuerySet[GraphSnapshot, SnapshotRow]":
-    """Version, ground_revision and arrays_sha256 of the snapshots that can be read, the newest first."""
+    """Return version, ground_revision and arrays_sha256 of the readable snapshots, newest first."""
     return GraphSnapshot.objects.filter(rules__layout=LAYOUT).values_list("version", "ground_revision", "arrays_sha256")
 
 
 def _load(row: SnapshotRow, zones: ZoneIndex) -> InspectionGraph:
-    """The graph from its files; the first process that misses them writes them."""
+    """Return the graph from its files; the first process that finds them missing writes them."""
     graph = _read(row, zones)
     if graph is not None:
         return graph
@@ -207,7 +207,7 @@ def _key_of_files(content_sha256: str, zones: ZoneIndex) -> str:
 
 @contextmanager
 def _only_process() -> Iterator[None]:
-    """Of the processes of this machine, and of the threads of one, one at a time."""
+    """Hold a lock among the processes of this machine and their threads."""
     folder = settings.GRAPH_CACHE_DIR
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / ".lock").open("w") as lock:

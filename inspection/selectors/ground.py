@@ -1,4 +1,4 @@
-"""The ground as a whole: how much there is, where, from whom, and whether the graph shows it."""
+"""The map data as a whole: counts, extent, sources, and whether the graph is current."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -11,7 +11,7 @@ from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Groun
 from inspection.network.snapshot_file import LAYOUT
 
 Extent_deg = tuple[float, float, float, float]  # west, south, east, north
-DatasetVersion = tuple[int, datetime | None]  # of the ground: its revision, and when that came about
+DatasetVersion = tuple[int, datetime | None]  # of the map data: revision, and time of the change
 
 _extent: tuple[DatasetVersion, Extent_deg | None] | None = None
 
@@ -28,7 +28,7 @@ class GroundSummary:
 
     @property
     def graph_is_current(self) -> bool:
-        """Planners do not read one of an earlier layout."""
+        """Whether the graph shows the current map data; planners do not read one of an earlier layout."""
         graph = self.graph
         return graph is not None and graph.ground_revision == self.revision and graph.rules.get("layout") == LAYOUT
 
@@ -38,7 +38,7 @@ def ground_revision() -> int:
 
 
 def held_ground_revision() -> int:
-    """It does not change before the caller's transaction has ended; nobody else's zones, assets or terrain are stored before."""
+    """Return the dataset revision and lock it until the caller's transaction ends; no other change of map data commits before."""
     with connection.cursor() as cursor:
         cursor.execute(f"SELECT revision FROM {Ground._meta.db_table} WHERE id = %s FOR SHARE", [Ground.SINGLE_ID])  # noqa: S608 - a table
         row = cursor.fetchone()
@@ -46,18 +46,18 @@ def held_ground_revision() -> int:
 
 
 def ground_dataset_version() -> DatasetVersion:
-    """The revision and when it came about. Two databases may have the same revision, and one that was rolled back has it twice."""
+    """Return the revision and its time. Two databases may have the same revision, and a restored one repeats it."""
     return Ground.objects.values_list("revision", "changed_at").first() or (0, None)
 
 
 def ground_extent() -> Extent_deg | None:
-    """West, south, east, north of all assets. Costs one small query until the ground changes."""
+    """Return west, south, east, north of all assets. Costs one small query until the map data change."""
     global _extent
     dataset_version = ground_dataset_version()
     remembered = _extent
     if (
         remembered is None or remembered[0] != dataset_version or dataset_version[1] is None
-    ):  # a ground without a version has never been marked as changed
+    ):  # map data without a version were never marked as changed
         extent = Asset.objects.filter(vanished_at=None).aggregate(extent=Extent("centre"))["extent"]
         _extent = remembered = dataset_version, extent
     return remembered[1]
@@ -79,7 +79,7 @@ def ground_summary() -> GroundSummary:
 
 
 def imports_in_use() -> list[DataImport]:
-    """The files that something on the ground still comes from."""
+    """Return the imports from which current map data come."""
     used = Q(Exists(Asset.objects.filter(data_import=OuterRef("pk"), vanished_at=None)))
     used |= Q(Exists(ZoneSet.objects.filter(data_import=OuterRef("pk"))))
     used |= Q(Exists(TerrainTile.objects.filter(data_import=OuterRef("pk"))))

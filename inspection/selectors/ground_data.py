@@ -1,4 +1,4 @@
-"""Reads assets and zones as the plain arrays that the graph is built from."""
+"""Reads assets and zones as the plain arrays from which the graph is built."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -18,7 +18,7 @@ READINGS = 3
 
 @dataclass(frozen=True)
 class _Area:
-    """A condition more, as SQL of this file, and its parameters."""
+    """A further SQL condition, written in this file, with its parameters."""
 
     condition: str = ""
     parameters: list[Any] = field(default_factory=list)
@@ -32,9 +32,9 @@ def has_flyable_assets() -> bool:
 
 
 def ground_data() -> GroundData:
-    """All flyable assets that have not vanished, and all zones.
+    """Return all flyable assets that have not vanished, and all zones.
 
-    Read again when the ground changes meanwhile; if it never rests, the data is at least as new as the revision that it names.
+    Reads again when the map data change meanwhile; under constant changes the data are at least as new as the named revision.
     """
     for _ in range(READINGS):
         revision = ground_revision()
@@ -54,7 +54,7 @@ def ground_data() -> GroundData:
 def supports_and_lines(
     box: tuple[float, float, float, float], *, line: int | None = None
 ) -> tuple[InfrastructurePlaces, InfrastructureWays]:
-    """Flyable supports whose place and lines whose box meets west, south, east, north; of the lines only one, where it is named."""
+    """Return flyable supports and lines whose box meets west, south, east, north; only one line, if it is named."""
     in_box = _Area("AND geometry && ST_MakeEnvelope(%s, %s, %s, %s, 4326)", list(box))
     lines = in_box if line is None else _Area("AND id = %s", [line])
     return _places(AssetKind.TOWER, "geometry", in_box), _ways(AssetKind.LINE, lines)
@@ -90,7 +90,7 @@ def _places(kind: AssetKind, column: str, area: _Area = EVERYWHERE) -> Infrastru
 
 
 def _ways(kind: AssetKind, area: _Area = EVERYWHERE) -> InfrastructureWays:
-    """A way whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position alone."""
+    """Return ways. One whose vertices do not match its list of OSM nodes, or that a curator edited, is joined by position only."""
     rows = _rows(
         f"""
         SELECT id, COALESCE(height_m, CASE WHEN max_voltage_v >= %s THEN %s END), ST_AsBinary(geometry),

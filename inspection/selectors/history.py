@@ -1,4 +1,4 @@
-"""What was changed on the ground, newest first. Everybody sees all of it, but no names of other organisations' people."""
+"""Changes of map data, newest first. All users see all changes, but no names of users of other organisations."""
 
 from django.db.models import QuerySet
 
@@ -13,7 +13,7 @@ def changes_of_the_ground(*, subject_type: str = "") -> QuerySet[AuditEntry]:
 
 
 def changes_by(username: str, entries: QuerySet[AuditEntry], *, reader: User) -> QuerySet[AuditEntry]:
-    """Those of the entries that a user made. A user of another organisation is nobody, but for installation operators."""
+    """Return those of the entries that a user made; none for a user of another organisation, except for installation operators."""
     entries = entries.filter(actor__username=username)
     return entries if reader.operates_installation else entries.filter(actor__organisation=reader.organisation_id)
 

@@ -1,4 +1,4 @@
-"""What has come in: uploads, proposals and their changes."""
+"""Uploads, proposals and their changes."""
 
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -27,7 +27,7 @@ def proposals(*, kind: str = "", states: list[str] | None = None) -> QuerySet[Im
 
 
 def proposal_of_id(proposal_id: UUID) -> ImportProposal:
-    """Raises ImportProposal.DoesNotExist."""
+    """Return a proposal. Raises ImportProposal.DoesNotExist."""
     return proposals().get(pk=proposal_id)
 
 
@@ -37,5 +37,5 @@ def changes_of_proposal(proposal: ImportProposal, *, action: str = "") -> QueryS
 
 
 def upload_of_id(upload_id: UUID) -> Upload:
-    """Raises Upload.DoesNotExist."""
+    """Return an upload. Raises Upload.DoesNotExist."""
     return Upload.objects.get(pk=upload_id)

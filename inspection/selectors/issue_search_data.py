@@ -1,4 +1,4 @@
-"""Reads the ground as the plain arrays in which issues are looked for."""
+"""Reads map data as the plain arrays in which issues are searched."""
 
 from typing import Any
 
@@ -15,13 +15,13 @@ _WAYS = """
 SELECT id, osm_id, subtype, voltages_v, coalesce(tags ->> 'voltage', ''), is_edited
 FROM inspection_asset WHERE kind = %s AND is_flyable AND vanished_at IS NULL ORDER BY id
 """
-# Packed into two strings of bytes: a million supports are a few megabytes, not a million rows.
+# Packed into two byte strings: a million supports are a few megabytes instead of a million rows.
 _SUPPORTS = """
 SELECT coalesce(string_agg(int8send(id), ''::bytea ORDER BY id), ''::bytea),
        coalesce(string_agg(int8send(coalesce(osm_id, -1)), ''::bytea ORDER BY id), ''::bytea)
 FROM inspection_asset WHERE kind = 'tower' AND is_flyable AND vanished_at IS NULL
 """
-# https://wiki.openstreetmap.org/wiki/Tag:power=tower: portals stand in substations, a terminal or transition tower ends an overhead line.
+# https://wiki.openstreetmap.org/wiki/Tag:power=tower: portals are in substations, a terminal or transition tower ends an overhead line.
 _TERMINALS = """
 SELECT coalesce(string_agg(int8send(id), ''::bytea ORDER BY id), ''::bytea)
 FROM inspection_asset
@@ -42,7 +42,7 @@ FROM inspection_asset WHERE kind = 'bridge' AND carries = '' AND is_flyable AND 
 
 
 def issue_search_data() -> IssueSearchData:
-    """The ground as of the revision that it names, or a little newer."""
+    """Return the map data of the named revision, or slightly newer."""
     data = ground_data()
     with connection.cursor() as cursor:
         cursor.execute(_SUPPORTS)
@@ -73,7 +73,7 @@ def _way_facts(kind: AssetKind, ways: InfrastructureWays) -> WayFacts:
     with connection.cursor() as cursor:
         cursor.execute(_WAYS, [kind.value])
         rows = {row[0]: row[1:] for row in cursor.fetchall()}
-    nothing: tuple[Any, ...] = (None, "", [], "", False)  # a line that has gone since the arrays were read
+    nothing: tuple[Any, ...] = (None, "", [], "", False)  # a line deleted since the arrays were read
     found = [rows.get(pk, nothing) for pk in ways.asset.tolist()]
     return WayFacts(
         osm_id=np.array([NO_OSM_ID if row[0] is None else row[0] for row in found], dtype=np.int64),

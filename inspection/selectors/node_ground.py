@@ -1,4 +1,4 @@
-"""The ground under the nodes of a graph, looked up once for each terrain."""
+"""Terrain heights under the nodes of a graph, read once per terrain version."""
 
 from threading import Lock
 from weakref import WeakKeyDictionary
@@ -14,7 +14,7 @@ _kept: WeakKeyDictionary[InspectionGraph, tuple[Terrain, FloatArray]] = WeakKeyD
 
 
 def node_ground_m(graph: InspectionGraph, terrain: Terrain) -> FloatArray:
-    """Heights above sea level (n,), NaN where the terrain models say nothing; the same array as long as the terrain is the same."""
+    """Return heights above sea level (n,), NaN where no terrain model has data; the same array while the terrain is unchanged."""
     with _one_thread:
         kept = _kept.get(graph)
         if kept is None or kept[0] != terrain:

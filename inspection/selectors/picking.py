@@ -1,4 +1,4 @@
-"""What an operator picks at once: what a list names, what stands in an area, the supports of a line, the bridges of a railway."""
+"""Selecting many assets at once: by a list, in an area, the supports of a line, the bridges of a railway."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -23,37 +23,37 @@ Box = tuple[float, float, float, float]
 
 MAX_IN_AN_AREA = 2_000
 OSM_KEY = re.compile(r"(?:.*openstreetmap\.org/)?(N(?:ODE)?|W(?:AY)?|R(?:ELATION)?)[ /]?(\d{1,18})(?:[/?#].*)?", re.IGNORECASE)
-LIST_OF_REFS = r"\s*;\s*"  # OpenStreetMap writes several references of one thing as "12;13"
-# How far beyond two supports a way between them is looked for, in degrees: first near, then wide.
+LIST_OF_REFS = r"\s*;\s*"  # OpenStreetMap joins several references of an object as "12;13"
+# Margin of the search for a path between two supports, in degrees: first narrow, then wide.
 REACHES_DEG = (0.05, 0.5)
-SECTION_GAP_DEG = 0.002  # some 200 m: sections of one railway may be cut by a bridge or a switch that has another name
-MAX_CROSSINGS = 500  # of a drawn line with itself: sorting out what it encloses takes as long as their square
+SECTION_GAP_DEG = 0.002  # some 200 m: a bridge or a switch with another name may separate sections of one railway
+MAX_CROSSINGS = 500  # of a drawn line with itself: computing its area takes time quadratic in them
 SIDES_AT_ONCE = 256
 BESIDE_DEG = 1e-5  # about a metre: a bridge's outline may end where the section begins
-CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways say nothing of what it carries
+CARRIES_TRACK = ("", "a railway", "a road and a railway")  # "": its ways do not state what it carries
 
 
 class NotOnTheLine(Exception):
-    """The support is none of the line's."""
+    """Raised for a support that is not on the line."""
 
 
 class TooTangled(Exception):
-    """A drawn line crosses itself so often that nobody can mean an area by it."""
+    """Raised for a drawn line that crosses itself too often to enclose an area."""
 
 
 class NoWayAlongLines(Exception):
-    """No line leads from one support to the other."""
+    """Raised when no line leads from one support to the other."""
 
 
 def plain_ref(text: str) -> str:
-    """References that differ in case or spaces alone are the same."""
-    return "".join(character.lower() for character in " ".join(text.split()))  # one by one, as PostgreSQL does it
+    """Return the reference in a form that ignores case and spaces."""
+    return "".join(character.lower() for character in " ".join(text.split()))  # character by character, as PostgreSQL does
 
 
 def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> dict[str, list[int]]:
-    """For each reference, as plain_ref writes it, the primary keys of the assets that it may mean.
+    """Return for each reference, as plain_ref writes it, the primary keys of the assets that it may mean.
 
-    An asset's own reference, key or OSM id comes before one of several references, and that before a name, given or made.
+    An asset's own reference, key or OSM id takes precedence over one of several references, and that over a given or generated name.
     """
     wanted = {plain_ref(ref) for ref in refs}
     osm = {ref: (match[1][0].lower(), int(match[2])) for ref in wanted if (match := OSM_KEY.fullmatch(ref))}
@@ -99,14 +99,14 @@ def _plain(column: str) -> Lower:
 
 
 def assets_in_area(area: GEOSGeometry, kinds: Sequence[AssetKind]) -> QuerySet[Asset]:
-    """What may be flown to and meets the area."""
+    """Return the flyable assets that meet the area."""
     return Asset.objects.filter(vanished_at=None, is_flyable=True, kind__in=kinds, geometry__intersects=area).order_by("pk")
 
 
 def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
-    """The area that a hand has drawn round, also where its line crosses itself; None where it encloses nothing.
+    """Return the area of a drawn outline, which may cross itself; None where it encloses nothing.
 
-    Longitudes may pass 180 degrees: a map that has been panned round counts on. Raises TooTangled.
+    Longitudes may exceed 180 degrees on a panned map. Raises TooTangled.
     """
     _refuse_a_tangle(ring)
     drawn = shapely.make_valid(shapely.Polygon(ring))
@@ -120,13 +120,13 @@ def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
 
 def _refuse_a_tangle(ring: Sequence[Sequence[float]]) -> None:
     corners = np.array(ring, dtype=float)
-    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]  # a corner said twice is one
+    corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]  # without repeated corners
     sides = np.asarray(shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)), dtype=object)
     tree, crossings = shapely.STRtree(sides), 0
     for first in range(0, len(sides), SIDES_AT_ONCE):
         side, other = tree.query(sides[first : first + SIDES_AT_ONCE], predicate="intersects")
         apart = other - side - first
-        crossings += int(((apart > 1) & (apart < len(sides) - 1)).sum())  # neighbours meet at their corner
+        crossings += int(((apart > 1) & (apart < len(sides) - 1)).sum())  # neighbours share a corner
         if crossings > MAX_CROSSINGS:
             raise TooTangled
 
@@ -138,7 +138,7 @@ class RailwayBridges:
 
 
 def supports_of_line(line: Asset) -> tuple[int, ...]:
-    """Primary keys of the line's supports in its direction."""
+    """Return the primary keys of the line's supports in its direction."""
     west, south, east, north = line.geometry.extent
     near = (west - BESIDE_DEG, south - BESIDE_DEG, east + BESIDE_DEG, north + BESIDE_DEG)
     supports, ways = supports_and_lines(near, line=line.pk)
@@ -146,7 +146,7 @@ def supports_of_line(line: Asset) -> tuple[int, ...]:
 
 
 def supports_between(line: Asset, start: int, end: int) -> tuple[int, ...]:
-    """Of the line's supports those from one to the other, in this direction. Raises NotOnTheLine."""
+    """Return the line's supports from one to the other, in this direction. Raises NotOnTheLine."""
     supports = supports_of_line(line)
     for support in (start, end):
         if support not in supports:
@@ -156,12 +156,12 @@ def supports_between(line: Asset, start: int, end: int) -> tuple[int, ...]:
 
 
 def stretch_along_lines(start: Asset, end: Asset) -> Stretch:
-    """The way from a support to another along lines, if it can on the circuit of both. Raises NoWayAlongLines."""
+    """Return the path from one support to another along lines, on their common circuit if possible. Raises NoWayAlongLines."""
     (a, b), (c, d) = start.centre.coords, end.centre.coords
     west, south, east, north = min(a, c), min(b, d), max(a, c), max(b, d)
     circuit = _circuit_of(start, end)
     least = 0.25 * max(east - west, north - south)
-    for reach in dict.fromkeys(max(reach, least) for reach in REACHES_DEG):  # of supports far apart both are one
+    for reach in dict.fromkeys(max(reach, least) for reach in REACHES_DEG):  # for distant supports both are the same
         box = (max(west - reach, -180.0), max(south - reach, -90.0), min(east + reach, 180.0), min(north + reach, 90.0))
         supports, lines = supports_and_lines(box)
         stretch = stretch_between(supports, lines, start.pk, end.pk, circuit)
@@ -171,7 +171,7 @@ def stretch_along_lines(start: Asset, end: Asset) -> Stretch:
 
 
 def _circuit_of(start: Asset, end: Asset) -> set[int]:
-    """Lines of a voltage that both supports carry; all lines where they carry none in common."""
+    """Return the lines of a voltage that both supports carry; all lines where they have none in common."""
     of_start, of_end = _voltages_at(start), _voltages_at(end)
     common = of_start & of_end
     lines = Asset.objects.filter(kind=AssetKind.LINE, vanished_at=None, is_flyable=True)
@@ -184,7 +184,7 @@ def _voltages_at(support: Asset) -> set[int]:
 
 
 def sections_of_railway(railway: Asset) -> list[int]:
-    """The railway, and what is joined to it under the same reference or, without one, the same name."""
+    """Return the railway, and sections connected to it with the same reference or, without one, the same name."""
     same = {"ref": railway.ref} if railway.ref else {"name": railway.name} if railway.name else {"pk": railway.pk}
     sections = Asset.objects.filter(kind=AssetKind.RAILWAY, vanished_at=None, **same).values_list("pk", flat=True)
     if len(sections) < 2:
@@ -202,7 +202,7 @@ def sections_of_railway(railway: Asset) -> list[int]:
 
 
 def bridges_of_railway(railway: Asset, *, all_sections: bool, also_over: bool) -> RailwayBridges:
-    """Bridges that carry the section, or all sections of its railway; with `also_over` those that lead over it as well."""
+    """Return the bridges that carry the section, or all sections of its railway; with `also_over` those that cross it as well."""
     sections = sections_of_railway(railway) if all_sections else [railway.pk]
     rows = _rows(
         """

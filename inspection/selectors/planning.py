@@ -1,4 +1,4 @@
-"""What a plan stands on, read at once: the newest graph, the dataset version, and the assets that it visits."""
+"""Data for a plan, read in one statement: the newest graph, the dataset version, and the assets that it visits."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ from inspection.zones.reach import BoolArray, ZoneTable
 from workspace.prepared_statements import prepared_rows
 
 _GROUND = "(SELECT revision, changed_at FROM inspection_ground ORDER BY id LIMIT 1)"
-_EDITION = f"SELECT revision, changed_at FROM {_GROUND} AS ground"  # noqa: S608 - no value of anybody's
+_EDITION = f"SELECT revision, changed_at FROM {_GROUND} AS ground"  # noqa: S608 - constant texts only
 _SNAPSHOT = f"""(SELECT version, ground_revision, arrays_sha256 FROM inspection_graphsnapshot WHERE rules @> '{{"layout": {LAYOUT}}}'
-    ORDER BY version DESC LIMIT 1)"""  # noqa: S608 - no value of anybody's
-# What planning asks of a whole tower or bridge, and what its name is made of; in the model's own order, in which `from_db` takes them.
+    ORDER BY version DESC LIMIT 1)"""  # noqa: S608 - constant texts only
+# Columns of a whole tower or bridge for planning and for its name; in the model's own order, in which `from_db` takes them.
 _ASKED = {
     "id",
     "kind",
@@ -49,12 +49,12 @@ _ALL = f"""
     SELECT snapshot.version, snapshot.ground_revision, snapshot.arrays_sha256, ground.revision, ground.changed_at,
         ST_X(asset.centre), ST_Y(asset.centre), {_ASSET_COLUMNS}
     FROM (SELECT 1) AS one LEFT JOIN {_SNAPSHOT} AS snapshot ON true LEFT JOIN {_GROUND} AS ground ON true
-    LEFT JOIN inspection_asset AS asset ON {_WANTED}"""  # noqa: S608 - no value of anybody's
-_GROUND_COLUMNS = 5  # of _ALL; then come longitude, latitude and the columns of an asset
+    LEFT JOIN inspection_asset AS asset ON {_WANTED}"""  # noqa: S608 - constant texts only
+_GROUND_COLUMNS = 5  # of _ALL; longitude, latitude and the columns of an asset follow
 
 
 class PointAsset(NamedTuple):
-    """A whole tower or bridge, as planning sees it."""
+    """A whole tower or bridge for planning."""
 
     position: LonLat
     key: int
@@ -65,34 +65,34 @@ class PointAsset(NamedTuple):
     columns: tuple[object, ...]
 
     def as_asset(self) -> Asset:
-        """With what its name is made of."""
+        """Return the asset with the columns of its name."""
         asset: Asset = Asset.from_db(DEFAULT_DB_ALIAS, _COLUMNS, self.columns)
         return asset
 
 
 @dataclass(frozen=True, eq=False)
 class PlanningGround:
-    """The newest network, all zones, and the dataset version that they were read with: they are at least as new as it."""
+    """The newest network, all zones, and the dataset version with which they were read: they are at least as new."""
 
     snapshot: SnapshotRow | None
     table: ZoneTable
     dataset_version: DatasetVersion
 
     def zones(self, chosen: BoolArray | None = None) -> ZoneIndex:
-        """All zones, or those where the mask (z,) is true."""
+        """Return all zones, or those where the mask (z,) is true."""
         return zones_of_table(self.table, chosen)
 
     def graph(self, zones: ZoneIndex) -> InspectionGraph:
-        """The network cleared of these zones. Costs nothing more until the network or the zones change. Raises NoGraph."""
+        """Return the network cleared of these zones. Costs nothing more until the network or the zones change. Raises NoGraph."""
         return graph_for(self.snapshot, zones)
 
     def network(self) -> Network:
-        """The network as if there were no zones. Raises NoGraph."""
+        """Return the network without regard to zones. Raises NoGraph."""
         return network_for(self.snapshot)
 
 
 class PlanningRead(NamedTuple):
-    """What one statement has told."""
+    """Result of one statement."""
 
     snapshot: SnapshotRow | None
     dataset_version: DatasetVersion
@@ -103,7 +103,7 @@ class PlanningRead(NamedTuple):
 
 
 def planning_read(points: Sequence[int] = ()) -> PlanningRead:
-    """Graph and ground of now, and of the assets with these keys those that are towers or bridges, by key, in one small query."""
+    """Return the current graph and map data, and the towers and bridges among the assets with these keys, in one small query."""
     rows = prepared_rows(_ALL, [list(points)])
     version, ground_revision, digest, revision, changed_at = rows[0][:_GROUND_COLUMNS]
     found = {}
@@ -120,17 +120,18 @@ def current_dataset_version() -> DatasetVersion:
 
 
 def has_terrain_at(dataset_version: DatasetVersion) -> bool:
-    """Whether there is any terrain model. What brings one in, or takes it out, makes a new dataset version."""
-    return has_terrain() if dataset_version[1] is None else _had_terrain(dataset_version)  # a ground never marked as changed has no version
+    """Whether there is any terrain model. Adding or removing one makes a new dataset version."""
+    # Map data never marked as changed have no version.
+    return has_terrain() if dataset_version[1] is None else _had_terrain(dataset_version)
 
 
 def heights_at(dataset_version: DatasetVersion) -> Callable[[FloatArray], FloatArray] | None:
-    """ground_heights_m over this dataset version, without asking for a newer one each time; None where no terrain model is."""
+    """Return ground_heights_m over this dataset version, without a query for a newer one; None without a terrain model."""
     return partial(ground_heights_m, dataset_version=dataset_version) if has_terrain_at(dataset_version) else None
 
 
 def terrain_at(dataset_version: DatasetVersion) -> tuple[int | None, int]:
-    """The edition of the terrain when this dataset version was first asked about, or a later one."""
+    """Return the terrain version when this dataset version was first read, or a later one."""
     return terrain_dataset_version() if dataset_version[1] is None else _terrain_of(dataset_version)
 
 

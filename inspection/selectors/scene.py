@@ -1,4 +1,4 @@
-"""The ground of a box for the 3D view: terrain, supports and spans, railways, bridges and zones."""
+"""Map data of a box for the 3D view: terrain, supports and spans, railways, bridges and zones."""
 
 import math
 import re
@@ -26,39 +26,41 @@ from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
 
-LAYER_M = 6.5  # a road's or railway's free height below a bridge, with the deck
+LAYER_M = 6.5  # clearance under a bridge over a road or railway, deck included
 MAX_LAYERS = 5
 _LAYER = re.compile(r"-?[0-9]{1,3}")
-RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
+RECIPE = 2  # part of the ETag: incremented when the content of a scene changes
 MIN_SIDE_M, MAX_SIDE_M = 50.0, 40_000.0
 MAX_SHRINKING_LAT_DEG = 85.0
-MAX_POSTS = 225  # of the ground, along each side
-AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
-REACH_DEG = 0.15  # a span is not longer than that in degrees
+MAX_POSTS = 225  # of the terrain, along each side
+AROUND_M = 1_500.0  # terrain, railways, bridges and zones extend this far beyond the box
+REACH_DEG = 0.15  # longest span in degrees
 MAX_SUPPORTS, MAX_SPANS, MAX_RAILWAYS, MAX_BRIDGES, MAX_ZONES = 4_000, 6_000, 1_500, 1_500, 200
-SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
+SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred metres: for outlines of zones
 MAX_CORNERS = 4_000  # of a zone
 Row = TypeVar("Row", Asset, NoFlyZone)
 
 
 def layer_of(tags: Mapping[str, str]) -> int:
-    """How many things lie below it: 1 if it is not stated."""
+    """Return the number of layers below it; 1 if it is not stated."""
     stated = _LAYER.fullmatch(tags.get("layer", "").strip())
     return min(max(int(stated[0]), 1), MAX_LAYERS) if stated else 1
 
 
 def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
-    """Level, no lower than the highest ground at the bridge's edge, and with a layer's room over the lowest. ground_m of shape (n,)."""
+    """Return a level deck height: at least the highest terrain at its edge, and layer clearances over the lowest.
+    ground_m of shape (n,).
+    """
     return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
 
 
 class UnfitBox(Exception):
-    """Its message is a key of the catalogues."""
+    """Raised for an invalid box; its message is a key of the catalogues."""
 
 
 @dataclass(frozen=True, eq=False)
 class SceneGround:
-    """kind: terrain, partly or flat; altitude_amsl_m (rows, columns), from the north-west."""
+    """Terrain of a scene. kind: terrain, partly or flat; altitude_amsl_m (rows, columns), from the north-west."""
 
     kind: str
     west_deg: float
@@ -80,7 +82,7 @@ class SceneBridge:
 
 @dataclass(frozen=True, eq=False)
 class SceneZone:
-    """A limit is open where planners count it so: not stated, counted from elsewhere, or above the sea over unknown ground."""
+    """A zone of a scene. A limit is open where planners count it so: not stated, another reference, or AMSL over unknown terrain."""
 
     zone: NoFlyZone
     shape: shapely.geometry.base.BaseGeometry
@@ -95,7 +97,7 @@ class SceneContent:
     origin_amsl_m: float
     ground: SceneGround
     place: Overhead
-    support_amsl_m: FloatArray  # of the ground at each
+    support_amsl_m: FloatArray  # of the terrain at each
     supports: list[DrawnSupport]
     spans: list[DrawnSpan]
     assets: dict[int, Asset]  # of supports
@@ -111,7 +113,7 @@ class SceneContent:
 
 
 def check_box(box: Box) -> None:
-    """Raises UnfitBox."""
+    """Raise UnfitBox for an invalid box."""
     west, south, east, north = box
     if west > east:
         raise UnfitBox(gettext_noop("A scene does not cross the 180th meridian."))
@@ -125,7 +127,7 @@ def check_box(box: Box) -> None:
 
 
 def scene_in(box: Box) -> SceneContent:
-    """Raises UnfitBox."""
+    """Return the content of a box. Raises UnfitBox."""
     check_box(box)
     clip = _wider(box, AROUND_M)
     ground = _ground(clip)
@@ -164,7 +166,7 @@ def scene_in(box: Box) -> SceneContent:
 
 
 def _sides_m(box: Box) -> tuple[float, float]:
-    """From west to east where the box is widest, and from south to north."""
+    """Return the longest side from west to east, and the side from south to north."""
     west, south, east, north = box
     nearest_equator = 0.0 if south <= 0.0 <= north else min(south, north, key=abs)
     frame = LocalFrame.around(west, nearest_equator)
@@ -179,7 +181,7 @@ def _wider(box: Box, by_m: float) -> Box:
 
 
 def _ground(box: Box) -> SceneGround:
-    """As fine as the terrain model there, or as MAX_POSTS allow."""
+    """Return the terrain as fine as the model there, or as MAX_POSTS allow."""
     west, south, east, north = box
     step_m = 2.0 * finest_step_m(box)
     columns, rows = (min(max(math.ceil(side_m / step_m) + 1, 2), MAX_POSTS) for side_m in _sides_m(box))
@@ -197,13 +199,13 @@ def _ground(box: Box) -> SceneGround:
 
 
 def _reported(positions: FloatArray, ground: SceneGround) -> FloatArray:
-    """The ground at positions (n, 2); where no model tells, as the scene's own ground is filled."""
+    """Return the terrain heights at positions (n, 2); where no model has data, as the scene's own terrain is filled."""
     heights = np.full(len(positions), np.nan) if ground.kind == "flat" else ground_heights_m(positions)
     return np.where(np.isnan(heights), ground.altitude_amsl_m.mean() if ground.kind != "flat" else 0.0, heights)
 
 
 def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
-    """Read twice: the lines that touch the box, and then all that stands and runs where their spans lead."""
+    """Return supports and spans, read twice: first the lines that touch the box, then everything within reach of their spans."""
     _, lines = supports_and_lines(box)
     supports, lines = supports_and_lines(_reach(box, lines))
     found = overhead(supports, lines, box)
@@ -215,7 +217,7 @@ def _overhead(box: Box, middle: FloatArray) -> tuple[Overhead, dict[str, int]]:
 
 
 def _reach(box: Box, lines: InfrastructureWays) -> Box:
-    """The box, with the ends of all spans that touch it; spans longer than REACH_DEG stay cut."""
+    """Return the box extended by the ends of all spans that touch it; spans longer than REACH_DEG stay cut."""
     west, south, east, north = box
     start = lines.leg_start
     ends = np.stack([lines.position[start], lines.position[start + 1]], axis=1)
@@ -251,7 +253,7 @@ def _in_area(kind: AssetKind, clip: Box) -> "QuerySet[StoredAsset]":
 
 
 def _shape(row: StoredAsset | StoredZone, clip: Box) -> shapely.geometry.base.BaseGeometry:
-    """What of it lies in the box; bridges whole."""
+    """Return the part of the shape in the box; bridges whole."""
     shape = shapely.force_2d(shapely.from_wkb(bytes(row.wkb)))
     if isinstance(row, Asset) and row.kind == AssetKind.BRIDGE:
         return shape
@@ -261,7 +263,7 @@ def _shape(row: StoredAsset | StoredZone, clip: Box) -> shapely.geometry.base.Ba
 
 
 def _with_fewer_corners(shape: shapely.geometry.base.BaseGeometry) -> shapely.geometry.base.BaseGeometry:
-    """Half a metre off at most, or as much as it takes to have no more than MAX_CORNERS."""
+    """Return the shape simplified by half a metre, or by as much as MAX_CORNERS requires."""
     tolerance_deg = SIMPLER_DEG
     while True:
         simpler = shapely.simplify(shape, tolerance_deg)
@@ -273,7 +275,7 @@ def _with_fewer_corners(shape: shapely.geometry.base.BaseGeometry) -> shapely.ge
 def _nearest(
     rows: Iterable[tuple[Row, shapely.geometry.base.BaseGeometry]], middle: FloatArray, most: int
 ) -> tuple[list[tuple[Row, shapely.geometry.base.BaseGeometry]], int]:
-    """The rows nearest to the middle, in their order, and how many are left out; those without anything in the box are neither."""
+    """Return the rows nearest to the middle in their order, and the number of omitted ones; rows outside the box do not count."""
     there = [(row, shape) for row, shape in rows if not shape.is_empty]
     if len(there) <= most:
         return there, 0
@@ -299,7 +301,7 @@ def _bridges(rows: list[tuple[Asset, shapely.geometry.base.BaseGeometry]], groun
 
 
 def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, edge_m: FloatArray) -> SceneBridge:
-    """height_m is what planners count as its top. edge_m: the ground at its corners."""
+    """Return a bridge. height_m is its top as planners count it. edge_m: the terrain at its corners."""
     tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
     if asset.height_m is not None:
         deck_m, source = float(edge_m.mean()) + asset.height_m, "tag"

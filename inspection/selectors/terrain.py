@@ -1,4 +1,4 @@
-"""Heights of the ground from the stored terrain models."""
+"""Terrain heights from the stored models."""
 
 from functools import lru_cache
 from threading import Lock
@@ -21,52 +21,52 @@ def has_terrain() -> bool:
 
 
 def terrain_dataset_version() -> tuple[int | None, int]:
-    """Another one after every change of the terrain, and the same one after other changes of the ground."""
+    """Return a value that changes with the terrain only, not with other map data."""
     tiles = TerrainTile.objects.aggregate(newest=Max("pk"), number=Count("pk"))
     return tiles["newest"], tiles["number"]
 
 
 def ground_heights_m(positions: FloatArray, dataset_version: DatasetVersion | None = None) -> FloatArray:
-    """Height of the ground above sea level [m] at positions of shape (n, 2), lon lat [deg]; NaN where no terrain model tells.
+    """Return terrain heights above sea level [m] at positions of shape (n, 2), lon lat [deg]; NaN where no model has data.
 
-    Where models overlap the newest counts, and an older one fills its voids. edition: of the ground that was just read; None: it is read.
+    Where models overlap the newest counts, and older ones fill its voids. dataset_version: one just read; None: read it.
     """
     return ground_truth(positions, dataset_version).heights_m
 
 
 def ground_truth(positions: FloatArray, dataset_version: DatasetVersion | None = None) -> TerrainHeights:
-    """As ground_heights_m, with the model that each height is from."""
+    """Return ground_heights_m with the model of each height."""
     return _tiles(dataset_version or ground_dataset_version()).heights_at(positions)
 
 
 def grids_around(box: tuple[float, float, float, float], most: int) -> list[HeightGrid] | None:
-    """The tiles that touch west, south, east, north [deg], or the gaps between them; None if they are more than `most`."""
+    """Return the tiles that touch west, south, east, north [deg], or the gaps between them; None if there are more than `most`."""
     tiles = tiles_around(box)
     return None if len(tiles) > most else [grid for _, grid in tiles.grids()]
 
 
 def tiles_around(box: tuple[float, float, float, float], dataset_version: DatasetVersion | None = None) -> TiledTerrain:
-    """The same as a terrain of their own. dataset_version: of the ground that was just read; None: it is read."""
+    """Return the same as a separate terrain. dataset_version: one just read; None: read it."""
     return _tiles(dataset_version or ground_dataset_version()).around(box)
 
 
 @lru_cache(maxsize=2)
 def _tiles(dataset_version: DatasetVersion) -> TiledTerrain:
-    """The tiles as they stand at this edition of the ground; what brings them in or takes them out makes a new one."""
+    """Return the tiles of this dataset version; adding or removing tiles makes a new one."""
     fields = ("pk", "data_import_id", "west_deg", "north_deg", "step_lon_deg", "step_lat_deg", "columns", "rows")
     rows = np.array(list(TerrainTile.objects.order_by("-pk").values_list(*fields)), dtype=np.float64).reshape(-1, len(fields))
     return TiledTerrain(rows[:, 0].astype(np.int64), rows[:, 1].astype(np.int64), rows[:, 2:6], rows[:, 6:8].astype(np.int64), _grids.grid)
 
 
 class _Grids:
-    """The tiles last used, unpacked; tiles are never changed, only added and taken out."""
+    """Cache of unpacked tiles by last use; tiles are never changed, only added and removed."""
 
     def __init__(self) -> None:
         self._kept: dict[int, HeightGrid] = {}
         self._lock = Lock()
 
     def grid(self, keys: IntArray, number: int, wanted: IntArray) -> HeightGrid | None:
-        """The tile `number` of keys; None for one that an import has replaced in the meantime. The next ones of `wanted` come with it."""
+        """Return the tile `number` of keys; None if an import has replaced it. The next ones of `wanted` are loaded with it."""
         key = int(keys[number])
         with self._lock:
             grid = self._kept.pop(key, None)
@@ -75,7 +75,7 @@ class _Grids:
                 self._fetch([other for other in following if other not in self._kept])
                 grid = self._kept.pop(key, None)
             if grid is not None:
-                self._kept[key] = grid  # the one last used stands last
+                self._kept[key] = grid  # last used, last in order
             return grid
 
     def _fetch(self, keys: list[int]) -> None:

@@ -1,4 +1,4 @@
-"""The terrain models in use: where they reach, how fine they are, and which of them counts where several lie."""
+"""The terrain models in use: extents, resolutions, and precedence where several overlap."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,25 +14,25 @@ from inspection.models import DataImport, ImportKind
 from inspection.selectors.ground import ground_dataset_version
 
 DEGREE_M = 111_320.0  # of latitude, and of longitude at the equator
-USUAL_STEP_M = 30.0  # where no model reaches
-_SNAP_DEG = 1e-7  # edges of neighbouring tiles are the same but for rounding
+USUAL_STEP_M = 30.0  # without a model
+_SNAP_DEG = 1e-7  # edges of neighbouring tiles are equal except for rounding
 
 
 @dataclass(frozen=True)
 class TerrainModel:
-    """One file. Of several at a place the newest counts, and an older one fills its voids."""
+    """One file. Where several overlap the newest counts, and older ones fill its voids."""
 
     data_import: DataImport
     footprint: GEOSGeometry  # of its blocks that have heights
     extent: tuple[float, float, float, float]  # west, south, east, north [deg]
     vertical_datum: str
     resolution_m: float
-    over: tuple[int, ...]  # older models that lie under parts of it
-    step_at: tuple[str, ...]  # other datums that heights are counted from where it meets or covers another model
+    over: tuple[int, ...]  # older models under parts of it
+    step_at: tuple[str, ...]  # other vertical datums where it meets or covers another model
 
 
 def terrain_models() -> list[TerrainModel]:
-    """Newest first: what counts on top."""
+    """Return the models, newest first, in order of precedence."""
     return list(_models(ground_dataset_version()))
 
 
@@ -41,7 +41,7 @@ def model_of(data_import: int) -> TerrainModel | None:
 
 
 def finest_step_m(box: tuple[float, float, float, float]) -> float:
-    """Half of what lies between the posts of the finest model that touches a box: more places tell nothing more."""
+    """Return half the post distance of the finest model that touches a box: denser samples add no information."""
     west, south, east, north = box
     steps = [
         model.resolution_m / 2
@@ -53,7 +53,7 @@ def finest_step_m(box: tuple[float, float, float, float]) -> float:
 
 @lru_cache(maxsize=2)
 def _models(dataset_version: object) -> tuple[TerrainModel, ...]:
-    """The models as they stand at this dataset version."""
+    """Return the models of this dataset version."""
     rows = (
         DataImport.objects.filter(kind=ImportKind.TERRAIN, terrain_tiles__isnull=False)
         .annotate(

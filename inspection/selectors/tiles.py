@@ -14,11 +14,11 @@ from workspace.cache_unavailable import CACHE_UNAVAILABLE
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
 MAX_ZOOM = 22
-RECIPE = 6  # part of the ETag: counts the changes to this file's statements
+RECIPE = 6  # part of the ETag: incremented when this file's statements change
 EXTENT = 4096
 BUFFER = 64  # in units of the extent
 MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
-# From which zoom on a thing is in the tiles: ui.md section 6. A tile of zoom z serves the map up to z + 1.
+# Zoom levels from which objects are in the tiles: ui.md section 6. A tile of zoom z serves the map up to z + 1.
 ALL_VOLTAGES_ZOOM = 10
 MEDIUM_VOLTAGE_ZOOM, MEDIUM_VOLTAGE_V = 8, 50_000
 HIGH_VOLTAGE_V = 100_000
@@ -27,9 +27,9 @@ BRIDGE_ZOOM = 10
 TOWER_ZOOM = 10
 OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
 ZONE_LABEL_ZOOM = 9
-MAX_SCHEDULE_LENGTH = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
+MAX_SCHEDULE_LENGTH = 4_000  # characters; a tile omits longer schedules
 MAX_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
-MAX_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
+MAX_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: more would add no information, and make tiles slow and large
 TOWERS = """inspection_asset LEFT JOIN (
     SELECT id AS own_id, max_voltage_v AS line_voltage_v,
            COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
@@ -46,9 +46,9 @@ SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 
 
 def tile_of_version(zoom: int, column: int, row: int, dataset_version: str | None) -> bytes:
-    """The tile of the ground as it is now, in the reader's language. Raises NoSuchTile.
+    """Return the tile of the current map data in the reader's language. Raises NoSuchTile.
 
-    `dataset_version` is another text after each change of the ground and in each language; with None nothing is kept.
+    `dataset_version` is a text that differs after each change of the map data and for each language; None disables the cache.
     """
     if dataset_version is None or zoom > LAST_KEPT_ZOOM:
         return vector_tile(zoom, column, row)
@@ -72,7 +72,7 @@ def _asset_columns(kind: AssetKind, voltage_v: str = "max_voltage_v") -> str:
 
 
 LINE_COLUMNS, RAILWAY_COLUMNS, BRIDGE_COLUMNS = map(_asset_columns, (AssetKind.LINE, AssetKind.RAILWAY, AssetKind.BRIDGE))
-TOWER_COLUMNS = _asset_columns(AssetKind.TOWER, LINE_VOLTAGE_V)  # from which zoom on a tower is drawn goes by its line
+TOWER_COLUMNS = _asset_columns(AssetKind.TOWER, LINE_VOLTAGE_V)  # its line determines from which zoom a tower is drawn
 
 
 @dataclass(frozen=True)
@@ -81,9 +81,9 @@ class Layer:
     from_zoom: int
     columns: str
     source: str  # table and condition
-    shape: str  # what is drawn, in EPSG:4326
-    found_by: str  # the indexed column that is compared with the tile's box
-    order: str  # the most important first
+    shape: str  # the drawn geometry, in EPSG:4326
+    found_by: str  # indexed column compared with the tile's box
+    order: str  # most important first
 
 
 LAYERS = (
@@ -107,11 +107,11 @@ LAYERS = (
 
 
 class NoSuchTile(Exception):
-    """The address lies outside the pyramid of tiles."""
+    """Raised for an address outside the pyramid of tiles."""
 
 
 def vector_tile(zoom: int, column: int, row: int) -> bytes:
-    """The Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
+    """Return the Mapbox vector tile; empty where there is nothing. Raises NoSuchTile."""
     if not (0 <= zoom <= MAX_ZOOM and 0 <= column < 2**zoom and 0 <= row < 2**zoom):
         raise NoSuchTile
     layers = [layer for layer in LAYERS if zoom >= layer.from_zoom]
@@ -139,11 +139,11 @@ def _layer_sql(layer: Layer) -> str:
                 FROM {layer.source} AND {layer.found_by} && ST_MakeEnvelope(%(west)s, %(south)s, %(east)s, %(north)s, 4326)
                 ORDER BY {layer.order} LIMIT %(most)s
             ) drawn WHERE geom IS NOT NULL
-        ) feature), '')"""  # noqa: S608 - put together from the constants above alone
+        ) feature), '')"""  # noqa: S608 - made of the constants above only
 
 
 def _box_deg(zoom: int, column: int, row: int) -> tuple[float, float, float, float]:
-    """West, south, east, north of the tile with its buffer, in degrees."""
+    """Return west, south, east, north of the tile with its buffer, in degrees."""
     size_m = 2 * MERCATOR_LIMIT_M / 2**zoom
     margin_m = size_m * BUFFER / EXTENT
     west_m = column * size_m - MERCATOR_LIMIT_M

@@ -1,4 +1,4 @@
-"""Zone sets with what is known of their sources, their versions, and what is fetched for them."""
+"""Zone sets with their sources, versions and fetches."""
 
 from typing import TYPE_CHECKING, TypedDict
 
@@ -14,7 +14,7 @@ BY_NAME = ("name", "pk")
 
 
 class ZoneSetCounts(TypedDict):
-    """What the query for sets counts."""
+    """Counts in the query for sets."""
 
     zone_count: int
     edited_count: int
@@ -30,7 +30,7 @@ else:
 
 
 def zone_sets() -> QuerySet[CountedZoneSet]:
-    """All sets, with their numbers of zones, of edited zones and of versions."""
+    """Return all sets, with their numbers of zones, of edited zones and of versions."""
 
     def number_of(model: type[NoFlyZone | ZoneSetVersion], **condition: bool) -> Coalesce:
         rows = model._default_manager.filter(**condition, zone_set=OuterRef("pk")).order_by().values("zone_set")
@@ -52,6 +52,6 @@ def zone_subscriptions() -> QuerySet[ZoneSubscription]:
 
 
 def open_fetch_of(subscription: ZoneSubscription) -> Job | None:
-    """The job that fetches for the subscription now, or will soon."""
+    """Return the open job that fetches for the subscription."""
     jobs = Job.objects.filter(task=FETCH_TASK, state__in=(JobState.QUEUED, JobState.RUNNING), parameters__subscription=subscription.pk)
     return jobs.order_by("-created_at").first()

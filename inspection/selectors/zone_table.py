@@ -1,4 +1,4 @@
-"""The table of all zones of the ground: where they are, which heights above ground they may reach, and when they apply."""
+"""The table of all zones: areas, the heights above ground that they may reach, and when they apply."""
 
 import math
 from collections import OrderedDict
@@ -17,8 +17,8 @@ from inspection.selectors.terrain import grids_around, ground_heights_m, terrain
 from inspection.terrain.heights import HeightGrid
 from inspection.zones.reach import HeightLimits, ZoneTable, agl_band
 
-MAX_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; the ground under a larger zone counts as not known
-MAX_VOIDS = 10_000  # posts without a height under one zone that are looked up in older models
+MAX_TILES = 256  # of terrain under one zone, some 120 km square at 30 m; under a larger zone it counts as unknown
+MAX_VOIDS = 10_000  # posts without a height under one zone that are searched in older models
 KEPT_RANGES = 20_000
 COLUMNS = ("pk", "name", "wkb", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule")
 
@@ -31,16 +31,16 @@ _ranges: OrderedDict[tuple[tuple[int | None, int], bytes], GroundRange] = Ordere
 
 
 def zone_table() -> ZoneTable:
-    """The zones of the ground as it is now. Costs one small query until they change."""
+    """Return the current zones. Costs one small query until they change."""
     return zone_table_of_version(ground_dataset_version())
 
 
 def zone_table_of_version(key: tuple[int, datetime | None]) -> ZoneTable:
-    """The zones of an edition of the ground that has just been read: they are at least as new as that."""
+    """Return the zones of a dataset version that has just been read: they are at least as new."""
     global _table
     remembered = _table
     if remembered is None or remembered[0] != key or remembered[1].rules != settings.ZONE_RULES or key[1] is None:
-        _table = remembered = key, _read()  # a ground without an edition has never been marked as changed
+        _table = remembered = key, _read()  # map data without a version were never marked as changed
     return remembered[1]
 
 
@@ -69,7 +69,7 @@ def _read() -> ZoneTable:
 
 
 def _kept_range(terrain: tuple[int | None, int], wkb: bytes, polygon: shapely.MultiPolygon) -> GroundRange:
-    """Worked out once for a polygon over a terrain: a zone that comes in costs no look at the ground under the others."""
+    """Return the range, cached per polygon and terrain: a new zone requires no terrain queries under the others."""
     key = terrain, wkb
     with _lock:
         if key in _ranges:
@@ -84,9 +84,9 @@ def _kept_range(terrain: tuple[int | None, int], wkb: bytes, polygon: shapely.Mu
 
 
 def ground_range_m(polygon: shapely.MultiPolygon) -> GroundRange:
-    """The lowest and the highest ground above sea level [m] under a polygon's box, in any terrain model; NaN if it is unknown anywhere.
+    """Return the lowest and highest terrain above sea level [m] under a polygon's box, in any model; NaN if it is unknown anywhere.
 
-    Every post of the models is looked at, and between posts the ground is between them: the range can be too wide, not too narrow.
+    All posts of the models are read, and the terrain between posts is within their range: it can be too wide, but not too narrow.
     """
     if polygon.is_empty:
         return UNKNOWN
@@ -111,7 +111,7 @@ def ground_range_m(polygon: shapely.MultiPolygon) -> GroundRange:
 
 
 def _are_under_all_of(grids: list[HeightGrid], polygon: shapely.MultiPolygon) -> bool:
-    """Whether the grids, each half a step wider than its outermost posts, leave nothing of the polygon out."""
+    """Whether the grids, each half a step wider than its outermost posts, cover the whole polygon."""
     extents = np.array([grid.extent for grid in grids])
     half = np.array([[grid.step_lon_deg, grid.step_lat_deg] for grid in grids]) * 0.501
     covered = shapely.union_all(
@@ -121,7 +121,7 @@ def _are_under_all_of(grids: list[HeightGrid], polygon: shapely.MultiPolygon) ->
 
 
 def _posts(grid: HeightGrid, box: tuple[float, float, float, float]) -> tuple[FloatArray, FloatArray]:
-    """Heights (rows, columns) of the posts in the box and of those around it, and their positions (rows * columns, 2)."""
+    """Return heights (rows, columns) of the posts in the box and of those around it, and their positions (rows * columns, 2)."""
     west, south, east, north = box
     rows, columns = grid.heights_m.shape
     left, right = math.floor((west - grid.west_deg) / grid.step_lon_deg), math.ceil((east - grid.west_deg) / grid.step_lon_deg)

@@ -16,7 +16,9 @@ MAX_ZONES = 200
 
 @dataclass(frozen=True)
 class ZoneStretch:
-    """Where a line lies in a zone; a line may enter a zone several times. is_crossed: it does not merely pass near it there."""
+    """The part of a line in a zone; a line may enter a zone several times. is_crossed: it enters the zone instead of
+    only passing near it.
+    """
 
     zone: NoFlyZone
     from_m: float
@@ -25,7 +27,7 @@ class ZoneStretch:
 
 
 def zones_along(line: FloatArray, near_m: float = 0.0) -> list[ZoneStretch]:
-    """line of shape (k, 2), lon lat [deg]; in the order of the line. With near_m also where it passes within so many metres of a zone."""
+    """Return the zones along a line of shape (k, 2), lon lat [deg], in its order; near_m: also where it passes this near."""
     path = LineString(line.tolist(), srid=4326)
     fields = ("name", "geometry", "lower_limit_m", "lower_reference", "upper_limit_m", "upper_reference", "schedule")
     around = _box_around(line, near_m) if near_m else path

@@ -1,1 +1,1 @@
-"""Shapes of the ground in the API."""
+"""Shapes of map data in the API."""

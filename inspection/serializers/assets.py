@@ -59,7 +59,7 @@ FIELDS_OF_AN_ASSET = (
 
 
 def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[str, Any]:
-    """`asset` comes with `geometry_json` from inspection.selectors, `reference` is the reader's organisation's."""
+    """Return the feature. `asset` has `geometry_json` from inspection.selectors, `reference` is that of the reader's organisation."""
     properties = {
         "kind": asset.kind,
         "subtype": asset.subtype,

@@ -25,19 +25,19 @@ def figure(value: float, digits: int = 0) -> str:
 
 
 def kilometres(metres: float) -> str:
-    """ "11.3 km", "0.32 km": for spans, which are compared with each other. The space does not break."""
+    """Return "11.3 km" or "0.32 km", for spans, which users compare. The space does not break."""
     return f"{figure(metres / 1_000, 2 if metres < 1_000 else 1)}\N{NO-BREAK SPACE}km"
 
 
 def length(metres: float) -> str:
-    """ "2.6 m", "698 m", "34.2 km"."""
+    """Return "2.6 m", "698 m" or "34.2 km"."""
     if metres < 999.5:
         return f"{figure(metres, 1 if metres < 20 else 0)}\N{NO-BREAK SPACE}m"
     return kilometres(metres)
 
 
 def title(kind: str, details: Details) -> str:
-    """A few words; the asset's own name stands beside them."""
+    """Return a short title; the asset's own name is shown beside it."""
     match kind:
         case "long_span":
             return _("Span of %(length)s") % {"length": kilometres(details["span_m"])}
@@ -72,7 +72,7 @@ def _voltage_title(details: Details) -> str:
 
 
 def sentence(kind: str, details: Details) -> str:
-    """What is wrong, then what follows from it."""
+    """Return what is wrong and its consequence."""
     return _SENTENCES[kind](details)
 
 
@@ -241,7 +241,7 @@ class RepairedSerializer(serializers.Serializer):
 
 
 def issue_feature(issue: DrawnIssue, repairs: list[dict[str, Any]], reader: User) -> dict[str, Any]:
-    """`issue` comes with `geometry_json` from inspection.selectors.data_issues."""
+    """Return the feature. `issue` has `geometry_json` from inspection.selectors.data_issues."""
     properties = {
         "kind": issue.kind,
         "state": issue.state,

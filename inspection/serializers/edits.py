@@ -1,4 +1,4 @@
-"""What curators send: assets, zones, and geometry to be checked."""
+"""Curators' requests: assets, zones, and geometry to be checked."""
 
 from typing import Any
 
@@ -30,7 +30,7 @@ def _stated(value: Any, place: str) -> Any:
 
 
 class AssetInputSerializer(serializers.Serializer):
-    """An asset that somebody draws or corrects. Lengths in metres, voltages in volts."""
+    """An asset that a user draws or corrects. Lengths in metres, voltages in volts."""
 
     kind = serializers.ChoiceField(choices=AssetKind.choices)
     geometry = serializers.JSONField(help_text="GeoJSON: a Point for a tower, a LineString for a line or railway, a Polygon for a bridge")
@@ -75,14 +75,14 @@ class AssetInputSerializer(serializers.Serializer):
 
 
 class LimitInputSerializer(serializers.Serializer):
-    """A height always says from where it is counted."""
+    """A height with its reference."""
 
     value_m = serializers.FloatField(min_value=-1_000, max_value=MAX_LIMIT_M)
     reference = serializers.ChoiceField(choices=HeightReference.choices)
 
 
 class ZoneInputSerializer(serializers.Serializer):
-    """A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0."""
+    """A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0."""
 
     name = serializers.CharField(max_length=255)
     geometry = serializers.JSONField(required=False, allow_null=True, help_text="GeoJSON Polygon or MultiPolygon")

@@ -1,4 +1,4 @@
-"""What all shapes of the ground are made of: GeoJSON features and their collections, and where something came from."""
+"""Common parts of map data shapes: GeoJSON features and collections, and sources."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ class GeometrySerializer(serializers.Serializer):
 
 
 class SourceSerializer(serializers.Serializer):
-    """The file that something came from."""
+    """The file that a row came from."""
 
     file_name = serializers.CharField()
     attribution = serializers.CharField(help_text="author and licence")

@@ -1,4 +1,4 @@
-"""What comes in: uploads, proposals, and the lines of their differences."""
+"""Uploads, proposals, and the lines of their differences."""
 
 import json
 from itertools import zip_longest
@@ -35,7 +35,7 @@ class UploadSerializer(serializers.Serializer):
 
 
 class ProvenanceInputSerializer(serializers.Serializer):
-    """Where a file comes from, as far as it does not say so itself."""
+    """A file's source, as far as the file itself does not state it."""
 
     source_address = serializers.URLField(max_length=500, required=False, allow_blank=True)
     licence = serializers.CharField(max_length=200, required=False, allow_blank=True)
@@ -87,7 +87,7 @@ class HeldBackSerializer(serializers.Serializer):
 
 
 class ProposalSerializer(serializers.Serializer):
-    """What a file would change. Nothing of it counts before somebody applies it."""
+    """The changes that a file would make. None of them counts before a user applies them."""
 
     id = serializers.UUIDField()
     kind = serializers.ChoiceField(choices=ImportKind.choices)
@@ -158,7 +158,7 @@ def _job_json(job: Job) -> dict[str, Any]:
 
 
 def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = False) -> dict[str, Any]:
-    """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
+    """Return a proposal; in a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
     whole = proposal.summary if reader.organisation_id == proposal.organisation_id else _without_external_ids(proposal.summary)
     summary = {name: value for name, value in whole.items() if not (is_brief and isinstance(value, dict | list))}
@@ -192,7 +192,7 @@ def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = Fa
 
 
 def _without_external_ids(summary: dict[str, Any]) -> dict[str, Any]:
-    """Of an asset file, for other organisations: the values of the column that has, or seems to have, the owner's ids are left out."""
+    """Return an asset file's summary for other organisations, without values of columns that are or may be the owner's external ids."""
     if "columns" not in summary:
         return summary
     mappings = (summary.get("mapping", {}), summary.get("suggested_mapping", {}))

@@ -1,4 +1,4 @@
-"""Assets as short rows to pick from, and what is asked to get them."""
+"""Assets as short rows to pick from, and the requests for them."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -15,7 +15,7 @@ MAX_CORNERS = 5_000
 
 
 class PickedAssetSerializer(serializers.Serializer):
-    """What a list of targets shows of an asset; its shape: GET /assets/{id}."""
+    """An asset as a list of targets shows it; for its shape see GET /assets/{id}."""
 
     id = serializers.IntegerField()
     kind = serializers.ChoiceField(choices=AssetKind.choices)
@@ -81,7 +81,7 @@ class StretchPartSerializer(serializers.Serializer):
 
 
 class SupportsOutputSerializer(serializers.Serializer):
-    """The supports in order, and of which lines what is between them."""
+    """The supports in order, and the lines between them."""
 
     supports = PickedAssetSerializer(many=True)
     parts = StretchPartSerializer(many=True, help_text="empty where whole lines were asked for")
@@ -94,7 +94,7 @@ class BridgesOutputSerializer(serializers.Serializer):
 
 
 def picked_assets(keys: Iterable[int]) -> list[dict[str, Any]]:
-    """The assets of these primary keys, in their order."""
+    """Return the assets of these primary keys, in their order."""
     listed = list(keys)
     rows = Asset.objects.select_related("line").only(*FIELDS_OF_AN_ASSET).in_bulk(set(listed))
     return [picked_asset(rows[key]) for key in listed if key in rows]

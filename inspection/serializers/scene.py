@@ -1,4 +1,4 @@
-"""The ground of a box for the 3D view, as docs/scene.md tells it."""
+"""Map data of a box for the 3D view, as described in docs/scene.md."""
 
 from typing import Any
 
@@ -19,11 +19,11 @@ from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_j
 from workspace.jobs.serializers import Declared
 
 DEGREE_DIGITS, METRE_DIGITS = 7, 2
-OPEN_TOP_AGL_M = 180.0  # a zone without an upper limit is drawn as high: half as much again as anything flies
+OPEN_TOP_AGL_M = 180.0  # drawn height of a zone without an upper limit: half as much again as the highest flight
 
 
 class GroundGridSerializer(serializers.Serializer):
-    """Heights of the ground on a grid; bilinear between its posts."""
+    """Terrain heights on a grid; bilinear between its posts."""
 
     kind = serializers.ChoiceField(choices=["terrain", "partly", "flat"], help_text="partly: what is unknown has the mean of the rest")
     west_deg = serializers.FloatField()
@@ -42,7 +42,7 @@ class PairField(serializers.ListField):
 
 
 class SupportSerializer(serializers.Serializer):
-    """A tower, pole or portal, or a place where a line bends and none is mapped."""
+    """A tower, pole or portal, or a bend of a line without a mapped support."""
 
     id = serializers.IntegerField(allow_null=True)
     label: Declared = serializers.CharField(allow_null=True)
@@ -73,7 +73,7 @@ class SpanSerializer(serializers.Serializer):
     sag_m = serializers.FloatField(help_text="of a phase in the middle, below the straight line between its ends")
 
     def get_fields(self) -> dict[str, Any]:
-        """With the one whose name Python keeps for itself."""
+        """Return the fields with `from`, which is a Python keyword."""
         return {"from": serializers.IntegerField(help_text="place in supports"), **super().get_fields()}
 
 
@@ -121,7 +121,7 @@ class SceneZoneSerializer(serializers.Serializer):
 
 
 class SceneRulesSerializer(serializers.Serializer):
-    """What was assumed, the same for all."""
+    """Assumptions for the whole scene."""
 
     catenary_m = serializers.FloatField(help_text="horizontal pull over weight by length of a phase")
     most_sag_share = serializers.FloatField(help_text="of the lowest slot's height: no sag is greater")

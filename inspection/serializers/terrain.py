@@ -1,4 +1,4 @@
-"""Terrain: the models, the height at a place, the profile along a line."""
+"""Terrain: models, the height at a position, the profile along a line."""
 
 from typing import Any
 
@@ -58,7 +58,7 @@ class ModelFeatureSerializer(serializers.Serializer):
 
 
 class ModelCollectionSerializer(serializers.Serializer):
-    """Newest first: what counts on top where models overlap."""
+    """Models, newest first, in order of precedence where they overlap."""
 
     type = serializers.ChoiceField(choices=["FeatureCollection"])
     features = ModelFeatureSerializer(many=True)
@@ -80,7 +80,7 @@ class ProfileInputSerializer(serializers.Serializer):
 
 
 class ZoneAlongSerializer(serializers.Serializer):
-    """A stretch of the line that lies in a zone, or as near to it as was asked."""
+    """A stretch of the line in a zone, or within the requested distance of it."""
 
     id = serializers.IntegerField()
     name = serializers.CharField()
@@ -93,7 +93,7 @@ class ZoneAlongSerializer(serializers.Serializer):
 
 
 class ZoneMarginsSerializer(serializers.Serializer):
-    """What plans keep from zones."""
+    """Margins that plans keep from zones."""
 
     time_s = serializers.FloatField(help_text="before and after their times")
     height_m = serializers.FloatField(help_text="below and above their limits")
@@ -128,7 +128,7 @@ class HeightsInputSerializer(serializers.Serializer):
 
 
 class HeightsSerializer(serializers.Serializer):
-    """The same heights in each reference; null where the ground is not known."""
+    """The same heights in each reference; null where the terrain is unknown."""
 
     ground_amsl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
     altitude_agl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))

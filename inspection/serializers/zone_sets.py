@@ -1,4 +1,4 @@
-"""Zone sets, their versions and their subscriptions. They state facts: what a source says, and when it was asked; no verdict on it."""
+"""Zone sets, their versions and subscriptions. They state facts without an assessment: the source's data, and when it was fetched."""
 
 from typing import Any
 
@@ -16,13 +16,13 @@ MAX_INTERVAL_H = 24 * 90
 
 
 class ZoneSetSourceSerializer(SourceSerializer):
-    """The file that the set last took over."""
+    """The file that the set last imported."""
 
     imported_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
 
 
 class SubscriptionProposalSerializer(serializers.Serializer):
-    """What the source last brought that was new."""
+    """The last new file from the source."""
 
     id = serializers.UUIDField()
     state = serializers.ChoiceField(choices=ProposalState.choices)
@@ -105,7 +105,7 @@ class SubscriptionInputSerializer(SubscriptionChangeSerializer):
 
 
 class FetchJobSerializer(serializers.Serializer):
-    """The job that fetches: its result has `proposal`, the new one or null."""
+    """The fetch job; its result has `proposal`, the new one or null."""
 
     job = serializers.UUIDField()
 

@@ -18,7 +18,7 @@ from workspace.jobs.serializers import Declared
 
 
 def schedule_sentence(schedule: Schedule | None) -> str:
-    """ "Mon to Fri 08:00 to 18:00 UTC, until 31 Dec 2026"."""
+    """Return a text such as "Mon to Fri 08:00 to 18:00 UTC, until 31 Dec 2026"."""
     if schedule is None:
         return _("Always")
     return "; ".join(_period_words(period) for period in schedule)
@@ -37,7 +37,7 @@ def _period_words(period: dict[str, Any]) -> str:
 
 
 def _dates_words(start: str | None, end: str | None) -> str:
-    """ "21 Nov 2026, 14:00 to 17:00 UTC" of a few hours of one day."""
+    """Return "21 Nov 2026, 14:00 to 17:00 UTC" for a few hours of one day."""
     values = {"start": _date_words(start), "end": _date_words(end)}
     if start and end:
         if start[:10] == end[:10]:
@@ -95,7 +95,7 @@ def _day_words(moment: str) -> str:
 
 
 class ScheduleEntrySerializer(serializers.Serializer):
-    """Hours of some days of the week, UTC. At each end a time, an event of the sun, or neither for the whole day."""
+    """Hours on some days of the week, UTC. Each end is a time, an event of the sun, or neither for the whole day."""
 
     day = serializers.ListField(child=serializers.ChoiceField(choices=[*DAYS, "ANY"]))
     startTime = serializers.CharField(allow_null=True, help_text="08:00:00Z")  # noqa: N815 - as ED-318 writes it
@@ -112,7 +112,7 @@ class SchedulePeriodSerializer(serializers.Serializer):
 
 @extend_schema_field(SchedulePeriodSerializer(many=True))
 class ScheduleField(serializers.JSONField):
-    """When a zone applies, as it is stored: see inspection/zones/schedule.py."""
+    """When a zone applies, as stored: see inspection/zones/schedule.py."""
 
 
 class CircleSerializer(serializers.Serializer):
@@ -122,7 +122,7 @@ class CircleSerializer(serializers.Serializer):
 
 @extend_schema_field(CircleSerializer(allow_null=True))
 class CircleField(serializers.DictField):
-    """A circle as it is stored."""
+    """A circle as stored."""
 
 
 class LimitSerializer(serializers.Serializer):
@@ -131,7 +131,7 @@ class LimitSerializer(serializers.Serializer):
 
 
 class ZonePropertiesSerializer(serializers.Serializer):
-    """Facts as the source gives them; null is "not stated"."""
+    """Facts as the source states them; null means "not stated"."""
 
     name = serializers.CharField()
     identifier = serializers.CharField()
@@ -191,7 +191,7 @@ def limit_json(value_m: float | None, reference: str) -> dict[str, Any] | None:
 
 
 def schedule_words(schedule: Any) -> str:
-    """A schedule that was stored before there was one form is told as what it is."""
+    """Return the schedule as text; one stored before there was a common form gets a general text."""
     try:
         return schedule_sentence(checked_schedule(schedule, "schedule"))
     except GeometryFault:

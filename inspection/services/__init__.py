@@ -1,4 +1,4 @@
-"""Writes of the ground: what the other apps, commands and tasks call."""
+"""Writes of map data, called by other apps, commands and tasks."""
 
 from inspection.importers.rows import AssetFileError
 from inspection.importers.terrain.raster import TerrainFileError

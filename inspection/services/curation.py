@@ -1,4 +1,4 @@
-"""What curators write by hand: each change marks the row as edited, is recorded, and counts as a change of the ground."""
+"""Curators' edits: each one marks the row as edited, is recorded, and counts as a change of the map data."""
 
 import uuid
 from collections.abc import Iterator
@@ -29,17 +29,17 @@ GEOMETRY_TYPES = {
 }
 
 
-PLACED = "spanwise:placed"  # the tag of a support that stands at an OSM node which OSM does not call one
+PLACED = "spanwise:placed"  # tag of a support at an OSM node that OSM does not tag as one
 
 _numbers_later: ContextVar[bool] = ContextVar("numbers_later", default=False)
 
 
 class WrongGeometry(ValueError):
-    """The geometry is of another type than the asset's kind has."""
+    """Raised for a geometry of a wrong type for the asset's kind."""
 
 
 class StaleRevision(Exception):
-    """Somebody else has changed or deleted the row since it was read; nothing was written."""
+    """Raised when another user has changed or deleted the row since it was read; nothing was written."""
 
     def __init__(self, subject: str, key: int | None) -> None:
         super().__init__(f"{subject} {key} has changed in the meantime")
@@ -47,7 +47,7 @@ class StaleRevision(Exception):
 
 
 def geometry_fault(*, kind: AssetKind, geometry: GEOSGeometry) -> str | None:
-    """A sentence, if assets of this kind have another type of geometry."""
+    """Return a sentence if assets of this kind have another type of geometry, else None."""
     types = GEOMETRY_TYPES[kind]
     if geometry.geom_type in types:
         return None
@@ -55,9 +55,9 @@ def geometry_fault(*, kind: AssetKind, geometry: GEOSGeometry) -> str | None:
 
 
 def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = None, action: str = "") -> Asset:
-    """Store a new or changed asset with all that follows from its geometry and voltages. Raises WrongGeometry, StaleRevision.
+    """Store a new or changed asset with everything derived from its geometry and voltages. Raises WrongGeometry, StaleRevision.
 
-    A row that says again what its source says counts as not edited: imports keep it up to date from then on.
+    A row that equals its source again counts as not edited: imports then keep it up to date.
     """
     kind = AssetKind(asset.kind)
     if fault := geometry_fault(kind=kind, geometry=asset.geometry):
@@ -76,11 +76,11 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
             asset.source_facts = asset_facts(before)
         follows_source = asset.source_facts is not None and says_the_same(asset, asset.source_facts)
         if asset.source_facts is not None and follows_source:
-            take_asset_facts(asset, asset.source_facts)  # with the OSM nodes of its vertices
+            take_asset_facts(asset, asset.source_facts)  # including the OSM nodes of its vertices
             asset.source_facts = None
         asset.is_edited = not follows_source
         if before is not None and asset_facts(before) == asset_facts(asset):
-            return asset  # saved again as it was: no change
+            return asset  # saved unchanged
         asset.revision = before.revision + 1 if before else max(asset.revision, 1)
         asset.save(force_insert=before is None)
         _record(actor, asset_facts(before) if before else None, asset_facts(asset), asset, action)
@@ -90,10 +90,11 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
 
 
 def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = None) -> None:
-    """Take an asset off the ground. Raises StaleRevision.
+    """Delete an asset. Raises StaleRevision.
 
-    One that came from a file, or that a mission's target points at, is marked as vanished by hand: the target keeps its place, and the
-    file's next import does not bring the asset back. One that was drawn here is deleted.
+    An asset from a file, or one that a mission's target refers to, is marked as manually vanished: the target keeps its place, and the
+    file's
+    next import does not restore the asset. A drawn one is deleted.
     """
     with transaction.atomic():
         hold_ground()
@@ -118,16 +119,16 @@ def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = N
 
 
 def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = None, action: str = "") -> NoFlyZone:
-    """Store a new or changed zone. Its geometry has passed the gate (geodesy/geometry_validator.py). Raises StaleRevision."""
+    """Store a new or changed zone, whose geometry geodesy/geometry_validator.py has accepted. Raises StaleRevision."""
     with transaction.atomic():
         hold_ground()
         before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
         check_revision(before, expected_revision, "zone", zone.pk)
         zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
         if before is not None and before.geometry != zone.geometry and before.circle == zone.circle:
-            zone.circle = None  # what was drawn anew is no longer the circle that the source stated
+            zone.circle = None  # a redrawn zone is no longer the circle that the source stated
         if before is not None and zone_facts(before) == zone_facts(zone):
-            return zone  # saved again as it was: no change
+            return zone  # saved unchanged
         zone.is_edited = zone.zone_set_id is not None
         zone.revision = before.revision + 1 if before else max(zone.revision, 1)
         zone.save(force_insert=before is None)
@@ -137,7 +138,7 @@ def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = N
 
 
 def delete_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = None) -> None:
-    """Remove a zone; its source's next file brings it back, as a new one in the difference. Raises StaleRevision."""
+    """Remove a zone; its source's next file restores it as a new one in the difference. Raises StaleRevision."""
     with transaction.atomic():
         hold_ground()
         kept = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
@@ -150,14 +151,14 @@ def delete_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None =
 
 
 def is_sourced(asset: Asset) -> bool:
-    """It came from a file, which may come again."""
+    """Whether it came from a file, which may be imported again."""
     was_placed = PLACED in asset.tags and asset.source_facts is None
     return (asset.osm_id is not None and not was_placed) or asset.asset_set_id is not None
 
 
 @contextmanager
 def many_edits() -> Iterator[None]:
-    """One transaction for several edits of assets; the supports are numbered once, at its end."""
+    """Make several edits of assets in one transaction; supports are numbered once, at its end."""
     with transaction.atomic():
         hold_ground()
         token = _numbers_later.set(True)
@@ -169,19 +170,19 @@ def many_edits() -> Iterator[None]:
 
 
 def check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject: str, key: int | None) -> None:
-    """Raises StaleRevision for a row that is gone, or of another revision than expected; None expects any."""
+    """Raise StaleRevision for a missing row, or one with another revision than expected; None accepts any."""
     if expected is not None and (row is None or row.revision != expected):
         raise StaleRevision(subject, key)
 
 
 def _number_supports_after(kind: AssetKind) -> None:
-    """A changed line or support may change which place others have."""
+    """Number the supports again: a changed line or support may change the places of others."""
     if kind in {AssetKind.LINE, AssetKind.TOWER} and not _numbers_later.get():
         number_supports()
 
 
 def _is_pointed_at(asset: Asset) -> bool:
-    """Whether a row of a later app, which this one does not know, points at the asset and shows it (related_name "+" does not)."""
+    """Whether a row of a later app, unknown to this one, refers to the asset and shows it (related_name "+" does not)."""
     pointing = [
         (relation.related_model, relation.field.name)
         for relation in Asset._meta.related_objects
@@ -211,7 +212,7 @@ def _centre(geometry: GEOSGeometry) -> Point:
 
 
 def _osm_nodes(asset: Asset, before: Asset | None) -> list[int]:
-    """The OSM node of each vertex that was not moved; the others are drawn by hand."""
+    """Return the OSM node of each vertex that was not moved, and NO_OSM_NODE for others."""
     vertices = asset.geometry.coords
     if before is None:
         return asset.node_osm_ids if len(asset.node_osm_ids) == len(vertices) else [NO_OSM_NODE] * len(vertices)
@@ -225,14 +226,14 @@ REFERENCE_FIELDS = ("external_id", "attributes")
 
 
 class ExternalIdTaken(Exception):
-    """Another asset has this external id in the organisation."""
+    """Raised when another asset of the organisation has this external id."""
 
 
 def save_asset_reference(*, asset: Asset, actor: User, values: dict[str, Any], expected_revision: int | None = None) -> None:
-    """Store what the actor's organisation keeps with an asset; `values` has some of REFERENCE_FIELDS.
+    """Store the organisation's reference of an asset; `values` has some of REFERENCE_FIELDS.
 
-    The asset's revision counts it. The map data stay as they are: no mission becomes stale, and the asset does not count as edited.
-    Raises StaleRevision or ExternalIdTaken.
+    It increments the asset's revision. The map data are unchanged: no mission becomes stale, and the asset does not count as edited. Raises
+    StaleRevision or ExternalIdTaken.
     """
     with transaction.atomic():
         held = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
@@ -260,7 +261,7 @@ def save_asset_reference(*, asset: Asset, actor: User, values: dict[str, Any], e
 
 
 def restore_references(*, asset: Asset) -> None:
-    """Bring back what each organisation kept with an asset that had been deleted, but for ids that are another asset's by now."""
+    """Restore each organisation's reference of a restored asset, except ids that another asset has by now."""
     last = AuditEntry.objects.filter(subject_type="asset_reference", subject_id=str(asset.pk))
     AssetReference.objects.bulk_create(
         (

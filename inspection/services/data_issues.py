@@ -1,4 +1,4 @@
-"""Looking for issues after each change of the ground, and what a curator decides about one."""
+"""Search for data issues after each change of the map data, and curators' decisions."""
 
 import logging
 from collections.abc import Sequence
@@ -20,14 +20,14 @@ from workspace.models import User
 
 logger = logging.getLogger(__name__)
 
-SEARCH_LOCK = 5_372_002  # any number that nothing else locks
+SEARCH_LOCK = 5_372_002  # advisory lock
 BATCH = 2_000
-AT_ONCE_S = 2.0  # a search that took no longer is done while the curator waits
+AT_ONCE_S = 2.0  # a search at most this long runs while the curator waits
 _FOUND = ("asset", "other_asset", "position", "geometry", "details", "cut_off_m", "ground_revision")
 
 
 def issues_are_current() -> bool:
-    """Whether the last search saw the ground as it is now, with today's rules."""
+    """Whether the last search used the current map data and rules."""
     revision, changed_at = ground_dataset_version()
     last = DataIssueSearch.objects.filter(pk=DataIssueSearch.SINGLE_ID).first()
     if last is None:
@@ -36,10 +36,9 @@ def issues_are_current() -> bool:
 
 
 def find_issues(*, force: bool = False) -> DataIssueSearch | None:
-    """Search the ground if it has changed since the last search; None when there is nothing to do or another one searches.
+    """Search the map data if they have changed since the last search; None when nothing is to do or another search runs.
 
-    An issue that is found again keeps its state and note, one that was repaired and is back opens again, one that is no longer found counts
-    as repaired.
+    A recurring issue keeps its state and note, a repaired one that is back opens again, and one that is no longer found counts as repaired.
     """
     if issues_are_current() and not force:
         return None
@@ -51,7 +50,7 @@ def find_issues(*, force: bool = False) -> DataIssueSearch | None:
 
 
 def find_issues_at_once() -> bool:
-    """Search while somebody waits for it, if the last search says that it will not take long; whether the issues are current then."""
+    """Search while a user waits, if the last search was short; returns whether the issues are current."""
     last = DataIssueSearch.objects.filter(pk=DataIssueSearch.SINGLE_ID).first()
     if last is not None and last.search_s <= AT_ONCE_S:
         find_issues()
@@ -59,7 +58,7 @@ def find_issues_at_once() -> bool:
 
 
 def dismiss_issue(*, issue: DataIssue, note: str, actor: User) -> DataIssue:
-    """Leave it as it is: it stays out of the open list, however often it is found."""
+    """Dismiss an issue: it stays out of the open list when it is found again."""
     return _decide(issue, DataIssueState.DISMISSED, note, actor)
 
 
@@ -102,7 +101,7 @@ def _search_and_store() -> DataIssueSearch:
     for first in range(0, len(found), BATCH):
         rows = [_row(issue, ground.revision, there) for issue in found[first : first + BATCH]]
         DataIssue.objects.bulk_create(rows, update_conflicts=True, unique_fields=["key"], update_fields=list(_FOUND))
-    # What was repaired while this search was under way is not there any more: the next one decides.
+    # Issues repaired during this search are gone: the next one decides.
     back = [
         pk
         for key, (pk, state, decided_at) in states.items()
@@ -136,7 +135,7 @@ def _known() -> Sequence[tuple[str, int, str, datetime | None]]:
 
 
 def _still_there(found: Sequence[FoundIssue]) -> set[int]:
-    """The assets of the issues that have not been deleted while they were looked for."""
+    """Return the assets of the issues that were not deleted during the search."""
     wanted = {issue.asset for issue in found} | {issue.other_asset for issue in found if issue.other_asset is not None}
     return set(Asset.objects.filter(pk__in=wanted).order_by().values_list("pk", flat=True))
 

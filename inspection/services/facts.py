@@ -1,4 +1,4 @@
-"""What the history says of an asset or a zone: enough to tell two states apart, and to bring one back."""
+"""Facts of assets and zones in the history: enough to compare two states, and to restore one."""
 
 import json
 from typing import Any
@@ -7,7 +7,7 @@ from django.contrib.gis.geos import GeometryCollection, GEOSGeometry, LineString
 
 from inspection.models import Asset, AssetKind, AssetSet, NoFlyZone, ZoneSet
 
-# What people read and edit; the rest of the facts says how the row hangs together with its source.
+# Facts that users read and edit; the others describe how the row relates to its source.
 ASSET_FACTS = ("kind", "subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable", "tags")
 _ASSET_SOURCE = ("osm_type", "osm_id", "node_osm_ids", "parts", "asset_set_id", "source_key", "data_import_id", "content_hash", "is_edited")
 ZONE_FACTS = (
@@ -25,13 +25,13 @@ def zone_facts(zone: NoFlyZone) -> dict[str, Any]:
 
 
 def says_the_same(asset: Asset, facts: dict[str, Any]) -> bool:
-    """Whether what people read of the asset is what the facts say."""
+    """Whether the facts that users read equal the asset's."""
     own = asset_facts(asset)
     return all(own[name] == facts.get(name, own[name]) for name in (*ASSET_FACTS, "geometry"))
 
 
 def take_asset_facts(asset: Asset, facts: dict[str, Any]) -> None:
-    """Make the row what the facts say, as far as they say it; nothing is saved."""
+    """Set the row's values from the facts, as far as present; nothing is saved."""
     for name in ("subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable", "tags", "parts"):
         if name in facts:
             setattr(asset, name, facts[name])
@@ -42,7 +42,7 @@ def take_asset_facts(asset: Asset, facts: dict[str, Any]) -> None:
 
 
 def asset_from_facts(facts: dict[str, Any], *, key: int) -> Asset:
-    """The row that was deleted, under the key that it had; what it came from may be gone."""
+    """Return the deleted row with its former key; its source may no longer exist."""
     asset = Asset(pk=key, kind=facts["kind"], osm_type=facts.get("osm_type") or "", osm_id=facts.get("osm_id"))
     key_of_set = facts.get("asset_set_id")
     asset.asset_set = None if key_of_set is None else AssetSet.objects.filter(pk=key_of_set).first()
@@ -72,7 +72,7 @@ def zone_from_facts(facts: dict[str, Any], *, key: int) -> NoFlyZone:
 
 
 def differing(before: dict[str, Any] | None, after: dict[str, Any] | None) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
-    """Both sides with the facts that differ alone; a side that is not there stays None and leaves the other one whole."""
+    """Return both sides reduced to the facts that differ; a missing side stays None and leaves the other one complete."""
     if before is None or after is None:
         return before, after
     names = [name for name in {**before, **after} if name in before and name in after and before[name] != after[name]]
@@ -99,5 +99,5 @@ def _values(row: Any, names: tuple[str, ...]) -> dict[str, Any]:
 
 
 def _as_lists(coordinates: Any) -> Any:
-    """As JSON has them, so that stored facts and fresh ones compare."""
+    """Return coordinates as lists, as in JSON, so that stored and new facts compare."""
     return [_as_lists(part) for part in coordinates] if isinstance(coordinates, tuple) else coordinates

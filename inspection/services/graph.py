@@ -1,4 +1,4 @@
-"""Builds graph snapshots when the ground has changed."""
+"""Builds graph snapshots after changes of the map data."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -17,14 +17,14 @@ from inspection.selectors.ground import ground_revision
 from inspection.selectors.ground_data import ground_data, has_flyable_assets
 from workspace.leases import lock_until_end, try_lock_until_end
 
-BUILD_LOCK = 5_372_001  # any number that nothing else locks
+BUILD_LOCK = 5_372_001  # advisory lock
 KEPT_SNAPSHOTS = 20
 
 
 def build_graph(*, force: bool = False, progress: Callable[[str, float], None] | None = None) -> GraphSnapshot:
-    """Build and store a snapshot of the ground, or return the newest one if it already shows the ground under today's rules.
+    """Build and store a snapshot, or return the newest one if it matches the current map data and rules.
 
-    One build runs at a time: whoever waits for another's finds its snapshot.
+    One build runs at a time; a waiting caller gets the other's snapshot.
     """
     with transaction.atomic():
         lock_until_end(BUILD_LOCK)
@@ -33,7 +33,7 @@ def build_graph(*, force: bool = False, progress: Callable[[str, float], None] |
 
 
 def refresh_graph() -> GraphSnapshot | None:
-    """Build a snapshot if there are assets that the newest one does not show; None when there is nothing to do or another builds."""
+    """Build a snapshot if the newest one is outdated; None when nothing is to do or another build runs."""
     if _current_snapshot() is not None or not (has_flyable_assets() or GraphSnapshot.objects.exists()):
         return None
     with transaction.atomic():
@@ -42,7 +42,7 @@ def refresh_graph() -> GraphSnapshot | None:
 
 
 def _current_snapshot() -> GraphSnapshot | None:
-    """The newest snapshot, if it shows the present ground under the present rules."""
+    """Return the newest snapshot, if it matches the current map data and rules."""
     snapshot = GraphSnapshot.objects.defer("arrays").first()
     is_current = snapshot and snapshot.ground_revision == ground_revision() and snapshot.rules == rules_of_snapshots()
     return snapshot if is_current else None
@@ -73,7 +73,7 @@ def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnap
         arrays_sha256=sha256(content).hexdigest(),
         build_s=perf_counter() - started_s,
     )
-    # Before the commit: whoever sees the snapshot finds its files and its index.
+    # Before the commit: readers of the snapshot find its files and its index.
     prepare_graph((snapshot.version, snapshot.ground_revision, snapshot.arrays_sha256), lambda: content, zones)
     newest = list(GraphSnapshot.objects.values_list("version", flat=True)[:KEPT_SNAPSHOTS])
     GraphSnapshot.objects.filter(version__lt=newest[-1]).delete()
@@ -81,6 +81,6 @@ def _build_and_store(progress: Callable[[str, float], None] | None) -> GraphSnap
 
 
 def _clear_newest_network() -> None:
-    """Most often the zones alone have changed: planners then go on at once, while the ground is read and compared."""
+    """Clear the newest network: mostly only zones have changed, and planners continue at once while the map data are read and compared."""
     with suppress(NoGraph):
         current_graph()

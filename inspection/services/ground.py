@@ -1,4 +1,4 @@
-"""The ground's revision, counted up with every change, and the places of supports on their lines, which follow from one."""
+"""The dataset revision, incremented with every change, and the derived places of supports on their lines."""
 
 from django.db import connection
 from django.db.models import F
@@ -9,11 +9,11 @@ from inspection.network.build.joining import TOUCH_M
 from inspection.network.infrastructure import NO_OSM_NODE
 from workspace.leases import lock_until_end
 
-GROUND_LOCK = 0x05A7_0001  # advisory lock: one at a time writes more of the ground than single rows
+GROUND_LOCK = 0x05A7_0001  # advisory lock: one transaction at a time writes more map data than single rows
 
 
 def hold_ground() -> None:
-    """Wait for an import or a curator at work, and keep others waiting until the caller's transaction ends."""
+    """Wait for a running import or edit, and lock the map data until the caller's transaction ends."""
     lock_until_end(GROUND_LOCK)
 
 
@@ -27,13 +27,11 @@ def mark_ground_changed() -> int:
     return Ground.objects.values_list("revision", flat=True).get(pk=Ground.SINGLE_ID)
 
 
-REACH_DEG = 1e-4  # more than TOUCH_M is anywhere between the polar circles
+REACH_DEG = 1e-4  # exceeds TOUCH_M everywhere between the polar circles
 
-# A line that comes by the same support twice counts it once, where it comes first. A support that has vanished keeps what it was:
-# missions still name it.
-#
-# What has no OSM node, because it was drawn, moved by hand or came from another file, is joined where it stands: a support to a vertex
-# within TOUCH_M of it, as in network/build/joining.py. The first condition on the distance, in degrees, is the one that the index knows.
+# A line that passes the same support twice counts it once, at its first place. A vanished support keeps its place, as missions still refer
+# to it. Objects without an OSM node (drawn, manually moved or from another file) are joined by position: a support to a vertex within
+# TOUCH_M of it, as in network/build/joining.py. The first condition on the distance, in degrees, is the one that the index supports.
 _NUMBER = f"""
 WITH met AS (
     SELECT l.id AS line_id, s.id AS support_id, node.vertex
@@ -77,14 +75,14 @@ FROM (
     WHERE s.kind = 'tower' AND s.vanished_at IS NULL
 ) found
 WHERE a.id = found.id AND (a.line_id, a.place_on_line, a.places_on_line) IS DISTINCT FROM (found.line_id, found.place, found.places)
-"""  # noqa: S608 -- put together from constants
+"""  # noqa: S608 -- made of constants
 
 
 def number_supports() -> int:
-    """Bring line, place and number of places of every support up to date; return how many rows were not.
+    """Update line, place and number of places of every support; returns how many rows changed.
 
-    Call it in the transaction that changed supports or lines, under hold_ground. It writes only rows that differ, and of these neither
-    `updated_at` nor what makes a row count as edited.
+    Call it in the transaction that changed supports or lines, under hold_ground. It writes only rows that differ, and neither their
+    `updated_at` nor whether they count as edited.
     """
     with connection.cursor() as cursor:
         cursor.execute(_NUMBER)

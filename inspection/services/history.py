@@ -1,4 +1,4 @@
-"""Bringing back how an asset or a zone was: one change undone, an earlier state, or what the source says."""
+"""Restoring an asset or a zone: undoing one change, reverting to an earlier state, or following the source."""
 
 from django.db import IntegrityError, transaction
 from django.utils.translation import gettext as _
@@ -13,11 +13,11 @@ SUBJECTS = ("asset", "zone")
 
 
 class CannotUndo(ValueError):
-    """The change cannot be undone; the message says why and what to do."""
+    """Raised when the change cannot be undone; the message has the reason and the remedy."""
 
 
 def revert_asset(*, asset: Asset, entry: AuditEntry, actor: User, expected_revision: int | None) -> Asset:
-    """Make the asset what it was before the entry's change. Raises CannotUndo, StaleRevision."""
+    """Revert the asset to its state before the entry's change. Raises CannotUndo, StaleRevision."""
     if entry.before is None:
         raise CannotUndo(_("Before this there was nothing: delete the asset instead."))
     take_asset_facts(asset, entry.before)
@@ -34,7 +34,7 @@ def revert_zone(*, zone: NoFlyZone, entry: AuditEntry, actor: User, expected_rev
 
 
 def follow_source(*, asset: Asset, actor: User, expected_revision: int | None) -> Asset:
-    """Forget what was edited by hand: the row says what its source says, and imports keep it so. Raises CannotUndo, StaleRevision."""
+    """Drop manual edits: the row takes its source's values, and imports keep it so. Raises CannotUndo, StaleRevision."""
     if asset.source_facts is None:
         raise CannotUndo(_("This asset has no other source than what was drawn here."))
     take_asset_facts(asset, asset.source_facts)
@@ -43,7 +43,7 @@ def follow_source(*, asset: Asset, actor: User, expected_revision: int | None) -
 
 
 def undo(*, entry: AuditEntry, actor: User) -> Asset | NoFlyZone | None:
-    """Take the newest change of an asset or zone back: what was deleted is there again, what was created is gone. Raises CannotUndo."""
+    """Undo the newest change of an asset or zone: a deleted one is restored, a created one removed. Raises CannotUndo."""
     with transaction.atomic():
         hold_ground()
         newer = AuditEntry.objects.filter(subject_type=entry.subject_type, subject_id=entry.subject_id, pk__gt=entry.pk)

@@ -1,4 +1,4 @@
-"""Takes a whole region off the ground: what files brought into a box, an import, or a set."""
+"""Deletes the assets of a whole region: those that files brought into a box, of an import, or of a set."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +16,7 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 
 @dataclass(frozen=True)
 class Region:
-    """One of the three; a box means what lies in it or reaches into it."""
+    """One of the three; a box means everything that intersects it."""
 
     box: Box | None = None
     data_import: DataImport | None = None
@@ -32,7 +32,7 @@ class Region:
 
 
 def assets_of_region(region: Region) -> QuerySet[Asset]:
-    """What came from files; what was drawn or edited by hand stays, since no file would bring it back."""
+    """Return assets from files; drawn or manually edited ones stay, since no file would restore them."""
     sourced = Q(osm_id__isnull=False) | Q(asset_set__isnull=False)
     assets = Asset.objects.filter(sourced, vanished_at=None, is_edited=False).order_by()
     if region.box is not None:
@@ -47,9 +47,9 @@ def counts_of_region(region: Region) -> dict[str, int]:
 
 
 def delete_region(*, region: Region, actor: User | None) -> dict[str, int]:
-    """Mark everything of the region as vanished and return how much of each kind; missions keep what they point at.
+    """Mark all assets of the region as vanished and return the number of each kind; missions keep their references.
 
-    The next file that has an asset brings it back. One entry of the history tells who did it and what was meant.
+    The next file that has an asset restores it. One history entry records the user and the region.
     """
     with transaction.atomic():
         hold_ground()

@@ -29,10 +29,10 @@ from inspection.quality.supports import course_of_row
 from inspection.services.curation import PLACED
 
 MAX_TOWERS = 500  # along one span
-REACH_M = 200.0  # of places clicked along a span, from the straight way
-ATTACH_M = 500.0  # a tower farther from its line is not its
+REACH_M = 200.0  # largest distance of clicked places from the straight span
+ATTACH_M = 500.0  # a tower farther from a line does not belong to it
 
-# What makes the bridge's `carries` say it; highway=road is OSM's "a road of whatever kind".
+# Tags from which the bridge's `carries` follows; highway=road is OSM's "a road of whatever kind".
 _CARRIED = {
     "road": {"highway": "road"}, "railway": {"railway": "rail"}, "path": {"highway": "path"}, "water": {"waterway": "canal"},
     "pipeline": {"man_made": "pipeline"},
@@ -40,7 +40,7 @@ _CARRIED = {
 
 
 class CannotRepair(ValueError):
-    """The message says why, and what to do."""
+    """Raised when a repair is not possible, with the reason and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class RepairEdit:
 
 
 def towers_along_span(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """New vertices in the span and a tower at each: at the places given, else evenly, as many as are thought to be missing."""
+    """Return new vertices in the span with a tower each: at the given places, else evenly, as many as are presumed missing."""
     line = _line(issue.asset_id)
     course, details = list(line.geometry.coords), issue.details
     start, end = details["start"], details["end"]
@@ -67,7 +67,7 @@ def towers_along_span(issue: DataIssue, parameters: dict[str, Any]) -> list[Repa
 
 
 def towers_at_vertices(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """A tower at each vertex of the line that has none; where OSM has a node there, the tower is known by it."""
+    """Return a tower at each vertex of the line that has none; an OSM node there identifies the tower."""
     line = _line(issue.asset_id)
     course = line.geometry.coords
     nodes = line.node_osm_ids if len(line.node_osm_ids) == len(course) else [NO_OSM_NODE] * len(course)
@@ -78,7 +78,7 @@ def towers_at_vertices(issue: DataIssue, parameters: dict[str, Any]) -> list[Rep
 
 
 def attach_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """The nearest line led through the tower; of a row of towers through the one that is nearest to it."""
+    """Return the nearest line led through the tower; of a row of towers through the one nearest to it."""
     line = _line(issue.other_asset_id)
     course = list(line.geometry.coords)
     towers = list(Asset.objects.filter(pk__in=issue.details["assets"], vanished_at=None, kind=AssetKind.TOWER))
@@ -93,7 +93,7 @@ def attach_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEd
 
 
 def line_along_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """A new line from tower to tower of a row, of the voltage that all that state one agree on."""
+    """Return a new line from tower to tower of a row, with the voltage on which all towers that state one agree."""
     towers = list(
         Asset.objects.filter(pk__in=issue.details["assets"], vanished_at=None, kind=AssetKind.TOWER, is_flyable=True).order_by("pk")
     )
@@ -113,7 +113,7 @@ def line_along_towers(issue: DataIssue, parameters: dict[str, Any]) -> list[Repa
 
 
 def leave_out(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """What the issue is about, marked as no part of the inspection graph."""
+    """Return the issue's assets excluded from the inspection graph."""
     keys = issue.details.get("assets", [issue.asset_id])
     rows = list(Asset.objects.filter(pk__in=keys, vanished_at=None, is_flyable=True).order_by("pk"))
     if not rows:
@@ -124,7 +124,7 @@ def leave_out(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
 
 
 def joined_ends(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """The end moved onto the other line, which gets a vertex there if it has none; an end with a tower stays and is led on."""
+    """Return the end moved onto the other line, which gets a vertex there if it has none; an end with a tower is extended instead."""
     line, other = _line(issue.asset_id), _line(issue.other_asset_id)
     course, there = list(line.geometry.coords), tuple(issue.details["there"])
     end = _end(course, issue.details["end"])
@@ -143,7 +143,7 @@ def joined_ends(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit
 
 
 def join_to_network(issue: DataIssue, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """The dead end led on, straight, to the nearest place of the network that it does not hang together with."""
+    """Return the dead end extended straight to the nearest place of the network to which it is not connected."""
     line = _line(issue.asset_id)
     course = list(line.geometry.coords)
     end = _end(course, issue.details["end"])
@@ -204,7 +204,7 @@ def _has_support(place: tuple[float, float]) -> bool:
 
 
 def _taken_places(line: Asset, course: list[tuple[float, float]]) -> FloatArray:
-    """Where supports stand and other lines have vertices: a vertex there must not move."""
+    """Return places of supports and of other lines' vertices, which must not move."""
     box = _box_round(course)
     places = [place.coords for place in _supports_within(box).values_list("geometry", flat=True)]
     others = Asset.objects.filter(kind=AssetKind.LINE, vanished_at=None, is_flyable=True, geometry__intersects=box).exclude(pk=line.pk)
@@ -218,7 +218,7 @@ def _supports_within(box: Polygon) -> QuerySet[Asset]:
 
 
 def _box_round(course: list[tuple[float, float]]) -> Polygon:
-    """The course's box and a metre round it."""
+    """Return the course's box with a margin of a metre."""
     margin_deg = 1e-5
     (west, south), (east, north) = np.min(course, axis=0) - margin_deg, np.max(course, axis=0) + margin_deg
     box = Polygon.from_bbox((float(west), float(south), float(east), float(north)))
@@ -243,7 +243,7 @@ def _positions(given: Any) -> list[tuple[float, float]]:
 
 
 def _new_tower(line: Asset, place: tuple[float, float], osm_node: int) -> RepairEdit:
-    """A support of the line's kind. One at an OSM node that had stood here before is the same row again."""
+    """Return a support of the line's kind. A former one at the OSM node is reused."""
     subtype = "pole" if line.subtype == "minor_line" else "tower"
     tags = {PLACED: "by hand"}
     at = Point(place, srid=4326)

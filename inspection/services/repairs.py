@@ -1,4 +1,4 @@
-"""Repairs of issues: what each one would change, and changing it through curation, so that imports keep it and the history has it."""
+"""Repairs of issues: their previews, and their execution through curation, so that imports keep them and the history records them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -30,7 +30,7 @@ from workspace.models import AuditEntry, User
 
 @dataclass(frozen=True)
 class Offer:
-    """A repair that may be chosen. `words` names the act on its button; `choices` are values for the parameter that it needs."""
+    """An available repair. `words` is its button's text; `choices` are values for its parameter."""
 
     action: str
     words: str
@@ -41,26 +41,26 @@ class Offer:
 @dataclass(frozen=True)
 class Repaired:
     issue: DataIssue
-    entries: list[int] = field(default_factory=list)  # of the history, oldest first: undo them from the end
+    entries: list[int] = field(default_factory=list)  # of the history, oldest first: undo them in reverse
     said: str = ""
 
 
 def offers_of(issue: DataIssue) -> list[Offer]:
-    """What can be done about an open issue; the best first."""
+    """Return the available repairs of an open issue, best first."""
     if issue.state != DataIssueState.OPEN:
         return []
     return _OFFERS[DataIssueKind(issue.kind)](issue.details)
 
 
 def changes_of(*, issue: DataIssue, action: str, parameters: dict[str, Any]) -> list[RepairEdit]:
-    """The assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
+    """Return the assets as the repair would leave them, in order; nothing is saved. Raises CannotRepair."""
     if all(offer.action != action for offer in offers_of(issue)):
         raise CannotRepair(_("This repair does not fit the issue as it is now."))
     return _BUILDERS[action](issue, parameters)
 
 
 def preview_of(*, issue: DataIssue, action: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """A FeatureCollection of what the repair would draw: `role` is line, tower or asset."""
+    """Return a FeatureCollection of what the repair would draw: `role` is line, tower or asset."""
     features = [
         {
             "type": "Feature",
@@ -73,7 +73,7 @@ def preview_of(*, issue: DataIssue, action: str, parameters: dict[str, Any]) -> 
 
 
 def repair_issue(*, issue: DataIssue, action: str, parameters: dict[str, Any], actor: User) -> Repaired:
-    """Make the changes, each in the history, and count the issue as repaired until the next search says otherwise. Raises CannotRepair."""
+    """Apply the changes, each with a history entry, and mark the issue as repaired until the next search. Raises CannotRepair."""
     with many_edits():
         kept = DataIssue.objects.select_for_update(of=["self"]).get(pk=issue.pk)
         if kept.state != DataIssueState.OPEN:
@@ -90,7 +90,7 @@ def repair_issue(*, issue: DataIssue, action: str, parameters: dict[str, Any], a
 
 
 def undo_repair(*, issue: DataIssue, entries: Sequence[int], actor: User) -> DataIssue:
-    """Take a repair back, its last change first, all of it or nothing. Raises history.CannotUndo, CannotRepair."""
+    """Undo a repair, last change first, completely or not at all. Raises history.CannotUndo, CannotRepair."""
     with many_edits():
         rows = AuditEntry.objects.filter(pk__in=entries, subject_type="asset", organisation=actor.organisation)
         if len(rows) != len(set(entries)) or not rows:
@@ -101,7 +101,7 @@ def undo_repair(*, issue: DataIssue, entries: Sequence[int], actor: User) -> Dat
 
 
 def _said(changes: Sequence[RepairEdit]) -> str:
-    """What was done, for the toast: "9 towers placed, 1 line changed"."""
+    """Return the text of the toast: "9 towers placed, 1 line changed"."""
     parts = []
     for is_new in (True, False):
         for kind in AssetKind:
@@ -139,7 +139,7 @@ def _offers_of_missing_supports(details: dict[str, Any]) -> list[Offer]:
 def _offers_of_lone_tower(details: dict[str, Any]) -> list[Offer]:
     many = details["towers"] > 1
     offers = []
-    if details["towers"] == len(details["assets"]):  # of a long row the details name the first towers alone
+    if details["towers"] == len(details["assets"]):  # of a long row the details list only the first towers
         offers.append(Offer("leave_out", _("Leave them out of the graph") if many else _("Leave it out of the graph")))
     if details["is_path"]:
         offers.insert(0, Offer("draw_line", _("Draw a line along the %(count)s towers") % {"count": details["towers"]}))

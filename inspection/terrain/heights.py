@@ -1,4 +1,4 @@
-"""One height in three references: above ground, above sea level, above take-off. What is not known is NaN, never a number."""
+"""Heights in three references: above ground, above sea level, above take-off. Unknown ones are NaN."""
 
 import zlib
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ REFERENCES = ("AGL", "AMSL", "RELATIVE")
 
 
 class UnknownReference(ValueError):
-    """A height that does not say from where it is counted is no height."""
+    """Raised for a height without a valid reference."""
 
 
 def amsl_m(values_m: FloatArray, reference: str, *, ground_amsl_m: FloatArray, take_off_amsl_m: float) -> FloatArray:
-    """Heights above sea level [m] of values counted from `reference`; NaN where ground or take-off is needed and not known.
+    """Return heights above sea level [m] of values counted from `reference`; NaN where the required ground or take-off is unknown.
 
     values_m and ground_amsl_m have shape (n,). Raises UnknownReference.
     """
@@ -26,12 +26,12 @@ def amsl_m(values_m: FloatArray, reference: str, *, ground_amsl_m: FloatArray, t
 
 
 def counted_from(heights_amsl_m: FloatArray, reference: str, *, ground_amsl_m: FloatArray, take_off_amsl_m: float) -> FloatArray:
-    """The inverse of amsl_m."""
+    """Return the inverse of amsl_m."""
     return np.asarray(heights_amsl_m - _zero_of(reference, ground_amsl_m, take_off_amsl_m), dtype=np.float64)
 
 
 def _zero_of(reference: str, ground_amsl_m: FloatArray, take_off_amsl_m: float) -> FloatArray:
-    """Where a reference counts from, above sea level."""
+    """Return the zero of a reference, above sea level."""
     if reference == "AGL":
         return ground_amsl_m
     if reference == "AMSL":
@@ -48,14 +48,14 @@ SAME_PLACE_M = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """distance_m of shape (n,) along the line, positions of shape (n, 2), lon lat [deg]; every vertex of the line is one of them."""
+    """Samples of a line. distance_m (n,) along it, positions (n, 2), lon lat [deg]; includes every vertex of the line."""
 
     distance_m: FloatArray
     positions: FloatArray
 
 
 def samples_along(line: FloatArray, step_m: float) -> Samples:
-    """Places on the line of shape (k, 2), k ≥ 2, straight in longitude and latitude between vertices, no farther apart than step_m.
+    """Return samples of the line of shape (k, 2), k ≥ 2, straight in longitude and latitude between vertices, at most step_m apart.
 
     The step is widened where that would be more than MAX_SAMPLES.
     """
@@ -72,7 +72,7 @@ def samples_along(line: FloatArray, step_m: float) -> Samples:
 
 
 def stretches_inside(line: FloatArray, area: shapely.Geometry) -> list[tuple[float, float]]:
-    """From where to where along the line [m] it lies in the area; stretches that meet at a vertex are one."""
+    """Return the stretches along the line [m] in the area; stretches that meet at a vertex are one."""
     legs = shapely.linestrings(np.stack([line[:-1], line[1:]], axis=1))
     lengths_m = distance_m(line[:-1], line[1:])
     before_m = np.concatenate([[0.0], np.cumsum(lengths_m)])
@@ -92,13 +92,13 @@ def stretches_inside(line: FloatArray, area: shapely.Geometry) -> list[tuple[flo
 
 
 BLOCK_SIZE = 256
-MIN_HEIGHT_M, MAX_HEIGHT_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; all else is a void
-NO_WEIGHT = 1e-6  # of a post: less than this is the rounding of a position, a micrometre of height
+MIN_HEIGHT_M, MAX_HEIGHT_M = -500.0, 9_000.0  # Dead Sea shore -430 m, Everest 8,849 m; other values are voids
+NO_WEIGHT = 1e-6  # of a post: smaller weights are position rounding, a micrometre of height
 
 
 @dataclass(frozen=True, eq=False)
 class HeightGrid:
-    """heights_m[row, column] stands at (west + column * step_lon, north - row * step_lat); NaN is void. float32, metres."""
+    """heights_m[row, column] is at (west + column * step_lon, north - row * step_lat); NaN is void. float32, metres."""
 
     west_deg: float
     north_deg: float
@@ -108,15 +108,15 @@ class HeightGrid:
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """West, south, east, north of the outermost posts [deg]."""
+        """Return west, south, east, north of the outermost posts [deg]."""
         rows, columns = self.heights_m.shape
         east, south = self.west_deg + (columns - 1) * self.step_lon_deg, self.north_deg - (rows - 1) * self.step_lat_deg
         return (self.west_deg, south, east, self.north_deg)
 
     def sample(self, positions: FloatArray) -> FloatArray:
-        """Bilinear heights [m] at positions of shape (n, 2), lon lat [deg]; NaN outside the grid and beside a void.
+        """Return bilinear heights [m] at positions of shape (n, 2), lon lat [deg]; NaN outside the grid and beside a void.
 
-        Beside a void means that a post with weight is void: on a post itself its own height is enough.
+        Beside a void means that a post with weight is void: on a post itself its own height suffices.
         """
         rows, columns = self.heights_m.shape
         x = (positions[:, 0] - self.west_deg) / self.step_lon_deg
@@ -142,11 +142,11 @@ class HeightGrid:
 
 
 def packed(heights: NDArray[np.float32]) -> bytes:
-    """Little-endian float32, row by row, zlib."""
+    """Return little-endian float32, row by row, zlib-compressed."""
     return zlib.compress(np.ascontiguousarray(heights, dtype="<f4").tobytes(), level=6)
 
 
 def unpacked(data: bytes, rows: int, columns: int) -> NDArray[np.float32]:
-    """The inverse of packed; never unpacks more than the block has."""
+    """Return the inverse of packed; never unpacks more than the block has."""
     text = zlib.decompressobj().decompress(data, rows * columns * 4)
     return np.frombuffer(text, dtype="<f4").reshape(rows, columns).astype(np.float32)

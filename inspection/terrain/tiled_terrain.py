@@ -1,4 +1,4 @@
-"""Heights from several terrain models in tiles: newer tiles before older ones, and between tiles that stand side by side."""
+"""Heights from several tiled terrain models: newer tiles take precedence, and gaps between adjacent tiles are interpolated."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ IntArray = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class TerrainHeights:
-    """heights_m of shape (n,): above sea level, NaN where no model tells. imports: the DataImport that each is from, -1 for none."""
+    """heights_m of shape (n,): above sea level, NaN where no model has data. imports: the DataImport of each, -1 for none."""
 
     heights_m: FloatArray
     imports: IntArray
@@ -26,9 +26,9 @@ class TerrainHeights:
 
 @dataclass(frozen=True, eq=False)
 class TiledTerrain:
-    """Tiles, the newest first: keys and imports (n,), lattice (n, 4): west, north, step_lon, step_lat [deg], size (n, 2): columns, rows.
+    """Tiles, newest first: keys and imports (n,), lattice (n, 4): west, north, step_lon, step_lat [deg], size (n, 2): columns, rows.
 
-    grid: the heights of a tile by its place in keys, None where it is gone; the places of others that will be asked for come with it.
+    grid: returns the heights of a tile by its place in keys, None for a deleted one; given places to come are loaded with it.
     """
 
     keys: IntArray
@@ -42,12 +42,12 @@ class TiledTerrain:
 
     @cached_property
     def within(self) -> shapely.STRtree:
-        """Of the tiles' extents."""
+        """Return a tree of the tiles' extents."""
         return self._tree(_EDGE_DEG, _EDGE_DEG)
 
     @cached_property
     def beside(self) -> shapely.STRtree:
-        """Of extents that are a step wider."""
+        """Return a tree of extents one step wider."""
         return self._tree(self.lattice[:, 2], self.lattice[:, 3])
 
     def _tree(self, more_lon: FloatArray | float, more_lat: FloatArray | float) -> shapely.STRtree:
@@ -57,9 +57,9 @@ class TiledTerrain:
         return shapely.STRtree(shapely.box(west - more_lon, south - more_lat, east + more_lon, north + more_lat))
 
     def heights_at(self, positions: FloatArray) -> TerrainHeights:
-        """Heights of the ground at positions of shape (n, 2), lon lat [deg].
+        """Return terrain heights at positions of shape (n, 2), lon lat [deg].
 
-        Where models overlap the newest counts, and an older one fills its voids.
+        Where models overlap the newest counts, and older ones fill its voids.
         """
         positions = np.asarray(positions, dtype=np.float64).reshape(-1, 2)
         found = TerrainHeights(np.full(len(positions), np.nan), np.full(len(positions), -1, dtype=np.int64))
@@ -72,12 +72,12 @@ class TiledTerrain:
         return found
 
     def around(self, box: tuple[float, float, float, float]) -> "TiledTerrain":
-        """The tiles that touch west, south, east, north [deg], or the gaps between them."""
+        """Return the tiles that touch west, south, east, north [deg], or the gaps between them."""
         rows = np.sort(self.beside.query(shapely.box(*box))) if len(self) else np.empty(0, dtype=np.int64)
         return TiledTerrain(self.keys[rows], self.imports[rows], self.lattice[rows], self.size[rows], self.grid)
 
     def grids(self) -> Iterator[tuple[int, HeightGrid]]:
-        """All tiles that are still there, with their places in keys."""
+        """Yield all existing tiles, with their places in keys."""
         every = np.arange(len(self))
         for number in range(len(self)):
             grid = self.grid(self.keys, number, every)
@@ -86,7 +86,7 @@ class TiledTerrain:
 
 
 def _sample(terrain: TiledTerrain, positions: FloatArray, found: TerrainHeights) -> NDArray[np.bool_]:
-    """Fills in what tiles tell by themselves; returns which positions lie in any tile."""
+    """Fill in the heights inside of tiles; returns which positions are in any tile."""
     places, tiles = terrain.within.query(shapely.points(positions), predicate="intersects")
     inside = np.zeros(len(positions), dtype=bool)
     if not len(places):
@@ -106,10 +106,10 @@ def _sample(terrain: TiledTerrain, positions: FloatArray, found: TerrainHeights)
 
 
 def _bridge(terrain: TiledTerrain, positions: FloatArray, unmet: NDArray[np.intp], found: TerrainHeights) -> None:
-    """Between files whose posts stand side by side, such as GeoTIFF tiles of whole degrees, lies a gap of one step.
+    """Fill in heights in the gap of one step between adjacent files, such as GeoTIFF tiles of whole degrees.
 
-    There the four posts around a position are of different tiles; between them it is as between any four posts. If one of them is void or
-    missing, the ground stays unknown.
+    The four posts around such a position belong to different tiles and are interpolated as usual. If one of them is void or missing, the
+    terrain stays unknown.
     """
     places, tiles = terrain.beside.query(shapely.points(positions[unmet]), predicate="intersects")
     if not len(places):

@@ -1,1 +1,1 @@
-"""The API's doors to the ground."""
+"""API endpoints of map data."""

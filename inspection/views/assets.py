@@ -35,7 +35,7 @@ EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the ext
 
 
 def with_match_rank(assets: QuerySet[DrawnAsset], *, text: str) -> QuerySet[DrawnAsset]:
-    """The same assets with `match_rank`: 0 and 1 are called exactly `text`, 2 and 3 otherwise found; supports have the odd ranks."""
+    """Annotate assets with `match_rank`: 0 and 1 are named exactly `text`, 2 and 3 match otherwise; supports have odd ranks."""
     is_exact = Q(ref__iexact=text) | Q(name__iexact=text)
     is_support = Q(kind=AssetKind.TOWER)
     rank = Case(
@@ -94,7 +94,7 @@ class AssetList(APIView):
 
 
 def _save(asset: Asset, values: dict[str, Any], *, actor: User, expected_revision: int | None) -> Asset:
-    """Store what is true of the asset, and what belongs to the organisation's reference beside it."""
+    """Store the facts of the asset, and the organisation's reference beside it."""
     reference = {name: values.pop(name) for name in REFERENCE_FIELDS if name in values}
     is_new = asset.pk is None
     if values or not reference:

@@ -1,4 +1,4 @@
-"""Data issues: the list, and what a curator does about one."""
+"""Data issues: the list, and curators' actions."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -147,7 +147,7 @@ class DataIssueReopen(APIView):
 
 @contextmanager
 def _repairs() -> Iterator[None]:
-    """Turns the errors of repairs into answers."""
+    """Translate the errors of repairs to responses."""
     try:
         yield
     except CannotRepair as error:
@@ -177,7 +177,7 @@ def _feature(issue: DrawnIssue, reader: User) -> dict[str, Any]:
 
 
 def _feature_now(issue_id: int, reader: User) -> dict[str, Any] | None:
-    """None when the issue has gone with its asset."""
+    """Return the feature; None when the issue was deleted with its asset."""
     issue = issues().filter(pk=issue_id).first()
     return _feature(issue, reader) if issue else None
 

@@ -1,4 +1,4 @@
-"""What the endpoints of assets and zones share: an answer with its ETag, drawing, correcting and removing, and who came second."""
+"""What the endpoints of assets and zones share: responses with ETag, creating, changing and deleting, and conflicts."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -31,7 +31,7 @@ _Row = TypeVar("_Row", Asset, NoFlyZone)
 
 @contextmanager
 def edits(user: User, current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
-    """Turns the errors of the curation services into answers; `current` gives the feature as it is now, for whoever was too late."""
+    """Translate the errors of the curation services to responses; `current` returns the current feature for a client with an old one."""
     try:
         yield
     except StaleRevision as error:
@@ -52,7 +52,7 @@ def edits(user: User, current: Callable[[], dict[str, Any] | None]) -> Iterator[
 
 @dataclass(frozen=True)
 class Curated(Generic[_Row]):
-    """One kind of row that curators edit: how it is read, checked, stored and removed."""
+    """One kind of row that curators edit: reading, validation, storing and deletion."""
 
     model: type[_Row]
     serializer: type[Serializer]
@@ -62,7 +62,7 @@ class Curated(Generic[_Row]):
     delete: Callable[..., None]  # of a row, actor and expected_revision
 
     def drawn(self, request: SignedInRequest) -> Response:
-        """Answer a POST of a new row."""
+        """Respond to a POST of a new row."""
         body = self.serializer(data=request.data)
         body.is_valid(raise_exception=True)
         with edits(request.user, lambda: None), transaction.atomic():
@@ -73,7 +73,7 @@ class Curated(Generic[_Row]):
         return response
 
     def corrected(self, request: SignedInRequest, key: int) -> Response:
-        """Answer a PATCH with If-Match."""
+        """Respond to a PATCH with If-Match."""
         revision, row = expected_revision(request), self._row(key)
         body = self.serializer(row, data=request.data, partial=True)
         body.is_valid(raise_exception=True)
@@ -82,7 +82,7 @@ class Curated(Generic[_Row]):
         return answer(self.now(request.user, key))
 
     def removed(self, request: SignedInRequest, key: int) -> Response:
-        """Answer a DELETE with If-Match."""
+        """Respond to a DELETE with If-Match."""
         revision = expected_revision(request)
         with edits(request.user, lambda: self.now(request.user, key)):
             self.delete(self._row(key), actor=request.user, expected_revision=revision)
@@ -102,7 +102,7 @@ def with_values(row: _Row, values: dict[str, Any]) -> _Row:
 
 
 def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:
-    """As the user's organisation sees it."""
+    """Return the asset as the user's organisation sees it."""
     try:
         return asset_detail_feature(asset_with_geometry(asset_id), references_of(user.organisation_id, [asset_id]).get(asset_id))
     except Asset.DoesNotExist:

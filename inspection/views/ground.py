@@ -1,4 +1,4 @@
-"""The ground as a whole, and its tiles."""
+"""The map data as a whole, and its tiles."""
 
 import json
 from hashlib import sha256
@@ -55,12 +55,12 @@ class SceneOfBox(APIView):
         not_changed = get_conditional_response(request._request, etag=etag)
         response = not_changed if not_changed is not None else Response(scene_json(scene_in(box)))
         response["ETag"] = etag
-        response["Cache-Control"] = "private, no-cache"  # kept, but asked for again: a zone may have come
+        response["Cache-Control"] = "private, no-cache"  # stored, but revalidated: zones may be new
         return response
 
 
 def _etag(box: Box) -> str:
-    """Of the ground, the box and the language of the labels."""
+    """Return the ETag of the map data, the box and the language of the labels."""
     revision, changed_at = ground_dataset_version()
     said = f"{revision}-{changed_at.timestamp() if changed_at else 0:.6f}-{RECIPE}-{box}-{get_language()}"
     return f'"{sha256(said.encode()).hexdigest()[:32]}"'
@@ -160,5 +160,5 @@ class Tile(APIView):
             except NoSuchTile as error:
                 raise Http404 from error
         response["ETag"] = etag
-        response["Cache-Control"] = "private, no-cache"  # kept, but asked for again: a zone may have come
+        response["Cache-Control"] = "private, no-cache"  # stored, but revalidated: zones may be new
         return response

@@ -1,4 +1,4 @@
-"""The history of the ground: reading it, and taking changes back."""
+"""The history of map data: reading it, and undoing changes."""
 
 from typing import Any
 

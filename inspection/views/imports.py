@@ -1,4 +1,4 @@
-"""What came in and what it would change: looked at, applied or thrown away."""
+"""Incoming files and their changes: review, apply or discard."""
 
 from typing import Any
 from uuid import UUID

@@ -1,4 +1,4 @@
-"""What several doors take from the query: a box, kinds, a text."""
+"""Query parameters that several endpoints share: a box, kinds, a text."""
 
 from math import isfinite
 

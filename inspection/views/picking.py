@@ -1,4 +1,4 @@
-"""Doors to many assets at once, for those who pick what is inspected. Nothing is stored."""
+"""Endpoints for selecting many assets at once. Nothing is stored."""
 
 from dataclasses import replace
 from itertools import islice

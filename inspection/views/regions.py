@@ -1,4 +1,4 @@
-"""Taking a whole region off the ground."""
+"""Deleting the assets of a whole region."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Terrain: which models there are, how high the ground is, and heights from one reference in another."""
+"""Terrain: the models, heights, and conversion between references."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The door for files: announced with name and size, received part by part, gone on with after a cut."""
+"""Upload endpoints: announced with name and size, received part by part, resumable."""
 
 from uuid import UUID
 
@@ -29,7 +29,7 @@ from workspace.api.signed_in import SignedInRequest
 
 
 class CuratorsAlone(RolePermission):
-    """What comes in is for curators to see, too."""
+    """Only curators may read and write uploads."""
 
     def has_permission(self, request: Request, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."
@@ -100,7 +100,7 @@ class UploadBytes(APIView):
     )
     def put(self, request: Request, upload_id: UUID, first_byte: int) -> Response:
         upload = _upload(upload_id)
-        content = request.data if isinstance(request.data, bytes) else b""  # without a body no parser is asked
+        content = request.data if isinstance(request.data, bytes) else b""  # without a body no parser runs
         try:
             upload = receive_part(upload=upload, first_byte=first_byte, content=content)
         except UploadGap as error:

@@ -1,4 +1,4 @@
-"""Zone sets: where their zones come from, every state they had, and what is fetched for them."""
+"""Zone sets: their sources, versions and subscriptions."""
 
 from django.db import transaction
 from django.http import Http404

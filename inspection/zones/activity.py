@@ -1,4 +1,4 @@
-"""When a zone applies, worked out from its schedule. It errs on the long side; what cannot be understood applies always."""
+"""When a zone applies, computed from its schedule. It errs on the long side: an unknown schedule always applies."""
 
 import math
 import re
@@ -18,8 +18,8 @@ DAY_S = 86_400.0
 EPOCH = date(1970, 1, 1)
 SUNRISE_ZENITH_DEG = 90 + 50 / 60  # 34' of refraction and the sun's radius of 16': U.S. Naval Observatory, "Rise, Set, and Twilight"
 TWILIGHT_ZENITH_DEG = 96.0  # the same, civil twilight
-MAX_LAT_DEG = 89.8  # nearer to a pole its equations tell nothing
-ROUNDS = 3  # the sun moves while one looks for it; the third round changes less than a second below 65 degrees of latitude
+MAX_LAT_DEG = 89.8  # nearer to a pole the equations are invalid
+ROUNDS = 3  # iterations for the moving sun; the third changes less than a second below 65 degrees of latitude
 
 _ZENITH_AND_DIRECTION: Mapping[str, tuple[float, SunDirection]] = {
     "BMCT": (TWILIGHT_ZENITH_DEG, SunDirection.RISING),
@@ -27,9 +27,9 @@ _ZENITH_AND_DIRECTION: Mapping[str, tuple[float, SunDirection]] = {
     "SS": (SUNRISE_ZENITH_DEG, SunDirection.SETTING),
     "EECT": (TWILIGHT_ZENITH_DEG, SunDirection.SETTING),
 }
-SUN_ALLOWANCE_S = 120.0  # what the equations, the air and an observer on a hill differ by
-BOX_STEP_DEG = 0.1  # the sun is looked at on the corners of such a grid, so that neighbouring zones ask the same; 24 s of the sun's way
-MAX_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
+SUN_ALLOWANCE_S = 120.0  # for errors of the equations, refraction and a raised observer
+BOX_STEP_DEG = 0.1  # the sun is computed on the corners of such a grid, so that neighbouring zones share values; 24 s of the sun's movement
+MAX_WINDOW_S = 400 * DAY_S  # over more days a zone that applies at times counts as always applying
 EPOCH_WEEKDAY = DAYS.index("THU")  # of 1970-01-01
 _TIME = re.compile(r"(\d{2}):(\d{2}):(\d{2})Z")
 Box = tuple[float, float, float, float]  # west, south, east, north [deg]
@@ -38,11 +38,11 @@ Place = tuple[float, float]
 
 @lru_cache(maxsize=100_000)
 def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float | None:
-    """Seconds since the epoch of an event (schedule.EVENTS) on a solar day at a place at sea level; None where it does not happen.
+    """Return seconds since the epoch of an event (schedule.EVENTS) on a solar day at sea level; None where it does not happen.
 
-    day counts from 1970-01-01 by the place's mean solar time, so that sunrise comes before sunset everywhere. Right within a minute
-    below 65 degrees of latitude. Raises KeyError for another event.
-    Source: NOAA solar equations as the library astral has them, after J. Meeus, Astronomical Algorithms.
+    day counts from 1970-01-01 by the place's mean solar time, so that sunrise comes before sunset everywhere. Accurate to a minute below 65
+    degrees of latitude. Raises KeyError for another event.
+    Source: NOAA solar equations as in the library astral, after J. Meeus, Astronomical Algorithms.
     """
     zenith_deg, direction = _ZENITH_AND_DIRECTION[event]
     latitude = min(max(lat_deg, -MAX_LAT_DEG), MAX_LAT_DEG)
@@ -52,25 +52,26 @@ def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float |
         century = julianday_to_juliancentury(midnight + minutes / 1440.0)
         try:
             angle_deg = degrees(hour_angle(latitude, sun_declination(century), zenith_deg, direction))
-        except ValueError:  # its cosine is beyond 1: the sun stays above or below all day
+        except ValueError:  # its cosine exceeds 1: the sun stays above or below all day
             return None
         minutes = 720.0 - 4.0 * (lon_deg + angle_deg) - eq_of_time(century)
     return day * DAY_S + minutes * 60.0
 
 
 class Span(NamedTuple):
-    """A stretch of time, its end not included; seconds since the epoch, UTC."""
+    """A span of time, its end excluded; seconds since the epoch, UTC."""
 
     from_s: float
     to_s: float
 
 
 def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float, margin_s: float = 0.0) -> tuple[Span, ...]:
-    """When a zone in the box applies between two moments: apart from each other, in order, each wider by the margin on both sides.
+    """Return when a zone in the box applies between two moments: disjoint spans in order, each wider by the margin on both sides.
 
-    schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in
-    UTC as well as at the place, and the span reaches from the earliest start to the latest end in the box; where an event does not happen
-    at all the zone applies that whole day, and where it happens in a part of the box alone, until the third day after is over.
+    schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in UTC
+    as well as at the place, and the span reaches from the earliest start to the latest end in the box. Where an event does not happen at
+    all,
+    the zone applies that whole day; where it happens only in a part of the box, until the end of the third day after.
     """
     if not from_s < to_s:
         return ()
@@ -85,7 +86,7 @@ def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float
 
 
 def merged(spans: Iterable[Span]) -> tuple[Span, ...]:
-    """The same time in as few spans as possible, in order; empty ones are left out."""
+    """Return the same time in as few spans as possible, in order; empty ones are omitted."""
     joined: list[Span] = []
     for span in sorted(span for span in spans if span.from_s < span.to_s):
         if joined and span.from_s <= joined[-1].to_s:
@@ -108,7 +109,7 @@ def _of_period(period: dict[str, Any], box: Box, from_s: float, to_s: float) -> 
         raise ValueError("too many days to look at")
     for entry in entries:
         weekdays = _weekdays(entry["day"])
-        # An entry may begin half a day before its day in UTC, and last two days and a half.
+        # An entry may begin half a day before its day in UTC, and last two and a half days.
         for day in range(math.floor(first / DAY_S) - 3, math.floor(last / DAY_S) + 2):
             if (day + EPOCH_WEEKDAY) % 7 in weekdays:
                 yield from (Span(max(span.from_s, first), min(span.to_s, last)) for span in _of_entry(entry, day, box))
@@ -129,7 +130,7 @@ def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
         known = [(place, start) for place, start in zip(places, starts, strict=True) if start is not None]
         ends = [_end(end_event, end_s, place, start, day) for place, start in known]
         if known:
-            if len(known) < len(places):  # somewhere between it begins, and what ends it may come no sooner than where it never comes
+            if len(known) < len(places):  # it begins somewhere in between, and its end may be as late as where it never happens
                 ends.append((day + 3) * DAY_S)
             early, late = SUN_ALLOWANCE_S if start_event else 0.0, SUN_ALLOWANCE_S if end_event else 0.0
             yield Span(min(start for _place, start in known) - early, max(ends) + late)
@@ -139,7 +140,7 @@ def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
 
 
 def _starts(event: str | None, time_s: float | None, day: int, places: list[Place]) -> Iterator[list[float | None]]:
-    """For each reading of "on that day" the start at each place: by UTC, and by the sun at the place."""
+    """Yield for each reading of "on that day" the start at each place: by UTC, and by the sun at the place."""
     midnight = day * DAY_S
     if event:
         for solar_day in (day - 1, day, day + 1):
@@ -153,7 +154,7 @@ def _starts(event: str | None, time_s: float | None, day: int, places: list[Plac
 
 
 def _end(event: str | None, time_s: float | None, place: Place, start: float, day: int) -> float:
-    """The first end after a start; where the sun brings none, three days later."""
+    """Return the first end after a start; if the sun gives none, three days later."""
     lon, lat = place
     if event:
         moments = (sun_event_s(event, solar_day, lon, lat) for solar_day in range(day - 2, day + 4))
@@ -163,17 +164,17 @@ def _end(event: str | None, time_s: float | None, place: Place, start: float, da
 
 
 def _after(start: float, end: float) -> float:
-    """The end on its day, or on the first day after, that lies behind the start."""
+    """Return the end on its day, or on the first later day, that is after the start."""
     return end if end > start else end + DAY_S * (math.floor((start - end) / DAY_S) + 1)
 
 
 def _solar_s(lon_deg: float) -> float:
-    """How far a place's mean solar time is ahead of UTC."""
+    """Return how far a place's mean solar time is ahead of UTC."""
     return lon_deg * DAY_S / 360.0
 
 
 def _places(box: Box) -> list[Place]:
-    """Corners and centre of the box, made wider to whole steps."""
+    """Return corners and centre of the box, extended to whole steps."""
     west, south = (math.floor(edge / BOX_STEP_DEG) * BOX_STEP_DEG for edge in box[:2])
     east, north = (math.ceil(edge / BOX_STEP_DEG) * BOX_STEP_DEG for edge in box[2:])
     return [(west, south), (east, south), (west, north), (east, north), ((west + east) / 2, (south + north) / 2)]
@@ -193,7 +194,7 @@ def _moment_s(value: str | None, otherwise: float, *, is_end: bool = False) -> f
 
 
 def _time_s(value: str | None, *, is_end: bool = False) -> float | None:
-    """Seconds after midnight. An end in the last second of a minute, or in a day's last minute, is meant to be the next one's start."""
+    """Return seconds after midnight. An end in the last second of a minute, or in a day's last minute, means the start of the next one."""
     if value is None:
         return None
     match = _TIME.fullmatch(value)

@@ -1,4 +1,4 @@
-"""Which heights and times zones reach: their limits as heights above ground, and when they apply."""
+"""Heights and times of zones: their limits as heights above ground, and when they apply."""
 
 import math
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ FloatArray = NDArray[np.float64]
 
 
 class HeightLimits(NamedTuple):
-    """A zone's limits as it states them; None is not stated. References as in HeightReference, "" for none."""
+    """A zone's limits as stated; None is not stated. References as in HeightReference, "" for none."""
 
     lower_m: float | None
     lower_reference: str
@@ -25,17 +25,17 @@ class HeightLimits(NamedTuple):
 
     @property
     def needs_ground(self) -> bool:
-        """Whether the height of the ground has to be known to tell where they are above it."""
+        """Whether the terrain height is needed to convert the limits to heights above ground."""
         return (self.lower_m is not None and self.lower_reference == "AMSL") or (
             self.upper_m is not None and self.upper_reference == "AMSL"
         )
 
 
 def agl_band(limits: HeightLimits, lowest_ground_m: float = math.nan, highest_ground_m: float = math.nan) -> tuple[float, float]:
-    """The lowest and the highest height above ground that a zone can reach [m], given the ground under it above sea level.
+    """Return the lowest and highest height above ground that a zone can reach [m], given the terrain under it above sea level.
 
-    A limit that is not stated, counts from the ellipsoid or from standard pressure, or needs ground that is not known (NaN), reaches to
-    -inf or inf: so does a band that would stand upside down.
+    A limit that is not stated, counts from the ellipsoid or from standard pressure, or needs unknown terrain (NaN), becomes -inf or inf. So
+    do both limits of an inverted band.
     """
     floor_m = _agl_m(limits.lower_m, limits.lower_reference, highest_ground_m, -math.inf)
     ceiling_m = _agl_m(limits.upper_m, limits.upper_reference, lowest_ground_m, math.inf)
@@ -57,8 +57,8 @@ class ZoneTable:
     """All zones of one dataset version, row by row.
 
     ids int64 (z,), primary keys in ascending order; wkb and polygons in lon/lat, box float64 (z, 4) around them; floor_agl_m and
-    ceiling_agl_m float64 (z,): as agl_band tells, without margin; limits and schedules as stated. Threads may share a table: GEOS's
-    prepared polygons are for one thread at a time, so `polygons` are copies that whoever asks may prepare.
+    ceiling_agl_m float64 (z,): from agl_band, without margin; limits and schedules as stated. Threads may share a table: GEOS's prepared
+    polygons are for one thread at a time, so `polygons` returns copies that the caller may prepare.
     """
 
     ids: NDArray[np.int64]
@@ -85,7 +85,7 @@ class ZoneTable:
         return read
 
     def only(self, chosen: BoolArray) -> "ZoneTable":
-        """The rows where the mask (z,) is true."""
+        """Return the rows where the mask (z,) is true."""
         rows = np.flatnonzero(chosen).tolist()
         return ZoneTable(
             ids=self.ids[rows],
@@ -100,25 +100,25 @@ class ZoneTable:
         )
 
     def reaching(self, low_agl_m: float, high_agl_m: float) -> BoolArray:
-        """Which zones may reach a flight between two heights above ground, height margin included, (z,)."""
+        """Return which zones may reach a flight between two heights above ground, height margin included, (z,)."""
         margin_m = self.rules.height_margin_m
         mask: BoolArray = (self.floor_agl_m - margin_m <= high_agl_m) & (self.ceiling_agl_m + margin_m >= low_agl_m)
         return mask
 
     def spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
-        """For each zone when it applies between two moments, time margin included."""
+        """Return for each zone when it applies between two moments, time margin included."""
         return self._spans(from_s, to_s, self.rules.time_margin_s)
 
     def stated_spans(self, from_s: float, to_s: float) -> tuple[tuple[Span, ...], ...]:
-        """For each zone when it applies between two moments, as its schedule states it."""
+        """Return for each zone when it applies between two moments, as its schedule states it."""
         return self._spans(from_s, to_s, 0.0)
 
     def active_within(self, from_s: float, to_s: float) -> BoolArray:
-        """Which zones apply at any moment of a window, (z,)."""
+        """Return which zones apply at any moment of a window, (z,)."""
         return np.array([bool(spans) for spans in self.spans(from_s, to_s)], dtype=bool)
 
     def active_throughout(self, from_s: float, to_s: float) -> BoolArray:
-        """Which zones apply through all of a window, (z,)."""
+        """Return which zones apply throughout a window, (z,)."""
         whole = (Span(from_s, to_s),)
         return np.array([spans == whole for spans in self.spans(from_s, to_s)], dtype=bool)
 

@@ -1,8 +1,8 @@
-"""When a zone applies: periods with days and times of day, as ED-318 writes them, checked and in one form.
+"""Validated schedules of zones: periods with days and times of day, as in ED-318, in one form.
 
-The form, which is also stored: a list of periods {"startDateTime", "endDateTime", "schedule"}; dates and times are UTC in RFC 3339 or
-null for "open"; schedule is a list of {"day", "startTime", "startEvent", "endTime", "endEvent"}, empty for "all the time". None stands
-for a zone that always applies.
+The form, which is also stored: a list of periods {"startDateTime", "endDateTime", "schedule"}; dates and times are UTC in RFC 3339 or null
+for "open"; schedule is a list of {"day", "startTime", "startEvent", "endTime", "endEvent"}, empty for "all the time". None stands for a
+zone that always applies.
 Source: EUROCAE ED-318, limitedApplicability; ED-269, applicability.
 """
 
@@ -25,7 +25,7 @@ Schedule = list[dict[str, Any]]
 
 
 def checked_schedule(value: Any, place: str) -> Schedule | None:
-    """The periods in their one form, or None if one of them is for ever. Raises GeometryFault with the place of what is wrong."""
+    """Return the periods in this form, or None if one of them is permanent. Raises GeometryFault with the place of the fault."""
     if value is None or value == []:
         return None
     if not isinstance(value, list):
@@ -61,7 +61,7 @@ def _period(period: Any, place: str) -> dict[str, Any]:
 
 
 def moment_of(value: Any, place: str) -> str | None:
-    """A date and time in UTC as RFC 3339 writes it; None for what is not stated. Raises GeometryFault."""
+    """Return a date and time in UTC in RFC 3339; None if not stated. Raises GeometryFault."""
     if value is None or value == "":
         return None
     if not isinstance(value, str) or len(value) > 40:
@@ -97,7 +97,7 @@ def _entry(entry: Any, place: str) -> dict[str, Any]:
 
 
 def _time_of_day(value: Any, place: str) -> str | None:
-    """hh:mm:ssZ. Times of day are UTC; an offset is taken into account, the day then may be another one and is refused."""
+    """Return hh:mm:ssZ. Times of day are UTC; an offset is converted, and refused if it changes the day."""
     if value is None or value == "":
         return None
     match = _TIME.fullmatch(value) if isinstance(value, str) else None

@@ -1,11 +1,11 @@
-"""Stages the rows of a file, compares them with the assets of its source, and makes these what the file says.
+"""Stages the rows of a file, compares them with the assets of its source, and updates these to the file.
 
-OpenStreetMap files and other asset files differ in which assets are theirs (`Source`); the rest is the same. A row that a curator edited
-is not touched unless it is to be replaced: what the file says of it is kept beside it, as source_facts. What the source has and the file
-has not is marked as vanished, never deleted.
+OpenStreetMap files and other asset files differ in which assets belong to them (`Source`); the rest is the same. A row that a curator
+edited is changed only if it is to be replaced: the file's version is stored beside it, as source_facts. Assets of the source that are
+missing from the file are marked as vanished, never deleted.
 """
 
-# ruff: noqa: S608 -- the statements are put together from the constants of this package
+# ruff: noqa: S608 -- the statements are made of the constants of this package
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -20,14 +20,14 @@ from inspection.models import ROW_ACTIONS, ChangeAction
 from inspection.services.facts import ASSET_FACTS
 from workspace.models import DEFAULT_ORGANISATION_ID, User
 
-MANY_NEW = 10_000  # rows after which all that the planner knows of the assets is out of date
+MANY_NEW = 10_000  # rows after which the database's planner statistics are outdated
 UNCHANGED = "unchanged"
 _KEYS = ("kind", "osm_type", "osm_id", "source_key")
 _VALUES = (
     "subtype", "geometry", "centre", "name", "ref", "operator", "voltages_v", "max_voltage_v", "circuits", "height_m", "length_m",
     "is_flyable", "node_osm_ids", "tags", "parts", "content_hash",
 )  # fmt: skip
-COLUMNS = (*_KEYS, *_VALUES, "external_id")  # of a row that is staged
+COLUMNS = (*_KEYS, *_VALUES, "external_id")  # of a staged row
 _STAGING = """
 CREATE TEMPORARY TABLE asset_staging (
     id serial, kind text, osm_type text, osm_id bigint, source_key text, subtype text, geometry geometry, centre geometry, name text,
@@ -48,7 +48,7 @@ _ENTRY = "INSERT INTO workspace_auditentry (organisation_id, actor_id, action, s
 
 @dataclass(frozen=True)
 class Sample:
-    """A row that a file would change: as it is stored, as the file has it, or both; facts as JSON."""
+    """A row that a file would change: as stored, as in the file, or both; facts as JSON."""
 
     kind: str
     asset_id: int | None
@@ -62,20 +62,20 @@ class Sample:
 
 @dataclass(frozen=True)
 class Source:
-    """Which assets are a source's own, as SQL over a (an asset) and s (a staged row), with the values of `Merge`."""
+    """The assets of a source, as SQL over a (an asset) and s (a staged row), with the values of `Merge`."""
 
     same: str
-    missing: str  # assets that count as vanished, or as edited and vanished, where the file has none that is the same
-    newer: str = "false"  # assets of which the file says something older than what is known
-    facts: tuple[str, ...] = ()  # what the history keeps besides what people read
+    missing: str  # assets that count as vanished, or as edited and vanished, where the file has no matching one
+    newer: str = "false"  # assets for which the file's data are older than the stored ones
+    facts: tuple[str, ...] = ()  # facts in the history beside those that users read
     order: str = "f.staging_id, f.asset_id"  # of samples
-    # An edited asset of which the source now says what the curator said follows its source again. Not with OpenStreetMap, where others
-    # edit: what a curator of the organisation has settled stays settled.
+    # An edited asset follows its source again once the source states the curator's values. Not with OpenStreetMap, where others edit: a
+    # curator's decision stays.
     follows_again: bool = False
 
     @cached_property
     def fates(self) -> str:
-        """What becomes of each row of the file and of each missing one of the source."""
+        """Return SQL for the outcome of each row of the file and of each missing one of the source."""
         return f"""
 CREATE TEMPORARY TABLE asset_fate ON COMMIT DROP AS
 SELECT a.id AS asset_id, s.id AS staging_id, COALESCE(a.is_edited, false) AS is_edited,
@@ -95,7 +95,7 @@ WHERE {self.missing} AND (a.vanished_at IS NULL OR a.is_edited AND NOT %(replace
 """
 
     def facts_of(self, row: str, *, vanished: str = "false", **instead: str) -> str:
-        """What services/facts.py says of an asset, of the row with this alias; some members from elsewhere."""
+        """Return SQL for the facts of services/facts.py, of the row with this alias; some members from elsewhere."""
         members = ", ".join(f"'{column}', {instead.get(column, f'{row}.{column}')}" for column in (*ASSET_FACTS, *self.facts))
         return f"jsonb_build_object({members}, 'geometry', ST_AsGeoJSON({row}.geometry, 15)::jsonb, 'vanished', {vanished})"
 
@@ -109,7 +109,7 @@ WHERE {self.missing} AND (a.vanished_at IS NULL OR a.is_edited AND NOT %(replace
 
     @cached_property
     def samples(self) -> str:
-        """Kind, asset and label, then label, geometry and facts of both sides; the left one is the stored one."""
+        """Return SQL for samples: kind, asset and label, then label, geometry and facts of both sides, the stored one first."""
         return f"""
 SELECT COALESCE(a.kind, s.kind), a.id, {_LABEL.format(row="a")}, {_LABEL.format(row="s")}, ST_AsBinary(a.geometry), ST_AsBinary(s.geometry),
        CASE WHEN a.id IS NOT NULL THEN {self.stored_facts} END::text, CASE WHEN s.id IS NOT NULL THEN {self.facts_in_file} END::text
@@ -119,7 +119,9 @@ WHERE f.fate = %(fate)s ORDER BY {self.order} LIMIT %(most)s
 
     @cached_property
     def changes(self) -> tuple[str, ...]:
-        """The statements that make the assets what the file says, but for new ones. In this order: the history is of what was."""
+        """Return the statements that update assets to the file, except new ones. They are ordered so that the history
+        has the former state.
+        """
         after = self.facts_of("a", vanished="true", data_import_id="%(data_import)s::bigint", is_edited="false")
         return (
             f"""{_ENTRY}
@@ -142,7 +144,7 @@ FROM asset_fate f JOIN asset_staging s ON s.id = f.staging_id WHERE f.asset_id =
 
     @cached_property
     def kept(self) -> tuple[str, ...]:
-        """Edited rows stay as they are, but know what their source says now."""
+        """Return the statements for edited rows, which stay as they are and store their source's current facts."""
         same, in_file = "false", self.facts_of("s", asset_set_id="NULL", data_import_id="NULL", is_edited="false")
         if self.follows_again:
             facts = " AND ".join(f"a.{column} IS NOT DISTINCT FROM s.{column}" for column in ASSET_FACTS)
@@ -169,12 +171,12 @@ WHERE f.fate = 'new' ORDER BY s.kind DESC, s.osm_id, s.id
 
 
 class Merge:
-    """A staged file and its source: what the file would change, and how it is done. Valid in the transaction that staged it."""
+    """A staged file and its source: the changes of the file, and their execution. Valid in the transaction that staged it."""
 
     def __init__(self, cursor: CursorWrapper, source: Source, *, replace_edited: bool, asset_set: int | None = None, **values: Any) -> None:
         self._cursor, self._source = cursor, source
         self._values = {"replace_edited": replace_edited, "asset_set": asset_set, "data_import": None} | values
-        cursor.execute(f"ANALYZE asset_staging ({_JOINED}), inspection_asset ({_JOINED})")  # right after a first import it seems empty
+        cursor.execute(f"ANALYZE asset_staging ({_JOINED}), inspection_asset ({_JOINED})")  # or statistics show it empty after an import
         cursor.execute(source.fates, self._values)
         cursor.execute("ANALYZE asset_fate")
         cursor.execute("SELECT fate, count(*), count(*) FILTER (WHERE is_edited AND staging_id IS NOT NULL) FROM asset_fate GROUP BY fate")
@@ -188,12 +190,12 @@ class Merge:
         return any(self.numbers[action] for action in (ChangeAction.NEW, ChangeAction.CHANGED, ChangeAction.VANISHED))
 
     def samples(self, action: ChangeAction, most: int) -> list[Sample]:
-        """The first rows of this action."""
+        """Return the first rows of this action."""
         self._cursor.execute(self._source.samples, self._values | {"fate": action.value, "most": most})
         return [Sample(*row) for row in self._cursor.fetchall()]
 
     def write(self, data_import: int, actor: User | None, notify: Callable[[float], None] = lambda share: None) -> None:
-        """Make the assets what the file says. tell: how much of it is done, 0 to 1."""
+        """Update the assets to the file. notify is called with the share done, 0 to 1."""
         self._values |= {
             "data_import": data_import, "actor": actor and actor.pk,
             "organisation": actor.organisation_id if actor else DEFAULT_ORGANISATION_ID,
@@ -205,7 +207,7 @@ class Merge:
         self._cursor.execute(_INSERT, self._values)
         notify(0.75)
         columns = "" if self.numbers[ChangeAction.NEW] > MANY_NEW else "(id, kind, osm_type, osm_id, line_id, vanished_at)"
-        self._cursor.execute(f"ANALYZE inspection_asset {columns}")  # the supports are numbered next, and tiles are asked for soon
+        self._cursor.execute(f"ANALYZE inspection_asset {columns}")  # numbering of supports and tiles follow soon
 
     def keep_beside(self) -> None:
         for statement in self._source.kept:
@@ -214,10 +216,10 @@ class Merge:
 
 @contextmanager
 def staging() -> Iterator[tuple[CursorWrapper, Callable[[], Any]]]:
-    """A cursor beside an empty staging table, and a context that gives what writes its rows. Call it in a transaction."""
+    """Yield a cursor on an empty staging table, and a context for writing its rows. Call it in a transaction."""
     with connection.cursor() as cursor:
         cursor.execute(_STAGING)
         yield cursor, lambda: cursor.copy(_COPY)
-        # Before the end of the transaction: several imports may share one.
+        # Before the end of the transaction, as several imports may share one.
         cursor.execute("DROP TABLE IF EXISTS asset_fate")
         cursor.execute("DROP TABLE asset_staging")

@@ -1,4 +1,4 @@
-"""Makes an asset set what a file says, and tells beforehand what that would change."""
+"""Updates an asset set to a file, and computes the changes beforehand."""
 
 import hashlib
 import json
@@ -37,8 +37,8 @@ _NUMBER = f"""
 SELECT count(*)
 FROM asset_staging s LEFT JOIN inspection_asset a ON {_OF_THE_SET} LEFT JOIN inspection_assetreference r ON {_REFERENCE}
 WHERE s.external_id <> '' AND s.external_id IS DISTINCT FROM r.external_id
-"""  # noqa: S608 -- texts of this file alone
-# Each asset that gets an id or loses one: what its organisation keeps with it, before and after.
+"""  # noqa: S608 -- constant texts of this file
+# Each asset that gets or loses an id: its organisation's reference, before and after.
 _IDS = f"""
 CREATE TEMPORARY TABLE asset_id_given ON COMMIT DROP AS
 WITH given AS (SELECT a.id, s.external_id FROM asset_staging s JOIN inspection_asset a ON {_OF_THE_SET} WHERE s.external_id <> '')
@@ -67,7 +67,7 @@ _STATEMENTS = (
 
 
 def count_of_ids(asset_set: int | None, organisation: int) -> int:
-    """How many ids the staged rows would give. Raises AssetFileError for those that an asset outside the set has."""
+    """Return how many ids the staged rows would set. Raises AssetFileError for ids of assets outside the set."""
     values = {"asset_set": asset_set, "organisation": organisation, "most": MAX_REPORTED}
     with connection.cursor() as cursor:
         cursor.execute(_TAKEN, values)
@@ -79,15 +79,15 @@ def count_of_ids(asset_set: int | None, organisation: int) -> int:
 
 
 def give_ids(asset_set: int, organisation: int, actor: int | None) -> None:
-    """Store them, once the rows are assets; in the transaction that staged them."""
+    """Store the ids once the rows are assets, in the transaction that staged them."""
     values = {"asset_set": asset_set, "organisation": organisation, "actor": actor}
     with connection.cursor() as cursor:
         for statement in (_IDS, *_STATEMENTS):
             cursor.execute(statement, values)
 
 
-EXPLANATIONS = ("kind", "columns", "units", "geometry")  # what somebody says of the columns
-MAPPING_PARAMETERS = (*EXPLANATIONS, "crs", "layer", "leave_out_faulty")  # what the set keeps for the next file
+EXPLANATIONS = ("kind", "columns", "units", "geometry")  # a user's description of the columns
+MAPPING_PARAMETERS = (*EXPLANATIONS, "crs", "layer", "leave_out_faulty")  # stored in the set for the next file
 ROWS_BETWEEN_WORDS = 2_000
 ASSET_SET = Source(
     same="a.asset_set_id = %(asset_set)s AND a.kind = s.kind AND a.source_key = s.source_key AND a.source_key <> ''",
@@ -100,7 +100,7 @@ ASSET_SET = Source(
 
 
 class UnfinishedMapping(ValueError):
-    """Somebody has to say more about the columns first; the message says what."""
+    """Raised when the user must describe more of the columns; the message says what."""
 
 
 def import_assets(
@@ -113,11 +113,11 @@ def import_assets(
     provenance: Provenance | None = None,
     progress: Progress | None = None,
 ) -> DataImport:
-    """Make the set what the file says under the mapping in parameters, and return the import with its counts.
+    """Update the set to the file under the mapping in parameters, and return the import with its counts.
 
-    The same file again changes nothing. Rows that a curator edited stay as they are unless replace_edited says otherwise; what the set
-    has and the file has not is marked as vanished, never deleted. External ids are those of the organisation in provenance, else of who
-    imports it. Raises AssetFileError and UnfinishedMapping, and changes nothing.
+    Importing the same file again changes nothing. Rows that a curator edited stay unless replace_edited is set; assets of the set that are
+    missing from the file are marked as vanished, never deleted. External ids belong to the organisation in provenance, else to the
+    importer's. Raises AssetFileError and UnfinishedMapping, and changes nothing.
     """
     notify = progress or (lambda stage, share: None)
     name = set_name_of(path, parameters.get("set_name"))
@@ -141,7 +141,7 @@ def import_assets(
             if known is not None and known.sha256 == sha256 and not found.changes_something:
                 found.keep_beside()
                 give_ids(asset_set.pk, owner, imported_by.pk if imported_by else None)
-                known.counts = counts  # of this run, for the caller; the row keeps those of its own
+                known.counts = counts  # of this run, for the caller; the row keeps its own
                 return known
             data_import = DataImport.objects.create(
                 kind=ImportKind.ASSETS, file_name=path.name[:255], sha256=sha256, is_synthetic=is_synthetic, imported_by=imported_by,
@@ -157,28 +157,28 @@ def import_assets(
 
 
 def organisation_of(provenance: Provenance | None, actor: User | None) -> int:
-    """Whose external ids a file has."""
+    """Return the organisation of a file's external ids."""
     if provenance is not None and provenance.organisation_id is not None:
         return provenance.organisation_id
     return actor.organisation_id if actor else DEFAULT_ORGANISATION_ID
 
 
 def set_name_of(path: Path, stated: Any) -> str:
-    """Raises AssetFileError."""
+    """Return the name of the set. Raises AssetFileError."""
     if stated is not None and not isinstance(stated, str):
         raise AssetFileError([GeometryFault("set_name", "the name of the set is a text")])
     return ((stated or "").strip() or path.stem)[:200]
 
 
 def with_what_is_known(parameters: dict[str, Any], asset_set: AssetSet | None) -> dict[str, Any]:
-    """The source's next file needs no explanation when nobody gives one: its columns mean what they meant."""
+    """Return the parameters, by default with the set's mapping: the columns of a source's next file have the same meaning."""
     if asset_set is None or any(parameters.get(key) for key in EXPLANATIONS):
         return parameters
     return asset_set.mapping | {key: value for key, value in parameters.items() if key not in EXPLANATIONS}
 
 
 def opened(path: Path, parameters: dict[str, Any]) -> Any:
-    """The file as the parameters say to read it; a context. Raises AssetFileError."""
+    """Open the file with the parameters; a context. Raises AssetFileError."""
     layer = parameters.get("layer")
     return opened_asset_file(
         path, crs=parameters.get("crs"), geometry_columns=parameters.get("geometry"), layer=layer if isinstance(layer, str) else ""
@@ -201,9 +201,9 @@ def staged(
     columns: Iterable[str] | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Merge]:
-    """The file's records in a temporary table, and the difference to the set. Call it in a transaction.
+    """Stage the file's records in a temporary table, with their difference to the set. Call it in a transaction.
 
-    columns are those of the file, if they are known already. Raises AssetFileError and UnfinishedMapping.
+    columns are those of the file, if already known. Raises AssetFileError and UnfinishedMapping.
     """
     rows = file.rows(faults)
     mapping = checked_mapping(parameters, _columns_of(file) if columns is None else columns)
@@ -220,7 +220,7 @@ def staged(
 
 
 def reported(rows: Iterable[Row], progress: Progress | None, code: str, share: float) -> Iterator[Row]:
-    """The rows, with a word to whoever watches every few thousand; that is where a cancelled job ends."""
+    """Yield the rows and report progress every few thousand, at which point a cancelled job ends."""
     for number, row in enumerate(rows, start=1):
         if progress is not None and number % ROWS_BETWEEN_WORDS == 0:
             progress(Reason(code, {"row": number}), share)
@@ -228,7 +228,7 @@ def reported(rows: Iterable[Row], progress: Progress | None, code: str, share: f
 
 
 def unfinished(mapping: Mapping) -> str:
-    """What is still to be said, in words; empty when nothing is."""
+    """Return what the user must still describe as text; empty if nothing."""
     if mapping.kind or mapping.kind_column:
         return ""
     return "Say what the rows are: towers, lines, railways or bridges, or which column tells."
@@ -241,7 +241,7 @@ def unknown_kinds(column: str, tally: Tally) -> str:
 
 
 def counts_of(file: AssetFile, tally: Tally, faults: RowFaults, external_ids: int) -> dict[str, Any]:
-    """What was read, for people and for the row of the import."""
+    """Return what was read, for users and for the import's row."""
     return {
         "format": file.source.file_format, "crs": file.crs_name, "layer": file.source.layer, "left_out": dict(tally.left_out),
         "unread_values": {role: number for role, number in tally.unread.items() if number}, "faulty_rows_left_out": faults.number,
@@ -250,7 +250,7 @@ def counts_of(file: AssetFile, tally: Tally, faults: RowFaults, external_ids: in
 
 
 def _columns_of(file: AssetFile) -> Iterable[str]:
-    """Of the first rows of a file whose rows each bring their own columns, all of them are looked at."""
+    """Return the columns of a file; of one whose rows each have their own, the columns of all rows."""
     if file.source.columns:
         return file.source.columns
     names: dict[str, None] = {}

@@ -1,4 +1,4 @@
-"""Geometry as it comes in from outside, through the one gate, as the database takes it."""
+"""Incoming geometry, validated and in the form that the database takes."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ WORDS = {"Point": "a point", "LineString": "a line", "MultiPolygon": "an area"}
 
 
 def asset_shape(kind: AssetKind, value: Any, place: str = "geometry") -> BaseGeometry:
-    """The checked geometry of an asset of this kind. Raises GeometryFault."""
+    """Return the validated geometry of an asset of this kind. Raises GeometryFault."""
     shape = checked_geometry(value, place)
     if shape.geom_type not in SHAPES[kind]:
         wanted = WORDS[SHAPES[kind][0]]
@@ -28,7 +28,7 @@ def asset_shape(kind: AssetKind, value: Any, place: str = "geometry") -> BaseGeo
 
 
 def zone_shape(geometry: Any, circle: Any) -> tuple[BaseGeometry, dict[str, Any] | None]:
-    """A zone's area, and its circle if it is one: {"centre": [lon, lat], "radius_m": number}. Raises GeometryFault."""
+    """Return a zone's area, and its circle if it is one: {"centre": [lon, lat], "radius_m": number}. Raises GeometryFault."""
     if circle is None:
         return checked_area(geometry, "geometry"), None
     if not isinstance(circle, dict):
@@ -39,7 +39,7 @@ def zone_shape(geometry: Any, circle: Any) -> tuple[BaseGeometry, dict[str, Any]
 
 
 def stored(shape: BaseGeometry) -> GEOSGeometry:
-    """As the database takes it. A bridge of one part is a Polygon, as imports write it."""
+    """Return the geometry for the database. A bridge of one part is a Polygon, as imports write it."""
     return GEOSGeometry(memoryview(shapely.to_wkb(shape)), srid=4326)
 
 
@@ -48,10 +48,10 @@ def bridge_stored(shape: BaseGeometry) -> GEOSGeometry:
 
 
 def length_m(shape: BaseGeometry) -> float | None:
-    """Geodesic length of a line [m]; None for what has none."""
+    """Return the geodesic length of a line [m]; None for other types."""
     return path_length_m(np.asarray(shape.coords)) if shape.geom_type == "LineString" else None
 
 
 def area_m2(shape: BaseGeometry) -> float | None:
-    """Geodesic area [m2]; None for what has none."""
+    """Return the geodesic area [m2]; None for other types."""
     return abs(WGS84.geometry_area_perimeter(shape)[0]) if shape.geom_type == "MultiPolygon" else None

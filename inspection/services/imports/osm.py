@@ -1,4 +1,4 @@
-"""Writes what an OSM file says into the assets: new rows, changed rows, and a mark on those that the file no longer has."""
+"""Updates assets to an OSM file: new rows, changed rows, and vanished ones that the file no longer has."""
 
 import hashlib
 import json
@@ -27,17 +27,17 @@ from operation.reasons import Reason
 from workspace.models import User
 
 SYNTHETIC_ATTRIBUTION = "Synthetic data made by Spanwise; nothing in it exists"
-SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of what they cover together
+SAME_SOURCE_OVERLAP = 0.5  # two files show the same region if their extents share at least half of their union
 EXTENT_MARGIN_DEG = 0.01
-HANDFUL = 10  # of one subtype; so few can really all be gone, more of them missing at once were filtered out of the file
+HANDFUL = 10  # of one subtype; so few may really have vanished, while more missing at once were filtered out of the file
 
 _IS_NEWER = "EXISTS (SELECT FROM inspection_dataimport i WHERE i.id = a.data_import_id AND i.data_timestamp > %(timestamp)s)"
 
 Progress = Callable[[Reason, float], None]
 
 
-# Files of different regions, even neighbours that overlap, say nothing about each other: only rows written by an import whose extent is
-# nearly this one's may vanish, of these only what the header's box holds, if it states one.
+# Files of different regions, even overlapping neighbours, are independent: only rows written by an import with nearly the same extent may
+# vanish, and only those in the header's box, if it states one.
 OPENSTREETMAP = Source(
     same="a.kind = s.kind AND a.osm_type = s.osm_type AND a.osm_id = s.osm_id",
     newer=_IS_NEWER,
@@ -50,7 +50,7 @@ AND (%(box)s::geometry IS NULL OR ST_Intersects(ST_Points(a.geometry), %(box)s::
     facts=("osm_type", "osm_id", "node_osm_ids", "parts", "content_hash"),
     order="a.id, s.kind, s.osm_id",
 )
-# Of an object that stands twice in a file the last one counts.
+# Of duplicate objects in a file the last one counts.
 _KEEP_THE_LAST = """
 DELETE FROM asset_staging s USING (
     SELECT kind, osm_type, osm_id, max(id) AS last FROM asset_staging GROUP BY kind, osm_type, osm_id HAVING count(*) > 1
@@ -61,7 +61,7 @@ WHERE s.kind = twice.kind AND s.osm_type = twice.osm_type AND s.osm_id = twice.o
 
 @dataclass(frozen=True)
 class OsmDifference:
-    """What an OSM file would change: numbers of all, and of each action the first few rows."""
+    """The changes of an OSM file: all totals, and the first few rows of each action."""
 
     counts: dict[str, Any]  # what is in the file
     numbers: dict[str, int]
@@ -78,11 +78,11 @@ def import_osm(
     replace_region: bool = False,
     provenance: Provenance | None = None,
 ) -> DataImport:
-    """Bring the assets to what the file says and return the import with its counts; raises OsmFileError and changes nothing.
+    """Update the assets to the file and return the import with its counts. Raises OsmFileError and changes nothing.
 
-    The same file again changes nothing. Rows that a curator edited stay as they are (unless replace_edited), and so do rows that a file
-    with newer data has written. What an earlier file of the same region had and this one has not is marked as vanished, never deleted:
-    see _sources. With replace_region that holds for all OSM assets within the file's extent, whichever file they came from.
+    Importing the same file again changes nothing. Rows that a curator edited stay (unless replace_edited), and so do rows from a file with
+    newer data. Assets of an earlier file of the same region that are missing from this one are marked as vanished, never deleted: see
+    _sources. With replace_region that applies to all OSM assets within the file's extent, whatever file they came from.
     """
     with path.open("rb") as file:
         sha256 = hashlib.file_digest(file, "sha256").hexdigest()
@@ -106,7 +106,7 @@ def import_osm(
         known = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic, sha256=sha256).exclude(pk=data_import.pk).first()
         if known is not None and not merge.changes_something:
             data_import.delete()
-            known.counts = counts  # of this run, for the caller; the row keeps those of its own
+            known.counts = counts  # of this run, for the caller; the row keeps its own
             return known
         data_import.counts = counts
         data_import.save(update_fields=["counts"])
@@ -116,7 +116,7 @@ def import_osm(
 def difference_of_osm(
     *, path: Path, progress: Progress | None = None, replace_edited: bool = False, replace_region: bool = False, most: int = 2_000
 ) -> OsmDifference:
-    """What import_osm would do with the file; nothing is written. Raises OsmFileError."""
+    """Return what import_osm would do with the file; nothing is written. Raises OsmFileError."""
     with transaction.atomic():
         with _staged(path, progress) as (cursor, content):
             _notify(progress, Reason("comparing"), 0.0)
@@ -130,7 +130,7 @@ def difference_of_osm(
 
 @contextmanager
 def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapper, OsmContent]]:
-    """Read the file's records into a temporary table as they come; a cursor beside it, and what is known of all. Raises OsmFileError."""
+    """Stage the file's records in a temporary table as they are read; yields its cursor and the totals. Raises OsmFileError."""
     with staging() as (cursor, copying):
         with copying() as copy:
 
@@ -147,16 +147,16 @@ def _staged(path: Path, progress: Progress | None) -> Iterator[tuple[CursorWrapp
 
 
 def _numbers(merge: Merge) -> dict[str, int]:
-    """What was edited by hand is counted apart, whatever becomes of it."""
+    """Return the totals, with manually edited rows counted separately whatever their outcome."""
     unchanged = merge.numbers[UNCHANGED] - merge.edited.get(UNCHANGED, 0)
     return merge.numbers | {"kept_edited": sum(merge.edited.values()), "kept_newer": merge.newer, UNCHANGED: unchanged}
 
 
 def _values(content: OsmContent, path: Path, is_synthetic: bool, replace_region: bool, *, but: DataImport | None = None) -> dict[str, Any]:
-    """What the statements need to know of the file.
+    """Return the parameters of the statements for the file.
 
-    A file may be filtered (power lines only): a subtype of which it has none at all is taken for filtered out, unless there was a handful
-    only or the file has the old name.
+    A file may be filtered (power lines only): a subtype that is missing completely counts as filtered out, unless there were at most
+    HANDFUL of it or the file has the same name.
     """
     earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic)
     if but is not None:

@@ -1,4 +1,4 @@
-"""Takes an area's infrastructure from Overpass, as if somebody had sent a file. The one place that talks to it."""
+"""Imports an area's infrastructure from Overpass as an upload. The only module that accesses Overpass."""
 
 import time
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ from workspace.http_client import OutgoingError, OutgoingFailed, fetch
 from workspace.models import User
 
 TRIES = 3
-PAUSES_S = (5, 20)  # a question cannot be gone on with: after a cut it is asked again, whole
+PAUSES_S = (5, 20)  # a query cannot be resumed: after an interruption it is repeated as a whole
 MAX_PAUSE_S = 60
 BUSY = {429, 502, 503, 504}
 ATTRIBUTION = "© OpenStreetMap contributors, ODbL 1.0"
@@ -28,12 +28,12 @@ _BLOCK_BYTES = 1024 * 1024
 
 
 def area_of(parameters: dict[str, Any]) -> Extent:
-    """The box that parameters ask for. Raises WrongArea."""
+    """Return the box of the parameters. Raises WrongArea."""
     return checked_box(parameters.get("overpass_bbox"), settings.OVERPASS_MAX_KM2)
 
 
 def fetch_area(*, parameters: dict[str, Any], created_by: User | None, progress: Progress) -> tuple[Upload, dict[str, Any]]:
-    """What Overpass has of the area, and where it comes from. Raises FileRefused."""
+    """Return Overpass's data of the area as an upload, with its source. Raises FileRefused."""
     try:
         box = area_of(parameters)
     except WrongArea as error:
@@ -69,7 +69,7 @@ def _ask(text: str, to: Path, progress: Progress) -> None:
 
 
 def _wait(pause_s: float, progress: Progress) -> None:
-    """With an ear for whoever wants to stop."""
+    """Wait, checking for cancellation through progress."""
     end_s = time.monotonic() + pause_s
     while (left_s := end_s - time.monotonic()) > 0:
         progress(Reason("overpass_busy", {"seconds": round(left_s)}), 0.02)

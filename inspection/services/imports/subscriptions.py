@@ -1,4 +1,4 @@
-"""Zone sets that are fetched: when, from where, and what becomes of the answer. It is proposed; a curator decides."""
+"""Subscriptions of zone sets: schedule, source, and the proposal made of a response, which a curator decides on."""
 
 import tempfile
 from datetime import datetime, timedelta
@@ -27,20 +27,20 @@ from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
 
 SILENCE_S = 20.0
 TOTAL_S = 120.0
-FIRST_RETRY = timedelta(minutes=15)  # doubled with each failure that follows
+FIRST_RETRY = timedelta(minutes=15)  # doubled with each further failure
 MAX_RETRY_DELAY = timedelta(days=1)  # or the interval, if that is longer
-MAX_CONCURRENT = 20  # fetches that one look at the clock starts
-_FOLDER_PREFIX = "spanwise-upload-"  # what a killed worker leaves is removed with the uploads
+MAX_CONCURRENT = 20  # fetches started at once
+_FOLDER_PREFIX = "spanwise-upload-"  # leftovers of a killed worker are removed with the uploads
 _CHANGEABLE = ("address", "source_format", "licence", "attribution", "interval_h", "is_active")
 _OPEN = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
 
 
 class AlreadySubscribed(ValueError):
-    """The set is fetched from somewhere already."""
+    """Raised when the set already has a subscription."""
 
 
 def subscribe(*, set_name: str, actor: User, **values: Any) -> ZoneSubscription:
-    """Have a set fetched, which is made if there is none of the name; first at the next look at the clock. Raises AlreadySubscribed."""
+    """Subscribe a set, which is created if missing; the first fetch is at the next run of the schedule. Raises AlreadySubscribed."""
     try:
         with transaction.atomic():
             zone_set, _is_new = ZoneSet.objects.get_or_create(name=set_name)
@@ -54,7 +54,7 @@ def subscribe(*, set_name: str, actor: User, **values: Any) -> ZoneSubscription:
 
 
 def change_subscription(*, subscription: ZoneSubscription, actor: User, **values: Any) -> ZoneSubscription:
-    """With another address nothing is known of the source any more; what was paused and goes on is fetched soon."""
+    """Change a subscription. A new address resets what is known of the source; a resumed subscription is fetched soon."""
     with transaction.atomic():
         held = ZoneSubscription.objects.select_for_update(of=["self"]).select_related("zone_set").get(pk=subscription.pk)
         before = _facts(held)
@@ -77,14 +77,14 @@ def change_subscription(*, subscription: ZoneSubscription, actor: User, **values
 
 
 def unsubscribe(*, subscription: ZoneSubscription, actor: User) -> None:
-    """The set and its zones stay. What was fetched and waits to be decided stays, too."""
+    """Remove the subscription. The set with its zones, and undecided proposals, stay."""
     with transaction.atomic():
         _record(actor, subscription, "deleted", _facts(subscription), None)
         subscription.delete()
 
 
 def ask_to_fetch(*, subscription: ZoneSubscription, actor: User) -> Job:
-    """A job that fetches now, or the one that is at it already; the caller sends it to its queue after the commit."""
+    """Return a job that fetches now, or the one that already does; the caller sends it to its queue after the commit."""
     with transaction.atomic():
         held = ZoneSubscription.objects.select_for_update(of=["self"]).get(pk=subscription.pk)
         if job := open_fetch_of(held):
@@ -94,7 +94,7 @@ def ask_to_fetch(*, subscription: ZoneSubscription, actor: User) -> Job:
 
 
 def start_due_fetches() -> list[Job]:
-    """Jobs for the subscriptions whose time has come. Two clocks start none twice: rows are locked, and put off before the fetch."""
+    """Return jobs for the due subscriptions. Concurrent runs start none twice: rows are locked, and rescheduled before the fetch."""
     jobs = []
     with transaction.atomic():
         due = ZoneSubscription.objects.select_for_update(skip_locked=True, of=["self"]).filter(
@@ -108,10 +108,10 @@ def start_due_fetches() -> list[Job]:
 
 
 def fetch_subscription(*, job: Job, progress: Progress) -> ImportProposal | None:
-    """Fetch, and propose what has come if it is new; the caller sends the proposal's job to its queue.
+    """Fetch, and propose a new response; the caller sends the proposal's job to its queue.
 
-    By the clock an answer is proposed once: what a curator has thrown away, or rolled back, does not come back every day. On demand it
-    is proposed again, unless the set says the same or it still waits to be decided.
+    A scheduled fetch proposes a response once: one that a curator discarded or rolled back does not come back every day. A requested fetch
+    proposes it again, unless it equals the set or is still undecided.
     """
     subscription = ZoneSubscription.objects.select_related("zone_set", "proposal").filter(pk=job.parameters["subscription"]).first()
     if subscription is None:
@@ -146,11 +146,11 @@ def _is_news(subscription: ZoneSubscription, fetched: Fetched, path: Path, *, is
 
 
 def _says_what_the_set_says(zone_set: ZoneSet, path: Path) -> bool:
-    """Also when its bytes differ: many sources write the hour of the request into each answer."""
+    """Whether the file equals the set even if its bytes differ: many sources write the time of the request into each response."""
     try:
         content, _digest = read_zone_file(path)
     except ZoneFileError:
-        return False  # the proposal says what is wrong with it
+        return False  # the proposal reports the faults
     known = zone_set.data_import
     if known is None or stated_validity(content) != (known.valid_from, known.valid_until):
         return False
@@ -158,7 +158,7 @@ def _says_what_the_set_says(zone_set: ZoneSet, path: Path) -> bool:
 
 
 def _note_answer(subscription: ZoneSubscription, job: Job, fetched: Fetched, path: Path | None) -> ImportProposal | None:
-    """Remember what the source said, and propose the file if it is news. Nothing, if somebody changed the address meanwhile."""
+    """Store the source's response, and propose the file if it is new. Does nothing if the address was changed meanwhile."""
     with transaction.atomic():
         held = _held(subscription)
         proposal = None
@@ -166,7 +166,7 @@ def _note_answer(subscription: ZoneSubscription, job: Job, fetched: Fetched, pat
             if path is not None:
                 proposal = _propose(held, job, fetched, path)
             elif fetched.status == 200 and fetched.sha256 != held.sha256:
-                _discard_undecided(held)  # the source has gone back to what the set says
+                _discard_undecided(held)  # the source equals the set again
             held.fetched_at, held.problem, held.failures = timezone.now(), "", 0
             if fetched.status == 200:
                 held.etag, held.last_modified, held.sha256 = fetched.etag, fetched.last_modified, fetched.sha256
@@ -196,7 +196,7 @@ def _propose(held: ZoneSubscription, job: Job, fetched: Fetched, path: Path) -> 
 
 
 def _discard_undecided(held: ZoneSubscription) -> None:
-    """A newer answer takes the place of one that nobody has decided on. One that is being applied has been decided on."""
+    """Discard an undecided proposal in favour of a newer response. One that is being applied has been decided on."""
     if held.proposal is None or held.proposal.state not in {ProposalState.READING, ProposalState.READY, ProposalState.REFUSED}:
         return
     try:
@@ -220,13 +220,13 @@ def _note_failure(subscription: ZoneSubscription, job: Job, error: OutgoingError
 
 
 def _held(subscription: ZoneSubscription) -> ZoneSubscription | None:
-    """The row under lock, unless it is gone or fetches from elsewhere by now."""
+    """Return the locked row; None if it was deleted or its address changed."""
     rows = ZoneSubscription.objects.select_for_update(of=["self"]).select_related("zone_set", "proposal")
     return rows.filter(pk=subscription.pk, address=subscription.address).first()
 
 
 def _conditions(subscription: ZoneSubscription) -> dict[str, str]:
-    """What the source needs to answer "not modified"."""
+    """Return the headers that let the source respond "not modified"."""
     headers = {}
     if subscription.sha256 and subscription.etag:
         headers["If-None-Match"] = subscription.etag
@@ -253,7 +253,7 @@ def _fetch_job(subscription: ZoneSubscription, actor: User | None) -> Job:
 
 
 def _file_name(subscription: ZoneSubscription) -> str:
-    """The last part of the address, where that is a name."""
+    """Return the last part of the address, if it is a name."""
     name = plain_name(unquote(urlsplit(subscription.address).path).rstrip("/"))
     return plain_name(subscription.zone_set.name) if name == "file" else name
 

@@ -1,4 +1,4 @@
-"""Writes a terrain model in blocks, and takes one away."""
+"""Stores terrain models in blocks, and removes them."""
 
 import hashlib
 from collections.abc import Callable
@@ -35,10 +35,11 @@ def import_terrain(
     progress: Progress | None = None,
     provenance: Provenance | None = None,
 ) -> DataImport:
-    """Store the heights of a GeoTIFF or HGT file, or of a zip of several; raises TerrainFileError and changes nothing.
+    """Store the heights of a GeoTIFF or HGT file, or of a zip of several. Raises TerrainFileError and changes nothing.
 
-    The same file again changes nothing; a changed file of the same name takes the place of the earlier one. vertical_datum is for a file
-    that does not state one. It counts as a change of the ground: missions were planned with other heights.
+    Importing the same file again changes nothing; a changed file of the same name replaces the earlier one. vertical_datum is for a file
+    that
+    does not state one. It counts as a change of the map data, as missions were planned with other heights.
     """
     origin = provenance or Provenance(file_name=path.name)
     with opened_terrain(path) as file, transaction.atomic():
@@ -61,7 +62,7 @@ def import_terrain(
 
 
 def remove_terrain(*, data_import: DataImport, actor: User) -> None:
-    """Take a terrain model away; older models below it count again."""
+    """Remove a terrain model; older models below it count again."""
     with transaction.atomic():
         hold_ground()
         deleted, _ = TerrainTile.objects.filter(data_import=data_import).delete()
@@ -78,7 +79,7 @@ def imports_of_name(file_name: str) -> Any:
 
 
 def same_import(file_name: str, sha256: str, datum: str) -> DataImport | None:
-    """The import that has brought in the very same heights."""
+    """Return the import of exactly the same heights, or None."""
     return imports_of_name(file_name).filter(sha256=sha256, terrain_tiles__vertical_datum=datum).first()
 
 
@@ -88,7 +89,7 @@ def sha256_of(path: Path) -> str:
 
 
 def facts_of(file: TerrainFile, survey: Survey, datum: str) -> dict[str, Any]:
-    """What is in a file, for people and for the list of models. Raises TerrainFileError for one without heights."""
+    """Return the content of a file, for users and the list of models. Raises TerrainFileError for one without heights."""
     if survey.blocks == 0:
         raise TerrainFileError(ONLY_VOIDS)
     return survey.counts() | {

@@ -1,4 +1,4 @@
-"""Files on their way in: received part by part, kept in the database, given to a reader as a file that does not stay."""
+"""Uploads: received part by part, stored in the database, and passed to a reader as a temporary file."""
 
 import fcntl
 import hashlib
@@ -20,15 +20,15 @@ from inspection.models import ImportProposal, ProposalState, Upload, UploadPart
 from workspace.models import Organisation, User
 
 PART_BYTES = 1024 * 1024
-MAX_UPLOADS = 200  # that are kept, of one organisation
-KEPT = timedelta(hours=24)  # an upload that nobody went on with, or that was decided on
+MAX_UPLOADS = 200  # stored, of one organisation
+KEPT = timedelta(hours=24)  # an abandoned upload, or one that was decided on
 _FOLDER_PREFIX = "spanwise-upload-"
 _OPEN_STATES = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
 _DECIDED_STATES = (ProposalState.APPLIED, ProposalState.DISCARDED)
 
 
 class UploadRefused(ValueError):
-    """The bytes do not fit to the upload; the message says why and what to do."""
+    """Raised when the bytes do not fit the upload; the message has the reason and the remedy."""
 
 
 class UploadTooLarge(UploadRefused):
@@ -36,21 +36,21 @@ class UploadTooLarge(UploadRefused):
 
 
 class TooManyUploads(UploadRefused):
-    """The files of an organisation that are kept take as much room as they may."""
+    """Raised when the stored files of an organisation use all of its space."""
 
 
 class UploadGap(UploadRefused):
-    """Bytes before these are missing, or some of these are here already; the upload says how many it has."""
+    """Raised when earlier bytes are missing, or some of these were already received; the upload states how many it has."""
 
 
 class UploadInUse(UploadRefused):
-    """Somebody still has to look at what the file would change."""
+    """Raised when the file's changes are still to be reviewed."""
 
 
 def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) -> Upload:
-    """Raises UploadTooLarge, or TooManyUploads for one that does not fit into what the organisation may have waiting.
+    """Begin an upload. Raises UploadTooLarge, or TooManyUploads for one that exceeds the organisation's space.
 
-    Two that are begun at once wait for each other.
+    Concurrent calls are serialised.
     """
     _refuse_more_than(max(settings.MAX_UPLOAD_BYTES.values()), size_bytes)
     with transaction.atomic():
@@ -64,12 +64,12 @@ def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) ->
 
 
 def check_size_for(kind: str, size_bytes: int) -> None:
-    """Each kind of data has its own limit. Raises UploadTooLarge."""
+    """Check the limit of the kind of data. Raises UploadTooLarge."""
     _refuse_more_than(settings.MAX_UPLOAD_BYTES[kind], size_bytes)
 
 
 def delete_upload(*, upload: Upload) -> None:
-    """Raises UploadInUse."""
+    """Delete an upload. Raises UploadInUse."""
     with transaction.atomic():
         if upload.proposals.filter(state__in=_OPEN_STATES).exists():
             raise UploadInUse(_("The file is part of an import that is not decided yet. Discard that first."))
@@ -77,7 +77,7 @@ def delete_upload(*, upload: Upload) -> None:
 
 
 def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
-    """Keep the bytes that begin at first_byte; what is there already is not written twice. Raises UploadRefused."""
+    """Store the bytes that begin at first_byte; received ones are not written again. Raises UploadRefused."""
     if not content or len(content) > PART_BYTES:
         raise UploadRefused(_("A part has 1 to %(part_bytes)s bytes.") % {"part_bytes": PART_BYTES})
     with transaction.atomic():
@@ -89,7 +89,7 @@ def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
                 % {"size_bytes": held.size_bytes, "end": end}
             )
         if end <= held.received_bytes:
-            return held  # sent again because its answer was lost
+            return held  # repeated because its response was lost
         if first_byte != held.received_bytes:
             raise UploadGap(
                 _("The part begins at byte %(first_byte)s; go on from byte %(received_bytes)s.")
@@ -104,7 +104,7 @@ def receive_part(*, upload: Upload, first_byte: int, content: bytes) -> Upload:
 
 
 def store_upload(*, file_name: str, chunks: Iterable[bytes], created_by: User | None) -> Upload:
-    """An upload of what the program itself has fetched or made."""
+    """Return an upload of what the program itself has fetched or made."""
     with transaction.atomic():
         upload = Upload.objects.create(file_name=plain_name(file_name), size_bytes=0, created_by=created_by)
         digest = hashlib.sha256()
@@ -121,7 +121,7 @@ def store_upload(*, file_name: str, chunks: Iterable[bytes], created_by: User | 
 
 @contextmanager
 def upload_as_file(upload: Upload) -> Iterator[Path]:
-    """The upload as a file of its own name that only this user may read, gone afterwards. Raises UploadRefused if it is not whole."""
+    """Yield the upload as a temporary file of its own name that only this user can read. Raises UploadRefused if it is incomplete."""
     if not upload.is_complete:
         raise UploadRefused(_("The file has not arrived whole."))
     with private_folder() as folder:
@@ -138,9 +138,9 @@ def upload_as_file(upload: Upload) -> Iterator[Path]:
 
 @contextmanager
 def private_folder() -> Iterator[Path]:
-    """A folder that is gone afterwards: removed here, or, after a kill -9, by the next one who makes a folder.
+    """Yield a temporary folder: removed here, or after a SIGKILL by the next caller.
 
-    The process that uses a folder holds a lock on it, and the system takes the lock back with the process.
+    The process that uses a folder locks it, and the kernel releases the lock when the process ends.
     """
     with _folder_lock():
         _remove_left_folders()
@@ -161,14 +161,14 @@ def upload_folder() -> Path:
 
 
 def plain_name(file_name: str) -> str:
-    """The last part of a name that a browser or a server gave, without what a file system or a log could trip over."""
+    """Return the last part of a file name from a browser or a server, without characters that are unsafe in file systems or logs."""
     name = PurePosixPath(file_name.replace("\\", "/")).name
     name = "".join(character for character in name if character.isprintable() and character not in '<>:"|?*')
     return name[-200:].lstrip(".") or "file"
 
 
 def forget_old_uploads() -> int:
-    """Delete uploads that nothing needs any more, and files that a killed worker has left. Returns how many rows went."""
+    """Delete uploads that are no longer needed, and files of killed workers. Returns how many rows were deleted."""
     with _folder_lock():
         _remove_left_folders()
     states = ImportProposal.objects.filter(upload__isnull=False)
@@ -198,7 +198,7 @@ def _remove_left_folders() -> None:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
             shutil.rmtree(folder, ignore_errors=True)
         except BlockingIOError:
-            pass  # somebody reads from it
+            pass  # in use by a reader
         finally:
             os.close(handle)
 
@@ -219,7 +219,7 @@ def _sha256(upload: Upload) -> str:
 
 
 def _parts(chunks: Iterable[bytes]) -> Iterator[bytes]:
-    """The same bytes in parts of PART_BYTES."""
+    """Yield the same bytes in parts of PART_BYTES."""
     held = bytearray()
     for chunk in chunks:
         held += chunk

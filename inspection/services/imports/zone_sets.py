@@ -1,4 +1,4 @@
-"""The zones of one source: what another file would change in them, making it so, and every state that a set has had."""
+"""The zones of one source: differences to another file, their application, and all former versions."""
 
 import json
 import zlib
@@ -43,16 +43,16 @@ Key = tuple[str, int]
 
 @dataclass
 class ZoneDifference:
-    """What other records would change in a set. kept: edited by hand, and the source now says something else, or nothing.
+    """The changes of a set by other records. kept: manually edited, and the source now states something else, or nothing.
 
-    unread: the source says something of them, but its record has a fault: they stay as they are.
+    unread: the source has a record of them with a fault: they stay as they are.
     """
 
     new: list[ZoneRecord] = field(default_factory=list)
     changed: list[tuple[NoFlyZone, ZoneRecord]] = field(default_factory=list)
     vanished: list[NoFlyZone] = field(default_factory=list)
     kept: list[tuple[NoFlyZone, ZoneRecord | None]] = field(default_factory=list)
-    confirmed: list[NoFlyZone] = field(default_factory=list)  # edited, and the source now says the same
+    confirmed: list[NoFlyZone] = field(default_factory=list)  # edited, and the source now states the same
     unread: list[NoFlyZone] = field(default_factory=list)
     unchanged: int = 0
 
@@ -71,11 +71,11 @@ class ZoneDifference:
 def difference_of(
     zone_set: ZoneSet | None, records: Iterable[ZoneRecord], *, replace_edited: bool = False, unread: Iterable[UnreadRecord] = ()
 ) -> ZoneDifference:
-    """Compare the set's rows with what a file or a version says; edited rows are kept unless they are to be replaced.
+    """Compare the set's rows with a file or a version; edited rows are kept unless they are to be replaced.
 
-    A zone whose record could not be read does not vanish: nobody knows what the file says of it. Where a file has several zones of its
-    identifier, which of them each record is cannot be told by their numbers: zones of the set stay as they are, and what differs from all
-    of them is new beside them.
+    A zone with an unreadable record does not vanish, as its content in the file is unknown. Where a file has several zones of its
+    identifier,
+    their numbers do not match records to zones: the set's zones stay as they are, and records that differ from all of them are added.
     """
     found = ZoneDifference()
     held = {(zone.identifier, zone.layer): zone for zone in zone_set.zones.all()} if zone_set else {}
@@ -113,7 +113,7 @@ def difference_of(
 
 
 def write_difference(zone_set: ZoneSet, found: ZoneDifference, *, actor: User | None, edited: frozenset[Key] = frozenset()) -> None:
-    """Make the set what the difference says, under hold_ground; `edited` are the records that count as edited by hand."""
+    """Apply a difference to the set, under hold_ground; `edited` are the records that count as manually edited."""
     written = [*found.new, *(record for _, record in found.changed)]
     entries = [_entry(actor, "vanished", zone, zone_facts(zone), None) for zone in found.vanished]
     for zone, record in found.changed:
@@ -130,11 +130,11 @@ def write_difference(zone_set: ZoneSet, found: ZoneDifference, *, actor: User | 
             for record in written:
                 copy.write_row(_row(record, is_edited=(record.identifier, record.layer) in edited))
         cursor.execute(_MERGE, {"zone_set": zone_set.pk})
-        cursor.execute("DROP TABLE zone_staging")  # before the end of the transaction: several imports may share one
+        cursor.execute("DROP TABLE zone_staging")  # before the end of the transaction, as several imports may share one
 
 
 def store_version(zone_set: ZoneSet, *, data_import: DataImport | None, created_by: User | None) -> ZoneSetVersion:
-    """Keep the set's zones as they are now."""
+    """Store the set's current zones as a version."""
     zones = [zone_facts(zone) for zone in zone_set.zones.order_by("identifier", "layer")]
     last = zone_set.versions.aggregate(last=Max("number"))["last"] or 0
     return ZoneSetVersion.objects.create(
@@ -144,7 +144,7 @@ def store_version(zone_set: ZoneSet, *, data_import: DataImport | None, created_
 
 
 def keep_what_was(zone_set: ZoneSet) -> None:
-    """Before a set is changed: store it as a version if its present state is in none."""
+    """Store the set's current zones as a version before a change, unless one has them."""
     if not zone_set.zones.exists():
         return
     last = zone_set.versions.defer("content").first()
@@ -153,9 +153,9 @@ def keep_what_was(zone_set: ZoneSet) -> None:
 
 
 def empty_zone_set(*, zone_set: ZoneSet, actor: User) -> None:
-    """Take all zones of a set off the ground. The set stays, without zones: each of its versions can be brought back.
+    """Delete all zones of a set. The set stays, without zones: each of its versions can be restored.
 
-    What is fetched for it is paused, or it would soon be proposed again. An empty set stays as it is.
+    Its subscription is paused, as it would soon be proposed again. An empty set is unchanged.
     """
     with transaction.atomic():
         hold_ground()
@@ -175,7 +175,7 @@ def empty_zone_set(*, zone_set: ZoneSet, actor: User) -> None:
 
 
 def records_of_version(version: ZoneSetVersion) -> tuple[list[ZoneRecord], frozenset[Key]]:
-    """What the version says, and which of it had been edited by hand."""
+    """Return the version's records, and which of them were manually edited."""
     facts = json.loads(zlib.decompress(bytes(version.content)))
     edited = frozenset((zone["identifier"], zone["layer"]) for zone in facts if zone["is_edited"])
     return [_record(zone) for zone in facts], edited
@@ -188,7 +188,7 @@ def says_the_same(zone: NoFlyZone, record: ZoneRecord) -> bool:
 
 
 def record_facts(record: ZoneRecord) -> dict[str, Any]:
-    """The same keys as zone_facts gives them, as far as a record has them."""
+    """Return the keys of zone_facts, as far as a record has them."""
     geometry = json.loads(shapely.to_geojson(record.geometry))
     return _facts(record) | {"geometry": {"type": geometry["type"], "coordinates": geometry["coordinates"]}}
 

@@ -1,4 +1,4 @@
-"""Makes a zone set what a file says: all of it, or nothing and the list of faults."""
+"""Updates a zone set to a file: completely, or not at all with a list of faults."""
 
 import hashlib
 from collections import Counter
@@ -38,11 +38,12 @@ def import_zones(
     leave_out_faulty: bool = False,
     provenance: Provenance | None = None,
 ) -> DataImport:
-    """Make the set (by default named after the file) what the file says, and return the import with its counts.
+    """Update the set (by default named after the file) to the file, and return the import with its counts.
 
-    Zones that are the same keep their rows; others are changed, added or taken out; those that a curator edited stay as they are unless
-    replace_edited says otherwise. Raises ZoneFileError and changes nothing, also when the set has zones that are all elsewhere: they
-    would be gone unnoticed. A set that is named, or replace_all, says that this is meant.
+    Unchanged zones keep their rows; others are changed, added or removed. Those that a curator edited stay unless replace_edited is set.
+    Raises ZoneFileError and changes nothing, also when all zones of the set are elsewhere, as they would be removed unnoticed. Naming a
+    set,
+    or replace_all, confirms that this is intended.
     """
     content, sha256 = read_zone_file(path, source_format=source_format, leave_out_faulty=leave_out_faulty)
     name = set_name_of(path, set_name)
@@ -73,7 +74,7 @@ def make_so(
     actor: User | None,
     edited: frozenset[tuple[str, int]] = frozenset(),
 ) -> None:
-    """Write a difference, with the states before and after it kept as versions. Under hold_ground."""
+    """Apply a difference, and store the states before and after it as versions. Under hold_ground."""
     if not found.changes_something:
         write_difference(zone_set, found, actor=actor, edited=edited)
         return
@@ -84,7 +85,7 @@ def make_so(
 
 
 def read_zone_file(path: Path, *, source_format: str = "", leave_out_faulty: bool = False) -> tuple[ZoneFile, str]:
-    """The zones of a file and its SHA-256. Raises ZoneFileError, also if the file is in another format than was said."""
+    """Return the zones of a file and its SHA-256. Raises ZoneFileError, also if the file is not in the stated format."""
     if path.stat().st_size > MAX_FILE_BYTES:
         raise ZoneFileError([GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")])
     data = path.read_bytes()
@@ -96,7 +97,7 @@ def read_zone_file(path: Path, *, source_format: str = "", leave_out_faulty: boo
 
 
 def stated_validity(content: ZoneFile) -> tuple[datetime | None, datetime | None]:
-    """From when and until when the file says that it holds."""
+    """Return the stated start and end of the file's validity."""
     return _instant(content.valid_from), _instant(content.valid_until)
 
 
@@ -109,7 +110,7 @@ def set_name_of(path: Path, set_name: str | None) -> str:
 
 
 def refuse_if_elsewhere(zone_set: ZoneSet | None, content: ZoneFile, what_to_do: str) -> None:
-    """Raises ZoneFileError if the set has zones, and none of them comes near to those of the file."""
+    """Raise ZoneFileError if the set has zones, none of which is near those of the file."""
     if zone_set is None or not zone_set.zones.exists():
         return
     near = Polygon.from_bbox(extent_of(content))
@@ -119,13 +120,13 @@ def refuse_if_elsewhere(zone_set: ZoneSet | None, content: ZoneFile, what_to_do:
 
 
 def extent_of(content: ZoneFile) -> tuple[float, float, float, float]:
-    """West, south, east, north [deg]."""
+    """Return west, south, east, north [deg]."""
     west, south, east, north = shapely.total_bounds([zone.geometry for zone in content.zones]).tolist()
     return west, south, east, north
 
 
 def zone_counts(content: ZoneFile) -> dict[str, Any]:
-    """What is in a zone file."""
+    """Return the counts of a zone file."""
     return {
         "zones": content.zone_count, "layers": len(content.zones), "format": content.source_format,
         "circles": sum(zone.circle is not None for zone in content.zones),
@@ -147,7 +148,7 @@ def _unread_json(record: UnreadRecord) -> dict[str, Any]:
 
 
 def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: bool) -> dict[str, Any]:
-    """Where the zones come from, as far as somebody or the file says so."""
+    """Return the source of the zones, as stated by the user or the file."""
     stated: dict[str, Any] = {} if provenance is None else provenance.of_import
     if is_synthetic:
         stated["attribution"] = SYNTHETIC_ATTRIBUTION
@@ -158,7 +159,9 @@ def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: b
 
 
 def _seen_again(data_import: DataImport, origin: dict[str, Any], counts: dict[str, Any]) -> DataImport:
-    """The same file once more: what is newly known of its origin is kept. The row keeps its own counts, the caller gets this run's."""
+    """Update an import when its file is imported again: new facts of its source are stored. The row keeps its counts, the caller gets this
+    run's.
+    """
     for name, value in origin.items():
         setattr(data_import, name, value)
     data_import.save(update_fields=list(origin))

@@ -1,1 +1,1 @@
-"""From a file that came in to a change of the ground: read it, show what it would change, apply it or throw it away."""
+"""From an incoming file to a change of the map data: read, show the difference, apply or discard."""

@@ -1,4 +1,4 @@
-"""Asset files that are not OpenStreetMap's as proposals: first what is in them, then, once their columns are explained, the difference."""
+"""Asset files other than OpenStreetMap's as proposals: first their content, then, once the columns are mapped, the difference."""
 
 import json
 from collections.abc import Iterator
@@ -39,7 +39,7 @@ NOTHING = dict.fromkeys((*ROW_ACTIONS, UNCHANGED), 0)
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-    """What is in the file and, once the mapping says enough, what it would change in its set. Raises FileRefused."""
+    """Return the content of the file and, once the mapping is sufficient, its changes of the set. Raises FileRefused."""
     with _faults_as_refusal():
         file_path = _file(path)
         name = set_name_of(file_path, parameters.get("set_name"))
@@ -63,7 +63,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
 def apply(
     *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
 ) -> DataImport:
-    """Make the set what the file says. Raises FileRefused."""
+    """Update the set to the file. Raises FileRefused."""
     with _faults_as_refusal():
         return import_assets(
             path=_file(path), parameters=parameters, imported_by=applied_by, provenance=provenance,
@@ -139,7 +139,7 @@ def _changes(found: Merge) -> Iterator[Change]:
 
 
 def _shown(text: str | None) -> dict[str, Any] | None:
-    """What people read of the facts; the cursor gives jsonb as text."""
+    """Return the facts that users read; the cursor returns jsonb as text."""
     if text is None:
         return None
     facts = json.loads(text)

@@ -15,12 +15,12 @@ from inspection.services.proposals.reading import Change, Fault, FileRefused, Pr
 from operation.reasons import Reason, reason_of
 from workspace.models import User
 
-STAYING = (ChangeAction.KEPT, ChangeAction.VANISHED)  # drawn where they are, not where the file has them
+STAYING = (ChangeAction.KEPT, ChangeAction.VANISHED)  # drawn at their stored place instead of the file's
 _FOR_PROGRAMS = {"node_osm_ids", "parts", "content_hash", "osm_type", "osm_id"}
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-    """What the file would change. Raises FileRefused."""
+    """Return the changes of the file. Raises FileRefused."""
     try:
         found = difference_of_osm(path=_file(path), progress=progress, **_options(parameters))
     except OsmFileError as error:
@@ -31,7 +31,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
 def apply(
     *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
 ) -> DataImport:
-    """Bring the assets to what the file says. Raises FileRefused."""
+    """Update the assets to the file. Raises FileRefused."""
     try:
         return import_osm(path=_file(path), imported_by=applied_by, progress=progress, provenance=provenance, **_options(parameters))
     except OsmFileError as error:
@@ -58,5 +58,5 @@ def _changes(found: OsmDifference) -> Iterator[Change]:
 
 
 def _facts(text: str | None) -> dict[str, Any] | None:
-    """What people read of the facts; the cursor gives jsonb as text."""
+    """Return the facts that users read; the cursor returns jsonb as text."""
     return None if text is None else {name: value for name, value in json.loads(text).items() if name not in _FOR_PROGRAMS}

@@ -1,4 +1,4 @@
-"""The way of a file from upload to ground: proposed, read, looked at, applied or discarded. What a kind of data needs is in its module."""
+"""The steps of a file from upload to map data: proposed, read, reviewed, applied or discarded. Each kind of data has its own module."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -39,15 +39,15 @@ from workspace.reason_texts import message_json
 FILE_KINDS: dict[str, FileKind] = {ImportKind.OSM: osm, ImportKind.ZONES: zones, ImportKind.ASSETS: assets, ImportKind.TERRAIN: terrain}
 READ_TASK = "inspection.tasks.read_proposal"
 APPLY_TASK = "inspection.tasks.apply_proposal"
-MAX_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
+MAX_CHANGES_KEPT = 2_000  # of each action; users review a sample, and the totals cover all
 MAX_FAULTS_KEPT = 50
 READ = Reason("file_read")
-DECISIONS = {"replace_edited", "seen"}  # parameters of the one who applies: the difference is the same with them
+DECISIONS = {"replace_edited", "seen"}  # parameters of the applying user that do not affect the difference
 _BATCH = 500
 
 
 class WrongState(Exception):
-    """The proposal is not in a state in which this can be done; somebody else may have been faster."""
+    """Raised when the proposal's state does not permit this; another user may have been faster."""
 
     def __init__(self, proposal: ImportProposal) -> None:
         super().__init__(f"The proposal is {proposal.get_state_display().lower()}.")
@@ -55,7 +55,7 @@ class WrongState(Exception):
 
 
 class NotSeen(Exception):
-    """Records of the file could not be read, and nobody has said to have seen them; `places` are theirs in the file."""
+    """Raised when unreadable records of the file are not acknowledged; `places` are theirs in the file."""
 
     def __init__(self, places: list[str]) -> None:
         super().__init__(f"{len(places)} records of the file are not read. See each of them first.")
@@ -74,10 +74,10 @@ def start_proposal(
     auto_apply: bool = False,
     max_removed_percent: float = MAX_REMOVED_PERCENT,
 ) -> ImportProposal:
-    """A proposal and the job that reads it; the caller sends the job to its queue after the commit.
+    """Create a proposal and the job that reads it; the caller sends the job to its queue after the commit.
 
-    With auto_apply it is applied once it is read, if it keeps to the bounds (bounds.py) and no later app has anything against it
-    (auto_apply_hooks.py); else it waits for somebody like any other, and `held_back` says why.
+    With auto_apply it is applied once it is read, if it is within the bounds (bounds.py) and no later app objects (auto_apply_hooks.py);
+    otherwise it waits for review, and `held_back` has the reasons.
     """
     with transaction.atomic():
         proposal = ImportProposal.objects.create(
@@ -107,10 +107,9 @@ def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: U
 
 
 def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor: User) -> ImportProposal:
-    """Somebody has looked at the difference and wants it; of records that are not read, `seen` names the place of each. Raises WrongState,
-    NotSeen.
+    """Apply a reviewed difference; `seen` names the places of unreadable records. Raises WrongState, NotSeen.
 
-    What was looked at was taken with the parameters as they were: with others than that the difference is taken anew before it counts.
+    The difference was computed with the proposal's parameters: with other ones it is computed again first.
     """
     with _held(proposal, {ProposalState.READY}) as held:
         seen = parameters.get("seen")
@@ -129,7 +128,7 @@ def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor:
 
 
 def discard_proposal(*, proposal: ImportProposal, actor: User | None) -> ImportProposal:
-    """Nobody wants it. One that is being read is stopped. Raises WrongState."""
+    """Discard a proposal, and stop reading it. Raises WrongState."""
     with _held(proposal, {ProposalState.READING, ProposalState.READY, ProposalState.REFUSED}) as held:
         if held.job is not None and held.job.is_open:
             cancel_job(job=held.job)
@@ -141,15 +140,15 @@ def discard_proposal(*, proposal: ImportProposal, actor: User | None) -> ImportP
 
 
 def size_mib_of(*, job: Job) -> float:
-    """Of the file that the job's proposal is about; 0 where there is none yet."""
+    """Return the size of the file of the job's proposal [MiB]; 0 without a file."""
     proposal = ImportProposal.objects.select_related("upload").filter(pk=job.parameters["proposal"]).first()
     return 0.0 if proposal is None or proposal.upload is None else proposal.upload.size_bytes / 1024**2
 
 
 def read_proposal(*, job: Job, progress: Progress) -> Job | None:
-    """Look at the file and store what it would change. A file with faults is a refused proposal, not a failed job.
+    """Read the file and store its changes. A file with faults makes a refused proposal, not a failed job.
 
-    Returns the job that applies it, where it is applied by itself; the caller sends it to its queue.
+    Returns the job that applies it automatically, if any; the caller sends it to its queue.
     """
     proposal = ImportProposal.objects.select_related("upload").get(pk=job.parameters["proposal"])
     if proposal.job_id != job.pk or proposal.state != ProposalState.READING:
@@ -170,7 +169,7 @@ def read_proposal(*, job: Job, progress: Progress) -> Job | None:
 
 
 def _go_on_by_itself(proposal: ImportProposal, job: Job) -> Job | None:
-    """What was just read is to be applied if it keeps to the bounds; whether flights are touched is looked at when it is written."""
+    """Start applying a proposal that is within its bounds; whether flights are affected is checked when it is written."""
     held = ImportProposal.objects.select_for_update(of=["self"]).get(pk=proposal.pk)
     if held.state != ProposalState.READY:
         return None
@@ -192,17 +191,18 @@ def _hold_back(proposal: ImportProposal, reasons: list[AutoApplyRefusal]) -> Non
 
 
 def _fetch(proposal: ImportProposal, progress: Progress) -> None:
-    """Fetch what is to be read, and keep it: read again, it is the same."""
+    """Fetch the data and store them, so that reading again gives the same."""
     upload, provenance = fetch_area(parameters=proposal.parameters, created_by=proposal.created_by, progress=progress)
     proposal.upload, proposal.provenance, proposal.file_name = upload, provenance, upload.file_name
     proposal.save(update_fields=["upload", "provenance", "file_name"])
 
 
 def apply_proposal(*, job: Job, progress: Progress) -> None:
-    """Make the ground what the file says: the rows, the import, the proposal's state and the job's end in one transaction.
+    """Update the map data to the file: the rows, the import, the proposal's state and the job's end in one transaction.
 
-    If the ground has changed since somebody looked, and with it the difference, nothing is applied: the new difference waits to be
-    looked at. One that nobody looked at is measured against its bounds as it is written, and taken back where it does not keep to them.
+    If the difference has changed since the review, nothing is applied, and the new difference waits for review. An automatic one is
+    compared
+    with its bounds as it is written, and rolled back if it exceeds them.
     """
     proposal = ImportProposal.objects.select_related("upload", "decided_by").get(pk=job.parameters["proposal"])
     if proposal.job_id != job.pk or proposal.state != ProposalState.APPLYING:
@@ -227,7 +227,7 @@ def apply_proposal(*, job: Job, progress: Progress) -> None:
 
 
 def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job: Job | None = None) -> None:
-    """The file has faults, or could not be read: nothing of it counts."""
+    """Mark a proposal as refused: the file has faults or is unreadable, and none of it counts."""
     listed = [
         {"place": fault.place, **message_json(fault.message), "position": list(fault.position) if fault.position else None}
         for fault in faults[:MAX_FAULTS_KEPT]
@@ -240,7 +240,7 @@ def refuse_proposal(*, proposal: ImportProposal, faults: tuple[Fault, ...], job:
 
 
 def settle_proposal_of(*, job: Job) -> None:
-    """After a job that was cancelled or failed: reading ends discarded or refused, applying goes back to be decided again."""
+    """Settle the proposal of a cancelled or failed job: reading ends discarded or refused, applying returns to review."""
     proposal = ImportProposal.objects.filter(job=job).first()
     if proposal is None:
         return
@@ -264,7 +264,7 @@ def _failure_of(job: Job) -> Reason | str:
 
 
 def unsettled_proposals() -> list[ImportProposal]:
-    """Proposals whose job has ended without them, because its worker was lost for good."""
+    """Return proposals whose job has ended without settling them, because its worker was lost."""
     ended = ("failed", "cancelled")
     return list(
         ImportProposal.objects.select_related("job").filter(state__in=(ProposalState.READING, ProposalState.APPLYING), job__state__in=ended)
@@ -272,11 +272,11 @@ def unsettled_proposals() -> list[ImportProposal]:
 
 
 class LostJob(Exception):
-    """Another worker has taken the job over; what this one wrote is rolled back."""
+    """Raised when another worker has taken the job over; this one's writes are rolled back."""
 
 
 class _GroundMoved(Exception):
-    """Somebody changed the ground between the look and the lock."""
+    """Raised when the map data changed between the review and the lock."""
 
 
 def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: Progress, path: Path | None, provenance: Provenance) -> None:
@@ -293,7 +293,7 @@ def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: P
 
 
 class _TakenBack(Exception):
-    """What was written does not keep to the bounds; the transaction that wrote it is rolled back."""
+    """Raised when the written changes exceed the bounds; their transaction is rolled back."""
 
     def __init__(self, reasons: list[AutoApplyRefusal]) -> None:
         super().__init__(f"{len(reasons)} reasons")
@@ -301,7 +301,7 @@ class _TakenBack(Exception):
 
 
 def _apply_by_itself(proposal: ImportProposal, job: Job, progress: Progress, path: Path | None, provenance: Provenance) -> None:
-    """Write it, and look in the tables at all that it changes: the stored difference holds the first changes alone."""
+    """Write the changes, and check all of them in the tables: the stored difference has only the first ones."""
     try:
         with transaction.atomic():
             hold_ground()
@@ -326,7 +326,7 @@ def _apply_by_itself(proposal: ImportProposal, job: Job, progress: Progress, pat
 
 
 def _differs_now(proposal: ImportProposal, job: Job, revision: int, progress: Progress) -> bool:
-    """Whether the file would change something else than what was looked at; the new difference is then stored."""
+    """Whether the file's changes differ from the reviewed ones; the new difference is then stored."""
     reading: Reading = _with_file(proposal, lambda path, provenance: _module(proposal).read(
         path=path, parameters=proposal.parameters, provenance=provenance, progress=progress
     ))  # fmt: skip
@@ -411,7 +411,7 @@ def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: 
 
 @contextmanager
 def _held(proposal: ImportProposal, states: set[ProposalState]) -> Iterator[ImportProposal]:
-    """The proposal under lock in a transaction, if it is in one of the states. Raises WrongState."""
+    """Yield the locked proposal in a transaction, if it is in one of the states. Raises WrongState."""
     with transaction.atomic():
         held = ImportProposal.objects.select_for_update(of=["self"]).select_related("job", "decided_by").get(pk=proposal.pk)
         if held.state not in states:

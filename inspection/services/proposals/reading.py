@@ -1,4 +1,4 @@
-"""What reading a file for a proposal gives, the same for every kind of data."""
+"""Result of reading a file for a proposal, common to all kinds of data."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -32,7 +32,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Fault:
-    """Why a file is refused, and where. position is lon, lat [deg]."""
+    """A reason to refuse a file, with its place. position is lon, lat [deg]."""
 
     place: str
     message: Reason | str
@@ -40,7 +40,7 @@ class Fault:
 
 
 class FileRefused(ValueError):
-    """The file has faults; nothing of it counts."""
+    """Raised for a file with faults; none of it counts."""
 
     def __init__(self, faults: Iterable[Fault]) -> None:
         self.faults = tuple(faults)
@@ -49,53 +49,53 @@ class FileRefused(ValueError):
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a file comes from, as far as it is not in the file."""
+    """The source of a file, as far as the file does not state it."""
 
     file_name: str
     source_address: str = ""
     licence: str = ""
     attribution: str = ""
     fetched_at: datetime | None = None
-    organisation_id: int | None = None  # whose file it is, and whose ids it has
+    organisation_id: int | None = None  # owner of the file and of its ids
 
     @property
     def of_import(self) -> dict[str, Any]:
-        """The fields of a DataImport."""
+        """Return the fields of a DataImport."""
         return {name: getattr(self, name) for name in ("attribution", "licence", "source_address", "fetched_at")}
 
 
 @dataclass
 class Reading:
-    """What is in a file and what it would change. changes may be cut after the first few thousand; numbers are of all."""
+    """Content of a file and its changes. changes may be cut after the first few thousand; numbers cover all."""
 
-    summary: dict[str, Any]  # what is in the file, figures with units in their names
+    summary: dict[str, Any]  # content of the file; names include units
     numbers: dict[str, int]  # by ChangeAction, and "unchanged"
     changes: Iterable[Change] = field(default_factory=tuple)
 
 
 class FileKind(Protocol):
-    """How one kind of data is read and applied: a module of this package for each ImportKind has these two functions.
+    """Functions to read and apply one kind of data: a module of this package for each ImportKind has these two.
 
-    path is None for what comes from no file, such as the roll-back of a zone set.
+    path is None for data without a file, such as the roll-back of a zone set.
     """
 
     def read(self, *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-        """Look at the file and at what it would change; writes nothing that stays. Raises FileRefused."""
+        """Return the file's content and changes; writes nothing permanent. Raises FileRefused."""
 
     def apply(
         self, *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
     ) -> DataImport:
-        """Make the ground what the file says, in the caller's transaction. Raises FileRefused."""
+        """Update the map data to the file, in the caller's transaction. Raises FileRefused."""
 
 
-KINDS = (ImportKind.OSM, ImportKind.ZONES, ImportKind.ASSETS)  # terrain lies under everything: somebody looks at it
-_KNOWN = ("changed", "vanished", "kept", "unchanged")  # rows that the source has had before
+KINDS = (ImportKind.OSM, ImportKind.ZONES, ImportKind.ASSETS)  # terrain affects everything, so a user reviews it
+_KNOWN = ("changed", "vanished", "kept", "unchanged")  # rows that the source had before
 
 
 def reasons_against(numbers: Mapping[str, int], content: Mapping[str, Any], max_removed_percent: float) -> list[AutoApplyRefusal]:
-    """What in a difference asks for somebody to look at it.
+    """Return the reasons for which a difference needs a review.
 
-    numbers are of all changes by action; content is what was read, with the records that were not.
+    numbers are of all changes by action; content is what was read, including unreadable records.
     """
     reasons = []
     if content.get("needs_mapping"):

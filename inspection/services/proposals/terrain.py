@@ -1,4 +1,4 @@
-"""Terrain files as proposals: what is in the file, and block by block what it would change."""
+"""Terrain files as proposals: the file's content, and its changes block by block."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -19,13 +19,13 @@ from operation.reasons import Reason, reason_of
 from workspace.models import User
 
 SUBJECT = "terrain"
-SAME_M = 0.01  # heights that differ by less are the same
+SAME_M = 0.01  # smaller differences of heights do not count
 _AT_ONCE = 8  # blocks
 _EDGE_DEG = 1e-7
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-    """What is in the file, and which ground it would change. Raises FileRefused."""
+    """Return the file's content and the terrain that it would change. Raises FileRefused."""
     path = _file(path)
     try:
         with opened_terrain(path) as file:
@@ -60,7 +60,7 @@ def apply(
 
 
 class _Comparison:
-    """Compares the posts of blocks with the ground as it is."""
+    """Compares the posts of blocks with the current terrain."""
 
     def __init__(self, file_name: str, datum: str) -> None:
         self.numbers: dict[str, int] = dict.fromkeys([*ROW_ACTIONS, "unchanged"], 0)
@@ -69,7 +69,7 @@ class _Comparison:
         self._datum = datum
         self._waiting: list[HeightGrid] = []
         self._extents: list[tuple[float, float, float, float]] = []
-        self._met: set[int] = set()  # imports that tell the ground where the file does
+        self._met: set[int] = set()  # imports that provide the current terrain within the file
 
     def add(self, grid: HeightGrid) -> None:
         self._extents.append(grid.extent)
@@ -130,7 +130,7 @@ class _Comparison:
         self.changes.append(Change(action, SUBJECT, _label(extent), None, shape, before, after))
 
     def _given_up(self) -> list[TerrainTile]:
-        """Blocks of the earlier file of this name that the new one does not cover whole."""
+        """Return blocks of the earlier file of this name that the new one does not cover completely."""
         tiles = list(TerrainTile.objects.filter(data_import__in=imports_of_name(self._file_name)).defer("heights_amsl_m"))
         if not tiles:
             return []
@@ -145,7 +145,7 @@ class _Comparison:
 
 
 def _posts(grid: HeightGrid) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
-    """Positions and heights."""
+    """Return positions and heights."""
     rows, columns = (np.arange(count) for count in grid.heights_m.shape)
     lon, lat = np.meshgrid(grid.west_deg + columns * grid.step_lon_deg, grid.north_deg - rows * grid.step_lat_deg)
     return np.column_stack([lon.ravel(), lat.ravel()]), grid.heights_m.ravel().astype(np.float64)

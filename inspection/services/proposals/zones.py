@@ -30,7 +30,7 @@ ALL_ELSEWHERE = "say that all of them are to be replaced, or use another name"
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
-    """What the file, or the version that parameters name, would change in its set. Raises FileRefused."""
+    """Return the changes of the file, or of the version in the parameters. Raises FileRefused."""
     replace_edited = bool(parameters.get("replace_edited"))
     if path is None:
         version = _version(parameters)
@@ -55,7 +55,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
 def apply(
     *, path: Path | None, parameters: dict[str, Any], provenance: Provenance, applied_by: User | None, progress: Progress
 ) -> DataImport:
-    """Make the set what the file or the version says. Raises FileRefused."""
+    """Update the set to the file or the version. Raises FileRefused."""
     progress(Reason("writing_zones"), 0.5)
     if path is None:
         return _roll_back(_version(parameters), applied_by)
@@ -85,7 +85,7 @@ def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
 
 
 def roll_back_name(version: ZoneSetVersion) -> str:
-    """What stands where a file's name does."""
+    """Return what is shown in place of a file's name."""
     return f"{version.zone_set.name[:220]}, version {version.number}"
 
 
@@ -141,7 +141,7 @@ def _changes(found: ZoneDifference) -> Iterator[Change]:
 
 
 def _not_read(record: UnreadRecord) -> Change:
-    """Where a record with a fault lies: the box around those of its positions that can be read, at least some metres wide."""
+    """Return the place of a record with a fault: the box of its readable positions, at least some metres wide."""
     box = None
     if record.bbox is not None:
         west, south, east, north = record.bbox
@@ -159,7 +159,7 @@ def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:
 
 
 def _differing(zone: NoFlyZone, record: ZoneRecord) -> tuple[dict[str, Any] | None, dict[str, Any] | None]:
-    """The facts that differ; of what the source says besides them, its own keys that differ."""
+    """Return the facts that differ; of the source's further ones, its own keys that differ."""
     facts, other = zone_facts(zone), record_facts(record)
     before, after = differing(_shown(facts), _shown(other))
     for name in ("source_heights", "properties"):
@@ -172,7 +172,7 @@ def _differing(zone: NoFlyZone, record: ZoneRecord) -> tuple[dict[str, Any] | No
 
 
 def _shown(facts: dict[str, Any]) -> dict[str, Any]:
-    """Without what only programs read; a changed geometry is on the map."""
+    """Return the facts without those for programs only; a changed geometry is shown on the map."""
     return {name: value for name, value in facts.items() if name not in {"source_heights", "properties", "zone_set_id", "is_edited"}}
 
 
