@@ -48,7 +48,7 @@ class AccountSerializer(serializers.ModelSerializer):
 
 
 class AccountChangeSerializer(serializers.Serializer):
-    """Only the fields to change."""
+    """Fields to change."""
 
     first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
     last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
@@ -177,7 +177,7 @@ class UserSerializer(serializers.ModelSerializer):
 
 
 class UserChangeSerializer(serializers.Serializer):
-    """Only the fields to change."""
+    """Fields to change."""
 
     first_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
     last_name = serializers.CharField(max_length=150, allow_blank=True, required=False)
@@ -221,7 +221,7 @@ class ServiceAccountInputSerializer(serializers.Serializer):
 
 
 class ServiceAccountChangeSerializer(serializers.Serializer):
-    """Only the fields to change."""
+    """Fields to change."""
 
     role = serializers.ChoiceField(choices=Role.choices, required=False)
     is_active = serializers.BooleanField(required=False, help_text="false: none of its tokens works")

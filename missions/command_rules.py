@@ -23,7 +23,7 @@ PRIORITIES = {
 
 
 class Axis(StrEnum):
-    """What a command sets. Of two commands on one axis only the later counts."""
+    """State of a UAV that commands set. Of two commands on one axis only the later counts."""
 
     FLIGHT = "flight"
     MISSION = "mission"

@@ -35,7 +35,7 @@ MAX_NAMED = 3  # UAVs that a reason names; the others are counted
 
 @dataclass(frozen=True)
 class Wording:
-    """How texts are written in one language: gettext, ngettext, and a number with a number of decimals."""
+    """Text functions of one language: gettext, ngettext, and the text of a number with a number of decimals."""
 
     gettext: Callable[[str], str]
     ngettext: Callable[[str, str, int], str]

@@ -137,7 +137,7 @@ class User(AbstractUser):
 
 
 class TokenScope(models.TextChoices):
-    """What a token may be used for, within its owner's role."""
+    """Uses of a token, within its owner's role."""
 
     READ = "read", _("Read")
     PLAN = "plan", _("Plan")

@@ -22,7 +22,7 @@ TOWN_REACH_M = 1_300.0  # distance over which farms become e times rarer
 
 @dataclass(frozen=True)
 class Construction:
-    """How lines of a voltage are built and how completely they are mapped."""
+    """Construction of lines of a voltage, and how completely they are mapped."""
 
     span_m: float
     support: str

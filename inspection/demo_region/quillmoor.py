@@ -122,7 +122,7 @@ def _draw_long_span(mapper: _Mapper) -> None:
 
 
 def _draw_gaps(mapper: _Mapper) -> None:
-    """What the search for data issues is for: no towers, an end 4 m beside the line it belongs to, lone towers, a voltage in kV."""
+    """Draw data issues: lines without towers, an end 4 m beside the line it belongs to, lone towers, a voltage in kV."""
     drawing = mapper.drawing
     mapper.line(_line(110_000, "13"), (-10_500.0, -1_800.0), (-8_300.0, -2_500.0), (-5_200.0, -2_200.0), untagged_share=1.0)
     through = mapper.line(_line(110_000, "14"), (-10_000.0, 7_000.0), (-6_000.0, 6_300.0), (-2_600.0, 6_600.0), untagged_share=0.0)
@@ -174,7 +174,7 @@ RIVER = smooth_path(km((2.5, 9), (3, 5), (4, 1.5), (4, -1.5), (5.5, -5), (5, -9)
 
 @dataclass(frozen=True, eq=False)
 class Deck:
-    """One way of a bundle: how far it lies to the left of the bundle's path, and its tags."""
+    """One way of a bundle: its offset to the left of the bundle's path, and its tags."""
 
     offset_m: float
     tags: Tags

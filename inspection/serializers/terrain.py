@@ -128,7 +128,7 @@ class HeightsInputSerializer(serializers.Serializer):
 
 
 class HeightsSerializer(serializers.Serializer):
-    """The same heights in each reference; null where the terrain is unknown."""
+    """Heights in each reference; null where the terrain is unknown."""
 
     ground_amsl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))
     altitude_agl_m = serializers.ListField(child=serializers.FloatField(allow_null=True))

@@ -112,7 +112,7 @@ class SchedulePeriodSerializer(serializers.Serializer):
 
 @extend_schema_field(SchedulePeriodSerializer(many=True))
 class ScheduleField(serializers.JSONField):
-    """When a zone applies, as stored: see inspection/zones/schedule.py."""
+    """Times when a zone applies, as stored: see inspection/zones/schedule.py."""
 
 
 class CircleSerializer(serializers.Serializer):

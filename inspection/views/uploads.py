@@ -29,7 +29,7 @@ from workspace.api.signed_in import SignedInRequest
 
 
 class CuratorsAlone(RolePermission):
-    """Only curators may read and write uploads."""
+    """Permission for curators only, to read as well as to write."""
 
     def has_permission(self, request: Request, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."

@@ -50,7 +50,7 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class EventPlace:
-    """Where an event is stored: its source, the row, and the step of that row. Places are ordered by `at` and `key`, which are unique."""
+    """Place of a stored event: its source, the row, and the step of that row. Places are ordered by `at` and `key`, which are unique."""
 
     source: str
     row: str

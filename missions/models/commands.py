@@ -69,7 +69,7 @@ class CommandState(models.TextChoices):
 
 
 class CommandAxis(models.TextChoices):
-    """What a command sets; see command_rules.py."""
+    """State that a command sets; see command_rules.py."""
 
     FLIGHT = "flight", "Flight"
     MISSION = "mission", "Mission"

@@ -188,7 +188,7 @@ class TargetPriority(models.TextChoices):
 
 
 class InspectionTarget(models.Model):
-    """What is to be inspected: an asset, a point or stretch of one, or a bare position. It outlives a deleted asset."""
+    """A target of inspection: an asset, a point or stretch of one, or a bare position. It outlives a deleted asset."""
 
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="targets")
     sequence = models.PositiveIntegerField(help_text="place in the operator's list, from 0")

@@ -14,7 +14,7 @@ FLOWN_IN = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 
 @dataclass(frozen=True)
 class Given:
-    """What a UAV should have: `upload` is the command whose route it flies, `waiting` its unfinished commands, most urgent first."""
+    """Commands of a UAV: `upload` is the one whose route it flies, `waiting` the unfinished ones, most urgent first."""
 
     upload: UUID | None
     waiting: tuple[UUID, ...]

@@ -100,7 +100,7 @@ class BlockingZone:
 
 @dataclass(frozen=True)
 class LegalWindows:
-    """When routes may depart between two moments, and which zones block the rest."""
+    """Departure windows between two moments, and the zones that block the rest."""
 
     windows: tuple[Span, ...]
     zones: tuple[BlockingZone, ...]

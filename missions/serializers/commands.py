@@ -174,7 +174,7 @@ class CommandPageSerializer(serializers.Serializer):
 
 
 class ReturnWaySerializer(KnownFieldsSerializer):
-    """How a UAV returns: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once."""
+    """Return of a UAV: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once."""
 
     height_m = serializers.FloatField(required=False, help_text="above the take-off: set on the UAV and read back before it returns")
     wait_s = serializers.FloatField(required=False, min_value=0.0, max_value=MAX_WAIT_S, help_text="for which it holds before")

@@ -65,7 +65,7 @@ from workspace.models import Organisation
 
 
 class TaskSerializer(KnownFieldsSerializer):
-    """What is done at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold."""
+    """Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold."""
 
     kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in TaskKind])
     hold_s = FiniteFloatField(min_value=0, max_value=MAX_HOLD_S, required=False)
@@ -172,7 +172,7 @@ class TargetInputSerializer(KnownFieldsSerializer):
 
 
 class LostLinkSerializer(KnownFieldsSerializer):
-    """What UAVs do when their link is lost: go on, hold for a while and return, or return to their start or the nearest rally point."""
+    """Action of UAVs with a lost link: go on, hold for a while and return, or return to their start or the nearest rally point."""
 
     behaviour = serializers.ChoiceField(choices=[(one.value, one.value) for one in LostLink])
     rally_points = serializers.ListField(child=PositionField(), required=False, max_length=MAX_RALLY_POINTS)

@@ -34,7 +34,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Result:
-    """How a step ended."""
+    """Outcome of a step."""
 
     name: str
     code: int

@@ -71,7 +71,7 @@ def _scopes_for(roles: Collection[Role]) -> Collection[str]:
 
 
 class AdministratorsAlone(RolePermission):
-    """Only administrators may read or write: the users of an organisation, and the sign-in log."""
+    """Permission for administrators only, to read as well as to write: users, and the sign-in log."""
 
     def has_permission(self, request: Request, view: Any) -> bool:
         self.message = _("Only administrators see and change who works here.")

@@ -40,7 +40,7 @@ class JobErrorSerializer(serializers.Serializer):
 
 @extend_schema_field(JobErrorSerializer(allow_null=True))
 class JobErrorField(serializers.JSONField):
-    """Why a job failed, as stored."""
+    """Reason of a failed job, as stored."""
 
 
 class JobSerializer(serializers.ModelSerializer):

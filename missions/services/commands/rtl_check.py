@@ -1,4 +1,4 @@
-"""Obstacles and zones on the RTL path: an autopilot told to return or abort flies by its own parameters."""
+"""Obstacles and zones on the RTL path: an autopilot commanded to return or abort flies by its own parameters."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -93,7 +93,7 @@ def _fence_warning(mission: Mission, route: Route) -> str:
 
 @dataclass(frozen=True)
 class ReportedReturn:
-    """How a UAV returns, as read from it: `own` is None where that is unknown, and `why` is the reason."""
+    """RTL behaviour of a UAV, as read from it: `own` is None where that is unknown, and `why` is the reason."""
 
     own: RtlBehaviour | None
     state: ReturnState = ReturnState.CLEAR

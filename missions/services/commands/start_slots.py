@@ -83,7 +83,7 @@ def _in_the_air(
 ) -> tuple[list[TimedRoute], list[TimedRoute], list[tuple[str, LonLat | None]]]:
     """Return the organisation's flights that have started and not ended, in seconds from now; a pending start counts from now.
 
-    First those that are as planned. Then those in the air of which that is unknown: held, told to return or to fly at another speed since,
+    First those that are as planned. Then those in the air of which that is unknown: held, commanded to return or to another speed since,
     failed, aborted, or with a start that was sent and not confirmed. Then UAVs in the air without such a flight, for example manually
     flown,
     by name with their last position.

@@ -53,7 +53,7 @@ def manual_edit_context() -> ManualEditContext:
 
 @dataclass(frozen=True)
 class FlownEditedPoint:
-    """What is flown at a requested point: seconds after the departure, remaining battery, and the speed over ground on the leg to it."""
+    """Figures at a requested point: seconds after the departure, remaining battery, and the speed over ground on the leg to it."""
 
     arrival_s: float
     battery_left_percent: float | None

@@ -31,7 +31,7 @@ class CannotLeave(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Leaving:
-    """Where a UAV leaves. `prefix` is flown first, on its approved route, from the UAV's position to where the new part begins.
+    """Plan to leave a route. `prefix` is flown first, on its approved route, from the UAV's position to where the new part begins.
 
     `amsl_m` are its heights above the sea, None where they are unknown; `targets` are done on it. `asked` is the UAV in the request for the
     rest, `stored` the UAV that the mission stores, with the values of the whole route.

@@ -25,7 +25,7 @@ MAX_ALONE = 4  # UAVs that are tried as the one that takes all
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """What the proposals for one mission share, UAVs by their places in it.
+    """Common inputs of a mission's proposals, UAVs by their places in it.
 
     UAVs in `forced` cannot continue as they do; those in `recalled` cannot do anything else either. `zones`: names of zones across routes.
     `troubles`: why other UAVs cannot change their route.
