@@ -486,7 +486,7 @@ export interface components {
             geometry: components["schemas"]["Geometry"];
             properties: components["schemas"]["AssetProperties"];
         };
-        /** @description An asset that somebody draws or corrects. Lengths in metres, voltages in volts. */
+        /** @description An asset that a user draws or corrects. Lengths in metres, voltages in volts. */
         AssetInputRequest: {
             kind: components["schemas"]["AssetKind"];
             /** @description GeoJSON: a Point for a tower, a LineString for a line or railway, a Polygon for a bridge */
@@ -1523,7 +1523,7 @@ export interface components {
          * @enum {string}
          */
         FeatureType: "Feature";
-        /** @description The job that fetches: its result has `proposal`, the new one or null. */
+        /** @description The fetch job; its result has `proposal`, the new one or null. */
         FetchJob: {
             /** Format: uuid */
             job: string;
@@ -1853,7 +1853,7 @@ export interface components {
             is_synthetic: boolean;
             has_terrain: boolean;
         };
-        /** @description Heights of the ground on a grid; bilinear between its posts. */
+        /** @description Terrain heights on a grid; bilinear between its posts. */
         GroundGrid: {
             /**
              * @description partly: what is unknown has the mean of the rest
@@ -2034,7 +2034,7 @@ export interface components {
          * @enum {string}
          */
         HeightReference: "AGL" | "AMSL" | "WGS84" | "STD";
-        /** @description The same heights in each reference; null where the ground is not known. */
+        /** @description Heights in each reference; null where the terrain is unknown. */
         Heights: {
             ground_amsl_m: (number | null)[];
             altitude_agl_m: (number | null)[];
@@ -2464,7 +2464,7 @@ export interface components {
              */
             reference: components["schemas"]["HeightReference"] | components["schemas"]["BlankEnum"];
         };
-        /** @description A height always says from where it is counted. */
+        /** @description A height with its reference. */
         LimitInputRequest: {
             /** Format: double */
             value_m: number;
@@ -2688,7 +2688,7 @@ export interface components {
             /** Format: double */
             hold_s: number;
         };
-        /** @description What UAVs do when their link is lost: go on, hold for a while and return, or return to their start or the nearest rally point. */
+        /** @description Action of UAVs with a lost link: go on, hold for a while and return, or return to their start or the nearest rally point. */
         LostLinkRequest: {
             behaviour: components["schemas"]["BehaviourEnum"];
             rally_points?: number[][];
@@ -3239,7 +3239,7 @@ export interface components {
         MissionsInputRequest: {
             missions: string[];
         };
-        /** @description Newest first: what counts on top where models overlap. */
+        /** @description Models, newest first, in order of precedence where they overlap. */
         ModelCollection: {
             type: components["schemas"]["FeatureCollectionType"];
             features: components["schemas"]["ModelFeature"][];
@@ -3458,7 +3458,7 @@ export interface components {
              */
             end_tokens: boolean;
         };
-        /** @description Only the fields to change. */
+        /** @description Fields to change. */
         PatchedAccountChangeRequest: {
             first_name?: string;
             last_name?: string;
@@ -3469,7 +3469,7 @@ export interface components {
             language?: components["schemas"]["Language"] | components["schemas"]["BlankEnum"];
             single_keys?: boolean;
         };
-        /** @description An asset that somebody draws or corrects. Lengths in metres, voltages in volts. */
+        /** @description An asset that a user draws or corrects. Lengths in metres, voltages in volts. */
         PatchedAssetInputRequest: {
             kind?: components["schemas"]["AssetKind"];
             /** @description GeoJSON: a Point for a tower, a LineString for a line or railway, a Polygon for a bridge */
@@ -3573,7 +3573,7 @@ export interface components {
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
             name?: string;
         };
-        /** @description Only the fields to change. */
+        /** @description Fields to change. */
         PatchedServiceAccountChangeRequest: {
             role?: components["schemas"]["Role"];
             /** @description false: none of its tokens works */
@@ -3735,7 +3735,7 @@ export interface components {
             sensors?: string[];
         };
         PatchedUavWriteRequest: components["schemas"]["PatchedUavFlatRequest"] | components["schemas"]["PatchedUavFeatureRequest"];
-        /** @description Only the fields to change. */
+        /** @description Fields to change. */
         PatchedUserChangeRequest: {
             first_name?: string;
             last_name?: string;
@@ -3752,7 +3752,7 @@ export interface components {
             };
             faults?: components["schemas"]["FaultsRequest"];
         };
-        /** @description A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0. */
+        /** @description A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0. */
         PatchedZoneInputRequest: {
             name?: string;
             /** @description GeoJSON Polygon or MultiPolygon */
@@ -3766,7 +3766,7 @@ export interface components {
             /** @description periods as ED-318's limitedApplicability; null = always */
             schedule?: unknown;
         };
-        /** @description What a list of targets shows of an asset; its shape: GET /assets/{id}. */
+        /** @description An asset as a list of targets shows it; for its shape see GET /assets/{id}. */
         PickedAsset: {
             id: number;
             kind: components["schemas"]["AssetKind"];
@@ -4232,7 +4232,7 @@ export interface components {
             done: number;
             total: number;
         };
-        /** @description What a file would change. Nothing of it counts before somebody applies it. */
+        /** @description The changes that a file would make. None of them counts before a user applies them. */
         Proposal: {
             /** Format: uuid */
             id: string;
@@ -4308,7 +4308,7 @@ export interface components {
          * @enum {string}
          */
         ProposalState: "reading" | "refused" | "ready" | "applying" | "applied" | "discarded";
-        /** @description Where a file comes from, as far as it does not say so itself. */
+        /** @description A file's source, as far as the file itself does not state it. */
         ProvenanceInputRequest: {
             source_address?: string;
             licence?: string;
@@ -5395,7 +5395,7 @@ export interface components {
          * @enum {string}
          */
         ReturnState: "clear" | "in_the_way" | "unknown" | "not_checked";
-        /** @description How a UAV returns: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once. */
+        /** @description Return of a UAV: after a hold, at a height set before, both in this order, or along its route. Empty: straight, at once. */
         ReturnWayRequest: {
             /**
              * Format: double
@@ -5708,7 +5708,7 @@ export interface components {
             /** Format: double */
             m: number | null;
         };
-        /** @description What was assumed, the same for all. */
+        /** @description Assumptions for the whole scene. */
         SceneRules: {
             /**
              * Format: double
@@ -5750,7 +5750,7 @@ export interface components {
             schedule: components["schemas"]["SchedulePeriod"][] | null;
             schedule_words: string;
         };
-        /** @description Hours of some days of the week, UTC. At each end a time, an event of the sun, or neither for the whole day. */
+        /** @description Hours on some days of the week, UTC. Each end is a time, an event of the sun, or neither for the whole day. */
         ScheduleEntry: {
             day: components["schemas"]["DayEnum"][];
             /** @description 08:00:00Z */
@@ -6092,7 +6092,7 @@ export interface components {
          * @enum {string}
          */
         SimulationState: "wanted" | "flying" | "ended" | "failed";
-        /** @description The file that something came from. */
+        /** @description The file that a row came from. */
         Source: {
             file_name: string;
             /** @description author and licence */
@@ -6270,7 +6270,7 @@ export interface components {
             /** @description of the set that is fetched; made if there is none */
             set_name: string;
         };
-        /** @description What the source last brought that was new. */
+        /** @description The last new file from the source. */
         SubscriptionProposal: {
             /** Format: uuid */
             id: string;
@@ -6280,7 +6280,7 @@ export interface components {
                 [key: string]: unknown;
             };
         };
-        /** @description A tower, pole or portal, or a place where a line bends and none is mapped. */
+        /** @description A tower, pole or portal, or a bend of a line without a mapped support. */
         Support: {
             id: number | null;
             label: string | null;
@@ -6330,7 +6330,7 @@ export interface components {
          * @enum {string}
          */
         SupportKindEnum: "tower" | "pole" | "portal" | "vertex";
-        /** @description The supports in order, and of which lines what is between them. */
+        /** @description The supports in order, and the lines between them. */
         SupportsOutput: {
             supports: components["schemas"]["PickedAsset"][];
             /** @description empty where whole lines were asked for */
@@ -6463,7 +6463,7 @@ export interface components {
             /** Format: double */
             hold_s: number;
         };
-        /** @description What is done at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold. */
+        /** @description Task at a target. Without `hold_s` the kind's default: 5 s to look, 10 s for photos, 30 s to hold. */
         TaskRequest: {
             kind: components["schemas"]["TaskKind"];
             /** Format: double */
@@ -7595,7 +7595,7 @@ export interface components {
             /** @description the first 2,000 of them */
             assets: components["schemas"]["PickedAsset"][];
         };
-        /** @description A stretch of the line that lies in a zone, or as near to it as was asked. */
+        /** @description A stretch of the line in a zone, or within the requested distance of it. */
         ZoneAlong: {
             id: number;
             name: string;
@@ -7645,7 +7645,7 @@ export interface components {
             geometry: components["schemas"]["Geometry"];
             properties: components["schemas"]["ZoneDetailProperties"];
         };
-        /** @description Facts as the source gives them; null is "not stated". */
+        /** @description Facts as the source states them; null means "not stated". */
         ZoneDetailProperties: {
             name: string;
             identifier: string;
@@ -7693,7 +7693,7 @@ export interface components {
             geometry: components["schemas"]["Geometry"];
             properties: components["schemas"]["ZoneProperties"];
         };
-        /** @description A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0. */
+        /** @description A zone that a user draws or corrects. A limit that is null is not stated, which differs from 0. */
         ZoneInputRequest: {
             name: string;
             /** @description GeoJSON Polygon or MultiPolygon */
@@ -7707,7 +7707,7 @@ export interface components {
             /** @description periods as ED-318's limitedApplicability; null = always */
             schedule?: unknown;
         };
-        /** @description What plans keep from zones. */
+        /** @description Margins that plans keep from zones. */
         ZoneMargins: {
             /**
              * Format: double
@@ -7730,7 +7730,7 @@ export interface components {
             id: number | null;
             name: string;
         };
-        /** @description Facts as the source gives them; null is "not stated". */
+        /** @description Facts as the source states them; null means "not stated". */
         ZoneProperties: {
             name: string;
             identifier: string;
@@ -7771,7 +7771,7 @@ export interface components {
             /** @description address of the next page */
             next: string | null;
         };
-        /** @description The file that the set last took over. */
+        /** @description The file that the set last imported. */
         ZoneSetSource: {
             file_name: string;
             /** @description author and licence */
