@@ -18,7 +18,7 @@ import { mountIssuePanel } from "./issue_panel.js";
 /** @import { DataIssue } from "./types.d.ts" */
 
 const PAGE = "100";
-const SEARCHING_MS = 2_000; // between looks while the ground is searched
+const SEARCHING_MS = 2_000; // between polls while the map data are searched
 const RESTING_MS = 15_000;
 const ROUND_DEG = 0.0015; // what is shown around an issue at least, some 150 m
 
@@ -30,7 +30,10 @@ let next = null;
 let chosen = null;
 /** @type {DataIssueSummary | null} */
 let summary = null;
-/** Positions that are being clicked, with what to tell of them. @type {{ positions: number[][], notify: (count: number) => void } | null} */
+/**
+ * Positions that are being clicked, with the callback that receives them.
+ * @type {{ positions: number[][], notify: (count: number) => void } | null}
+ */
 let placed = null;
 let asked = 0; // for the list
 let choices = 0;
@@ -114,7 +117,7 @@ async function look() {
   const turn = looks;
   try {
     const { data } = /** @type {Answer<DataIssueSummary>} */ (await get("/data-issues/summary"));
-    if (turn < lastLook) return; // a later look was answered first
+    if (turn < lastLook) return; // a later poll was answered first
     lastLook = turn;
     const before = summary?.searched_at;
     summary = data;
@@ -129,7 +132,7 @@ async function look() {
   }
 }
 
-/** Ends never: the ground may change at any time, by somebody else's hand too. */
+/** Poll without end: map data may change at any time, also by other users. */
 async function keepLooking() {
   for (;;) {
     await new Promise((resolve) => setTimeout(resolve, summary?.is_current ? RESTING_MS : SEARCHING_MS));
@@ -278,7 +281,7 @@ async function settle(promise, words, id) {
   }
 }
 
-/** The list and the map anew; the changed issue stays in sight, so that one sees what has become of it. @param {number} id */
+/** Reload the list and the map; the changed issue stays in view, so that its new state is seen. @param {number} id */
 async function afterChange(id) {
   map.refreshTiles();
   layer.showRepair(map.map, null);

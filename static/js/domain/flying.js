@@ -1,4 +1,4 @@
-/** A mission on its way: what its UAVs were told, what became of it, and what can be done next. Values in, values out. */
+/** A mission in progress: commands of its UAVs, their outcomes, and possible next acts. Values in, values out. */
 
 import { t } from "../text.js";
 import { agoText, clockText, exactClockText } from "../units.js";
@@ -85,7 +85,7 @@ export function flightOf(commands, uav) {
   return commands.find((command) => command.uav.id === uav && !isOfMission(command)) ?? null;
 }
 
-/** A mix is what nobody approved: it is said loudest. @param {Command} command */
+/** Whether a UAV holds a mix of missions, which no one has approved: shown with the highest level. @param {Command} command */
 export const isMixed = ({ state, outcome_code }) => state === "failed" && outcome_code.includes("mix");
 
 /** @type {Record<string, string>} */
@@ -107,7 +107,7 @@ const isSeenThere = ({ approval, finished_at }, connection) =>
   connection.loaded_approval === approval;
 
 /**
- * "read back 3 min ago", and what speaks for something else by now: { words, isDoubted }.
+ * "read back 3 min ago", and the reason to doubt it: { words, isDoubted }.
  *
  * @param {UavConnection & { loaded_read_at: string }} connection
  */
@@ -119,7 +119,7 @@ function readBack({ loaded_read_at, loaded_doubt, server_time }) {
 }
 
 /**
- * What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way.
+ * The onboard list as text: { words, image, level, share }. share: 0 to 1 of a running upload.
  *
  * @param {Command | null | undefined} command undefined: not read yet
  * @param {UavConnection | null} [connection]
@@ -311,7 +311,7 @@ export function stageWords(mission) {
 }
 
 /**
- * What of a change of the map data speaks against the routes; none where all that changed lies elsewhere. UAVs are told of apart.
+ * Causes of a map data change that affect the routes; empty where all changes lie elsewhere. Causes of UAVs are shown separately.
  *
  * @param {Pick<Mission, "is_stale" | "stale_causes">} mission
  */
@@ -321,5 +321,5 @@ export const groundCauses = ({ is_stale, stale_causes }) =>
 /** Whether its approval can be revoked. @param {Pick<Mission, "state">} mission */
 export const canBeRevoked = ({ state }) => ["approved", "dispatched"].includes(state);
 
-/** Whether it can be aborted: who said that its last flight failed may be wrong. @param {Pick<Mission, "state">} mission */
+/** Whether the mission can be aborted: the report that its last flight failed may be wrong. @param {Pick<Mission, "state">} mission */
 export const canBeAborted = (mission) => isOnItsWay(mission) || mission.state === "failed";

@@ -1,4 +1,4 @@
-/** Before start: what is said of each UAV, and which act comes next. Values in, values out. */
+/** Before start: the state of each UAV, and the next act. Values in, values out. */
 
 import { t, tn } from "../text.js";
 
@@ -6,14 +6,14 @@ import { t, tn } from "../text.js";
 
 /** Whether simulated UAVs stand in for the mission's: null where they cannot. @typedef {"off" | "starting" | "running" | null} Stand */
 /**
- * The button: what it says, whether it can be pressed (`why` is then empty), and what it leaves undone.
+ * The button: its text, whether it can be pressed (`why` is then empty), and what it leaves undone.
  *
  * @typedef {object} NextStep
  * @property {Preflight["next_act"] | "simulate"} act
  * @property {string} words
  * @property {string} image name of an icon
  * @property {string} why it cannot be pressed
- * @property {string[]} left of each UAV that is not started with the others, why
+ * @property {string[]} left the reason of each UAV that is not started with the others
  * @property {number[]} uavs ids of those that it is about
  */
 
@@ -42,7 +42,7 @@ const CHECK_NAMES = {
 /** Each once. @param {Pick<PreflightCheck, "code">[]} checks */
 const namesOfChecks = (checks) => [...new Set(checks.map(({ code }) => CHECK_NAMES[code] ?? code))].join(", ");
 
-/** What is said of a UAV in one line: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
+/** One line on a UAV: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
 export function summaryOf({ checks }) {
   const worst = worstOf(checks);
   const worstChecks = checks.filter(({ state }) => state === worst);
@@ -67,7 +67,7 @@ const namesOf = (rows) => rows.map(({ name }) => name).join(", ");
 /** @param {UavPreflight} row */
 const isConnected = ({ checks }) => checks.every(({ code, state }) => code !== "link" || state === "ok");
 
-/** Whether all UAVs that lack the mission can take it now. @param {Preflight} preflight */
+/** Whether all UAVs without the mission can receive it now. @param {Preflight} preflight */
 export const canUploadToAll = ({ next_act, uavs }) =>
   next_act === "upload" && uavs.every((row) => row.is_loaded || isConnected(row));
 
@@ -83,7 +83,7 @@ export const firstStep = () => ({
 
 /**
  * @param {Preflight} preflight
- * @param {boolean} isPilotDone what only a pilot can see was looked at
+ * @param {boolean} isPilotDone the pilot has confirmed the visual checks
  * @param {Stand} [stand]
  * @returns {NextStep | null} null where nothing is left to start
  */

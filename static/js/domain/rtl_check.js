@@ -1,4 +1,4 @@
-/** What is in the way when a UAV is told to return or abort: its autopilot flies home by itself, as high as its own parameters say. */
+/** What obstructs a UAV on Return or Abort: its autopilot flies home by itself, at the height of its own parameters. */
 
 import { t, tn } from "../text.js";
 import { clockText, durationText, heightText, lengthText, percentText } from "../units.js";
@@ -17,8 +17,8 @@ export const MIN_HOLD_S = 30; // a shorter hold is none
 export const returnOf = (returns, place) => returns?.find((check) => check.place === place);
 
 /**
- * Sentences for a question before Return or Abort: never none. What is in the way goes first, then the battery, then whence that was
- * looked at.
+ * Sentences for a question before Return or Abort; at least one. Obstructions first, then the battery, then the position from which the
+ * path was checked.
  *
  * @param {PresentReturn | null | undefined} check
  * @returns {string[]}
@@ -56,7 +56,7 @@ function alongText({ waypoint, length_m, duration_s, targets, landing_percent })
 function landingText({ landing_percent, reserve_percent, unknown }) {
   if (landing_percent === null || reserve_percent === null)
     return unknown && t("Battery at landing not known: {why}", { why: unknown });
-  if (landing_percent < reserve_percent) return ""; // a warning says it
+  if (landing_percent < reserve_percent) return ""; // a warning covers it
   return t("Lands with about {landing} of its battery (reserve {reserve}).", {
     landing: percentText(Math.round(landing_percent)),
     reserve: percentText(reserve_percent),
@@ -103,7 +103,7 @@ export function holdLinesOfAll(uavs) {
   ].filter((line) => typeof line === "string");
 }
 
-/** Whence it was looked at. @param {PresentReturn["present"]} present */
+/** The position from which the path was checked. @param {PresentReturn["present"]} present */
 function basisText(present) {
   if (!present) return "";
   const age = holdText(present.age_s);
@@ -160,8 +160,8 @@ function wayWords({ height_m, wait_s, along_route }) {
 }
 
 /**
- * How each of several returns so that none meets another and nothing is in its way; null where all may as well return straight at once.
- * `lines` say it, and of which UAVs no way is clear.
+ * How several UAVs return without conflicts and obstructions; null where all may as well return straight at once. `lines` state it, and
+ * name the UAVs without a clear path.
  *
  * @param {PresentReturn[]} checks
  * @returns {{ ways: Map<number, Record<string, any>>, lines: string[] } | null}
@@ -188,7 +188,7 @@ export function separateReturns(checks) {
 const holdText = (seconds) => (seconds < 100 ? `${Math.round(seconds)}\u00a0s` : durationText(seconds));
 
 /**
- * What is said of several that return at once, before what is said of each; "" of one alone.
+ * The sentence on several UAVs that return at once, shown before those on each; "" for a single UAV.
  *
  * @param {(PresentReturn | null | undefined)[]} checks
  */
@@ -200,7 +200,7 @@ export function togetherLine(checks) {
     : t("All return at once: their return paths are not separated.");
 }
 
-/** What the tooltip of something that the autopilot has not reported says. @param {string} names of parameters */
+/** The tooltip of a value that the autopilot has not reported. @param {string} names of parameters */
 export const parametersText = (names) => t("Autopilot parameter: {names}", { names });
 
 /**

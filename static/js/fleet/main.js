@@ -1,4 +1,4 @@
-/** The page of the fleet: UAVs, their types and bases; find, look, add, edit, retire, delete and bring back. */
+/** The page of the fleet: UAVs, their types and bases; search, view, add, edit, retire, delete and restore. */
 
 import { ApiError, get, patch, post, remove, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -210,7 +210,7 @@ function showUavs(tab, id) {
   load();
 }
 
-/** The address says what is looked at: it can be passed on. */
+/** Store the selection in the address, so that it can be shared. */
 function remember() {
   const { tab, chosen } = store.state;
   const query = new URLSearchParams({ ...(tab === "uavs" ? {} : { tab }), ...(chosen ? { id: `${chosen.id}` } : {}) });
@@ -300,7 +300,7 @@ function startNew() {
 // change
 
 /**
- * A refusal is told in a toast, with a way to what is there now where somebody was faster.
+ * Show a refusal in a toast, with a link to the present version where another user was faster.
  *
  * @param {() => Promise<unknown>} change
  */
@@ -376,7 +376,7 @@ addEventListener("beforeunload", (event) => {
   if (editing.isChanged) event.preventDefault();
 });
 document.addEventListener("visibilitychange", () => {
-  if (document.visibilityState === "visible") load(); // positions grow old while nobody looks
+  if (document.visibilityState === "visible") load(); // positions grow old while the page is hidden
 });
 document.getElementById("new-row")?.addEventListener("click", startNew);
 byId("fleet-more").addEventListener("click", loadMore);

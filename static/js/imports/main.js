@@ -75,7 +75,7 @@ function notify(error, title) {
 const statusOf = (error) => (error instanceof ApiError ? error.status : 0);
 const clearNotices = () => byId("notices").replaceChildren();
 
-/** Runs what the user asked for; says so where it did not work. True if it did. @param {string} title @param {() => Promise<unknown>} act */
+/** Run a user's act; shows a failure. Returns true on success. @param {string} title @param {() => Promise<unknown>} act */
 async function attempt(title, act) {
   clearNotices();
   try {
@@ -167,7 +167,7 @@ async function loadChanges({ fit = false } = {}) {
   let next = `/imports/${current.id}/changes?limit=${CHANGES_PAGE}`;
   while (next) {
     const { data } = /** @type {Answer<{ features: Change[], next: string | null }>} */ (await get(next));
-    if (store.state.current?.id !== current.id || store.state.current.state === "reading") return; // somebody has gone on
+    if (store.state.current?.id !== current.id || store.state.current.state === "reading") return; // another proposal is open by now
     changes = [...changes, ...data.features];
     next = data.next;
     store.update({ changes });
@@ -238,10 +238,10 @@ function select(change, { stay = false } = {}) {
 }
 
 /**
- * Carries out a decision; where another user was faster, what that one decided is shown.
+ * Carry out a decision; where another user was faster, show that user's decision.
  *
  * @param {string} busy
- * @param {string} title of what is said where it fails
+ * @param {string} title of the message on failure
  * @param {(id: string) => Promise<Answer>} act
  */
 async function decide(busy, title, act) {
@@ -262,7 +262,7 @@ async function decide(busy, title, act) {
 /** @type {ProposalActs} */
 const acts = {
   back: () => closeProposal(),
-  /** What is read is thrown away; what is applied goes back to be decided, once its worker has heard of it. */
+  /** Stop the job: a file being read is dropped; one being applied returns to the decision once its worker has stopped. */
   async cancel(proposal) {
     try {
       if (proposal.state === "reading") await putAnswer(post(`/imports/${proposal.id}/discard`, {}));
@@ -327,7 +327,7 @@ mountChanges(store, {
   more: () => store.update({ listed: store.state.listed + LISTED }),
 });
 
-/** Looks again while something is worked on; what has ended is said once. */
+/** Poll while a job runs; announce its end once. */
 async function look() {
   const { current, proposals } = store.state;
   if (document.hidden) return;

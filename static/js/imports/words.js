@@ -1,4 +1,4 @@
-/** What the page "Imports" says: kinds, states, differences and facts as words. */
+/** Texts of the page "Imports": kinds, states, differences and facts. */
 
 import { language, localeOf, t } from "../text.js";
 import { countText, heightText } from "../units.js";
@@ -26,7 +26,10 @@ export const STATES = {
   discarded: { words: t("Discarded"), icon: "circle-x", chip: "draft" },
 };
 
-/** In the order in which they are said; the sign stands in the list and on the map. @type {Record<Action, { words: string, short: string, sign: string }>} */
+/**
+ * In the order of display; the sign is shown in the list and on the map.
+ * @type {Record<Action, { words: string, short: string, sign: string }>}
+ */
 export const ACTIONS = {
   new: { words: t("new"), short: t("New"), sign: "+" },
   changed: { words: t("changed"), short: t("Changed"), sign: "≠" },
@@ -43,7 +46,7 @@ export const ORIGINS = {
   roll_back: t("roll-back"),
 };
 
-/** Where heights count from, for files that do not say it. */
+/** Vertical datums, for files that do not state one. */
 export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
 
 /** @param {Pick<Proposal, "state">} proposal */
@@ -175,9 +178,9 @@ const isEmpty = (value) =>
   value === "" ||
   (typeof value === "object" && Object.keys(value).length === 0);
 
-const NOT_STATED = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // said elsewhere
+const NOT_STATED = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // shown elsewhere
 
-/** Figures of a file, for people: numbers and short texts alone. @param {Summary} summary */
+/** Figures of a file for display: only numbers and short texts. @param {Summary} summary */
 export function summaryLines(summary) {
   return Object.entries(summary)
     .filter(
@@ -192,6 +195,6 @@ export function summaryLines(summary) {
     });
 }
 
-/** Sentences that a reader of files has left for people. @param {Summary} summary @returns {string[]} */
+/** Notes of a file reader for display. @param {Summary} summary @returns {string[]} */
 export const notesOf = (summary) =>
   Array.isArray(summary.notes) ? summary.notes.filter((note) => typeof note === "string") : [];

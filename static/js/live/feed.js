@@ -1,4 +1,4 @@
-/** A live page's end of the wire: told over a websocket, asking every two seconds where there is none, and never silent about which. */
+/** The feed of a live page: over a websocket, by polling every two seconds where there is none; it always reports which. */
 
 import { get as ask } from "../api.js";
 import { serverClock } from "./server_clock.js";
@@ -10,10 +10,10 @@ import { applyChanges, nothingShown, shownAfterSnapshot } from "./shown.js";
 
 /** @typedef {"live" | "asked" | "crowded" | "connecting" | "signed-out" | "gone"} FeedState */
 
-export const LIVE = "live"; // told of each change at once
+export const LIVE = "live"; // notified of each change at once
 export const ASKED = "asked"; // by HTTP, every two seconds
 export const CROWDED = "crowded"; // by HTTP, too: as many websockets are open as this user, or this network, may have
-export const CONNECTING = "connecting"; // neither: what is shown is as old as its times say
+export const CONNECTING = "connecting"; // neither: the data on the page are as old as their times
 export const SIGNED_OUT = "signed-out"; // for good
 export const GONE = "gone"; // the mission is deleted: for good
 
@@ -26,7 +26,7 @@ const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
 const MAX_PAUSE_MS = 5_000;
 const RESTARTS = 1012; // the code of a websocket whose program is being stopped
-const TOO_MANY = 4429; // of one that is refused because too many are open
+const TOO_MANY = 4429; // after a refusal because too many are open
 const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have been closed
 
 /**
@@ -37,8 +37,8 @@ const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have b
 /**
  * @typedef {object} FeedOptions
  * @property {string | null} [mission] without it the feed is the whole organisation's
- * @property {(touched: Touched | null) => void} [onChange] called after each message; null where everything may be another
- * @property {(state: { state: FeedState, since_ms: number }) => void} [onState] how the page is told from now on
+ * @property {(touched: Touched | null) => void} [onChange] called after each message; null where everything may have changed
+ * @property {(state: { state: FeedState, since_ms: number }) => void} [onState] how the page receives data from now on
  * @property {typeof WebSocket} [Socket]
  * @property {typeof ask} [get]
  * @property {ReturnType<typeof serverClock>} [clock]
@@ -237,7 +237,7 @@ class Feed {
     this.#startAsking();
   }
 
-  /** Its program is being stopped, and has told its pages one by one: another one is there. */
+  /** The server process is stopping and notifies its pages one by one; another process is available. */
   #reconnect() {
     this.#hangUp();
     this.#connect();

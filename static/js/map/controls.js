@@ -1,4 +1,4 @@
-/** The controls that every map has: zoom, fit, layers, measuring, coordinates, and what is said when the map cannot be read. */
+/** Controls of every map: zoom, fit, layers, measuring, coordinates, and a notice when tiles cannot be read. */
 
 import { byId, h, icon } from "../dom.js";
 import { copiedAt } from "../offline_copy.js";
@@ -125,7 +125,7 @@ function watchPointerAndIdle(map, container) {
 }
 
 /**
- * The choice of what lies under the map.
+ * The choice of the base map.
  *
  * @param {MapView} view
  * @param {MapPage} page
@@ -200,7 +200,7 @@ function mountPlaceMenu(map, frame, measure, act) {
 }
 
 /**
- * Says so when the ground cannot be read, asks again by itself, and says nothing more once it can.
+ * Show a notice when map data cannot be read, retry automatically, and remove the notice on success.
  *
  * @param {MapLibreMap} map
  * @param {HTMLElement} frame
@@ -209,13 +209,13 @@ function watchTiles(map, frame) {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   let timer;
   /** @type {{ x: number, y: number, z: number }[]} */
-  let failed = []; // tiles, since they were last asked for
+  let failed = []; // tiles since the last request
   const again = () => {
     clearTimeout(timer);
     timer = undefined;
     const wanted = failed;
     failed = [];
-    // by their names: MapLibre 6.17 leaves tiles that failed alone when it is asked for all
+    // by name: MapLibre 6.17 skips failed tiles when all are requested
     map.refreshTiles(TILES, wanted);
   };
   const words = h(

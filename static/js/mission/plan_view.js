@@ -203,7 +203,7 @@ export function stripLabel(route, targets) {
 }
 
 /**
- * The plan to compare the present one with: the one before it on the page, else the one that the mission remembers.
+ * The plan to compare the present one with: the previous one on the page, else the one stored with the mission.
  *
  * @param {Pick<MissionPageState, "lastPlan" | "mission">} state
  */
@@ -212,7 +212,7 @@ export function lastPlanOf({ lastPlan, mission }) {
 }
 
 /**
- * The route that is changed by hand, as it would be flown: with the waypoints of the server's last look at it.
+ * The manually edited route as it would be flown: with the waypoints of the server's last check.
  *
  * @param {ShownRoute} route
  * @param {Pick<HandEdit, "look" | "points" | "original">} hand
@@ -225,8 +225,7 @@ function wishedRoute(route, { look, points, original }) {
 }
 
 /**
- * Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest.
- * Null where nobody flies.
+ * The route whose profile and reasons are shown: the manually edited one; else the chosen one; else the longest. Null without routes.
  *
  * @param {Pick<MissionPageState, "plan" | "lookedAt" | "chosenRoute" | "hand">} state
  */
@@ -242,9 +241,8 @@ export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
 }
 
 /**
- * Where on the map the pointer on a strip or a profile is, lon lat. along: { sequence, at_m, isWished }: isWished where
- * it is on the profile
- * of a route as it is changed by hand. Null where that is not shown any more.
+ * Position on the map [lon, lat] of the pointer on a strip or a profile. along: { sequence, at_m, isWished }: isWished on the profile of
+ * a manually edited route. Null where that is no longer shown.
  *
  * @param {Pick<MissionPageState, "along" | "plan" | "lookedAt" | "chosenRoute" | "hand">} state
  */
@@ -258,7 +256,7 @@ export function pointAlong(state) {
 }
 
 /**
- * Whether the plan on the page is the plan of what is picked.
+ * Whether the plan on the page belongs to the current selection.
  *
  * @param {Pick<MissionPageState, "plan" | "selection">} state
  */
@@ -278,7 +276,7 @@ export function isPlanInSight(state) {
 }
 
 /**
- * Places of what is picked, none where the plan is of something else; and the keys that no route visits.
+ * Places of the current selection, none where the plan belongs to another one; and the keys that no route visits.
  *
  * @param {Pick<MissionPageState, "plan" | "selection">} state
  */

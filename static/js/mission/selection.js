@@ -76,8 +76,7 @@ export function extentOf(kind, length_m, position = null, stretch = null) {
 }
 
 /**
- * The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the
- * asset.
+ * The second fact of a row, in secondary ink: how much of a line or railway is picked, then the server's detail of the asset.
  *
  * @param {string | null} kind
  * @param {{ detail?: string, length_m?: number | null }} properties
@@ -115,13 +114,12 @@ export function withoutTargets(selection, keys) {
   return { ...selection, targets: selection.targets.filter((target) => !gone.has(target.key)) };
 }
 
-/** Seconds at a target where nobody names them, as in planning/problem.py. */
+/** Default seconds at a target, as in planning/problem.py. */
 export const HOLD_S = { look: 5, photo: 10, hold: 30 };
 export const MAX_HOLD_S = 3600;
 
 /**
- * What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in
- * passing.
+ * The default task of a target: towers and bridges are photographed, lines are filmed in passing.
  *
  * @param {Pick<PickedTarget, "asset" | "kind" | "position">} target
  * @returns {TaskOutput}
@@ -203,8 +201,7 @@ export function withWishes(selection, keys, wishes) {
 }
 
 /**
- * Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case
- * are one.
+ * All sensors to choose from: those of the UAVs, and those that targets require already. Case is ignored.
  *
  * @param {MissionSelection} selection
  * @param {FleetUav[]} fleet
@@ -230,7 +227,7 @@ export const PERFORMANCE = [
   "rotor_disk_m2",
   "hover_power_w",
 ];
-/** What a mission may say of a UAV's flying; where it says nothing, the UAV's own or its type's counts. */
+/** Values of a UAV that a mission may override; the default is the UAV's own value, then its type's. */
 const UAV_VALUES = /** @type {const} */ ([
   "max_range_m",
   "cruise_speed_mps",
@@ -272,8 +269,8 @@ export function withoutWishes(selection) {
 const MAY_BE_NONE = /** @type {const} */ (["battery_wh", "max_airspeed_mps", "hover_power_w"]);
 
 /**
- * What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of,
- * sensors, and which are its own.
+ * What a mission keeps of a UAV even if the fleet has changed since: figures that the UAV itself does not have, sensors, and which are
+ * its own.
  *
  * @param {PickedUav} uav
  * @returns {Partial<UavInputRequest>}
@@ -302,7 +299,7 @@ export function requestOf(selection) {
       /** @type {UavInputRequest} */
       const body = { name: uav.name, position: uav.position };
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
-      if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
+      if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // explicit: the range of the fleet does not apply
       for (const name of UAV_VALUES)
         if (uav[name] !== null && uav[name] !== undefined) Object.assign(body, { [name]: uav[name] });
       if ((uav.sorties ?? 1) > 1) body.sorties = uav.sorties;

@@ -1,4 +1,4 @@
-/** What the list is asked for: from the page's address to a request and back. Values in, values out. */
+/** Filters and order of the list: from the page's address to a request and back. Values in, values out. */
 
 /** @typedef {"text" | "state" | "author" | "uav" | "changed" | "from" | "to" | "order"} TextName */
 /** @typedef {"stale" | "deleted"} FlagName */
@@ -33,7 +33,7 @@ export function askedOf(search) {
   });
 }
 
-/** "?state=draft&order=name": what differs from nothing. @param {Asked} asked */
+/** "?state=draft&order=name": what differs from the defaults. @param {Asked} asked */
 export function searchOf(asked) {
   const parameters = new URLSearchParams();
   for (const name of NAMES) if (asked[name] !== NOTHING[name]) parameters.set(name, String(asked[name]));
@@ -48,7 +48,7 @@ const startOf = (day, plusDays = 0) => {
 };
 
 /**
- * The path and query of the API. Days are the reader's: the last one counts whole.
+ * The path and query of the API. Days are in the reader's time zone; the last one is included.
  *
  * @param {Asked} asked
  * @param {Date} [now]
@@ -80,7 +80,7 @@ export function countOfFields({ author, uav, changed, stale }) {
 export const isFiltered = (asked) => searchOf({ ...asked, order: NOTHING.order }) !== "";
 
 /**
- * A click on a column: names and people up first, figures and times down first, then the other way.
+ * The order after a click on a column: names and users ascending first, figures and times descending first, then reversed.
  *
  * @param {string} order
  * @param {string} column

@@ -1,8 +1,8 @@
 /**
  * The service worker: keeps pages and documents of approved missions, and answers with them where the server cannot be reached.
  *
- * A page that comes from the copy says so (`data-offline-copy` on its first element) and asks for documents of the copy by a header;
- * every other page gets nothing from it but static files. The copy is one user's, and goes when that user signs out. The server puts
+ * A page from the copy is marked (`data-offline-copy` on its first element) and asks for documents of the copy by a header;
+ * every other page gets only static files from it. The copy is one user's, and goes when that user signs out. The server puts
  * `globalThis.VERSION` before this text, which changes with the static files; a script that is not a module is what every browser takes.
  */
 
@@ -33,7 +33,7 @@ const WIPE_TIMEOUT_MS = 5_000;
 const AT_ONCE = 6;
 const GATEWAY_FAULTS = new Set([502, 503, 504]);
 
-let wipes = 0; // how often the copy was emptied: what was asked for before is not kept after
+let wipes = 0; // how often the copy was emptied: requests from before store nothing after
 
 const signedOut = (/** @type {Response} */ answer) =>
   new URL(answer.url || location.href).pathname.startsWith("/sign-in");
@@ -108,7 +108,7 @@ async function keepNoConnectionPage() {
 // --- keeping
 
 /**
- * Pages and documents of one time, all or none: a page of today never stands beside a route of yesterday.
+ * Store pages and documents of one moment, all or none: a page of today never appears with a route of yesterday.
  *
  * @param {string} owner @param {string[]} addresses
  */
@@ -172,7 +172,7 @@ async function obey(order) {
 
 // --- answering
 
-/** @param {Response} answer of the copy @returns {Promise<Response>} the page, which says that it is a copy */
+/** @param {Response} answer of the copy @returns {Promise<Response>} the page, marked as a copy */
 async function marked(answer) {
   const html = await answer.text();
   const keptAt = answer.headers.get(KEPT_AT) ?? "";
@@ -204,7 +204,7 @@ async function page(event) {
   }
 }
 
-/** A page of the server tells who is signed in: nobody, or another user than the copy's, ends the copy. @param {Response} answer */
+/** Check the user in a page from the server: no user, or another than the copy's, deletes the copy. @param {Response} answer */
 async function checkOwner(answer) {
   if (answer.type === "opaqueredirect" || !answer.headers.get("Content-Type")?.startsWith("text/html")) return;
   const known = await (await find(OWNER))?.text();
@@ -227,7 +227,7 @@ async function fromCopy(request) {
   return answer && age_ms(answer) <= MAX_AGE_MS ? answer : Response.error();
 }
 
-/** The copy goes first, whether the server hears of it or not. @param {Request} request */
+/** Delete the copy first, even if the request does not reach the server. @param {Request} request */
 async function signOut(request) {
   const emptied = wipe().catch(() => {});
   try {
@@ -273,7 +273,7 @@ async function unlessGone(work) {
   }
 }
 
-/** What the version before kept is fetched anew before it goes: the copy is never without its files. */
+/** Fetch what the previous version kept before that is deleted: the copy always has its files. */
 async function takeOver() {
   await keepNoConnectionPage();
   for (const name of (await caches.keys()).filter((one) => one.startsWith(COPIES) && one !== COPY)) {

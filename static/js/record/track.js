@@ -1,4 +1,4 @@
-/** What UAVs reported in a mission, by time, and where nothing was heard of them. Values in, values out. */
+/** Reports of the UAVs in a mission by time, and the gaps between them. Values in, values out. */
 
 /** @import { EstimateFeature, RecordFeature, RecordProperties } from "../api_types.d.ts" */
 /** @import { TimeSpan } from "./player.js" */
@@ -13,7 +13,8 @@ const SILENT_MS = 12_000; // a UAV reports at least every ten seconds
 const SPACINGS = 2.5; // of thinned records: neighbours may lie up to two spacings apart
 
 /**
- * From how long on between two records nothing was heard; every_s: how far apart the server chose them, null: it gave all.
+ * The shortest interval between two records that counts as silence. every_s: spacing that the server chose, null: it returned all
+ * records.
  *
  * @param {number | null} every_s
  */
@@ -138,8 +139,8 @@ export function nearestTo(samples, at_ms) {
 }
 
 /**
- * Stretches in the air. Silence does not end a flight, a report from the ground does; where some reports say whether it was in the air, one
- * that does not begins no flight.
+ * Stretches in the air. Silence does not end a flight, a report from the ground does. Where some reports state whether the UAV was in the
+ * air, those that do not begin no flight.
  *
  * @param {readonly Pick<Sample, "at_ms" | "isInAir">[]} samples
  */
@@ -180,7 +181,7 @@ export function trackOf(samples, estimates, silence_ms) {
 
 export const MEASURED = "measured";
 export const ESTIMATED = "estimated";
-export const SILENT = "silent"; // nothing was heard, and nobody has estimated it
+export const SILENT = "silent"; // no report, and no estimate either
 
 /**
  * What is known of a moment; null before the first report and after the last word of it.
@@ -203,7 +204,7 @@ export function momentOf(track, at_ms) {
 }
 
 /**
- * Lines of one value from each take-off to its landing, broken where nothing was heard.
+ * Lines of one value from each take-off to its landing, broken at silences.
  *
  * @param {Pick<Track, "samples" | "flights" | "silence_ms">} track
  * @param {"height_m" | "speed_mps" | "battery_percent"} name
@@ -218,7 +219,7 @@ export const flownLinesOf = ({ samples, flights, silence_ms }, name) =>
   );
 
 /**
- * Lines of one value over time, each broken where nothing was heard.
+ * Lines of one value over time, each broken at silences.
  *
  * @param {readonly Sample[]} samples
  * @param {"height_m" | "speed_mps" | "battery_percent"} name

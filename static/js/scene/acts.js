@@ -1,4 +1,4 @@
-/** What can be done with the 3D view: cameras, UAVs, targets, time, a picture to keep and a link. Each says whether it was done. */
+/** Acts on the 3D view: cameras, UAVs, targets, time, saving a picture and a link. Each returns whether it was done. */
 
 import { routeLetter } from "../domain/palette.js";
 import { copyText } from "../page/clipboard.js";
@@ -19,7 +19,7 @@ import { download, fileName, stillOf } from "./still.js";
 
 /** @typedef {ReturnType<typeof createActs>} SceneActs */
 /**
- * What acts work on.
+ * Context of the acts.
  *
  * @typedef {object} ActsContext
  * @property {StageState} stage
@@ -33,7 +33,7 @@ import { download, fileName, stillOf } from "./still.js";
  * @property {() => number} atNow
  * @property {() => DrawnUav[]} drawn what the last picture shows
  * @property {() => ScenePalette} palette
- * @property {() => void} onChange what a link would say is another
+ * @property {() => void} onChange the content of a link has changed
  * @property {() => void} onClose
  * @property {(direction: number) => void} step to the next event
  * @property {() => void} showBar cameras and UAVs have changed
@@ -70,7 +70,7 @@ function whatFlies(source) {
   return source.kind === "plan" ? t("Planned, not flown") : "Spanwise";
 }
 
-/** The search part of the address of what is seen. @param {ActsContext} context */
+/** The search part of an address that reopens this view. @param {ActsContext} context */
 function linkTo({ stage: { source, chosen, target }, rig, picture, atNow }) {
   const state = rig.state();
   const place = state.mode === "free" ? picture.frame.toGeographic(state.eye) : null;
@@ -106,7 +106,7 @@ function fitAll({ stage, rig, targets, drawn }) {
   return true;
 }
 
-/** The picture with a line that says what it is, as a file. @param {ActsContext} context */
+/** Save the picture with a caption as a file. @param {ActsContext} context */
 async function keep({ stage: { mission, source, chosen }, rig, picture, labels, palette, atNow }) {
   const uav = source.routes.find(({ place }) => place === chosen);
   const facts = [timeWords(source, atNow()), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]];
@@ -121,7 +121,7 @@ async function keep({ stage: { mission, source, chosen }, rig, picture, labels, 
   );
 }
 
-/** As a link says, else the first UAV from behind. @param {ActsContext} context @param {SceneLink | null} wanted */
+/** Begin as the link states, else behind the first UAV. @param {ActsContext} context @param {SceneLink | null} wanted */
 function begin({ stage, rig, picture, player, hasOwnTime, targets }, wanted) {
   const places = stage.source.routes.map(({ place }) => place);
   const { camera = null, at_ms = null, since_s = null, uav = null, target = null } = wanted ?? {};

@@ -1,4 +1,4 @@
-/** The 3D view of one mission in an element: picture, labels, instruments, cameras and time, for a page of its own and for panels. */
+/** The 3D view of one mission in an element: picture, labels, instruments, cameras and time. Used by its own page and by panels. */
 
 import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
@@ -38,19 +38,19 @@ import { createTimeBar } from "./time_bar.js";
 
 /** @typedef {NonNullable<Awaited<ReturnType<typeof openStage>>>} Stage */
 /**
- * How a stage is opened.
+ * Options of a stage.
  *
  * @typedef {object} StageOptions
  * @property {{ id: string, name: string }} mission
  * @property {FlightSource} source
  * @property {SceneLink | null} [link]
  * @property {boolean} [isPanel] with a button that closes it
- * @property {Player | null} [player] of the page that it stands on; without it, it has its own where the source has a span
+ * @property {Player | null} [player] of the surrounding page; without it the stage has its own if the source has a span
  * @property {() => number} [now_ms] of a live source
- * @property {() => void} [onChange] what a link would say is another
+ * @property {() => void} [onChange] the content of a link has changed
  * @property {() => void} [onClose]
  * @property {() => string} [openAddress]
- * @property {() => boolean} [isWanted] whether it still is once the ground is read
+ * @property {() => boolean} [isWanted] whether the stage is still wanted once the terrain is read
  */
 
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
@@ -74,7 +74,7 @@ function pictureIn(holder, options) {
     return { canvas: first, picture: createPicture(holder, first, options) };
   } catch (error) {
     if (!(error instanceof NoWebGL)) throw error;
-    const second = canvas(); // one that was asked for WebGL gives nothing else
+    const second = canvas(); // a canvas that was tried for WebGL offers no other context
     first.replaceWith(second);
     return { canvas: second, picture: createFlatPicture(holder, second, options) };
   }
@@ -92,7 +92,7 @@ const alertLine = ({ uav, level, message, closed_at }, address) =>
     closed_at && h("small", {}, t("Ended {time}.", { time: exactClockText(closed_at) })),
   );
 
-/** What the picture has to say over itself: of the graphics, and of a source that is silent. */
+/** Notices over the picture: on the graphics, and on a silent source. */
 function createNotices() {
   const notice = h("p", { class: "scene-notice float", role: "status", hidden: true });
   const stale = h("p", { class: "scene-notice float warning", role: "status", hidden: true });
@@ -299,7 +299,7 @@ function mountStage(root, scene, options) {
     source,
     showStale: notices.showStale,
     showAlerts: notices.showAlerts,
-    /** For a page with a time of its own: it has moved, or another UAV is looked at. @param {number | null} place */
+    /** For a page with its own time: the time has moved, or another UAV is selected. @param {number | null} place */
     point(place) {
       if (place !== null && place !== stage.chosen) acts.choose(place);
       moved();
@@ -325,7 +325,7 @@ function timeBarIn(root, player, source, span) {
 }
 
 /**
- * The picture goes with the theme, and with what is said of movement.
+ * Apply the theme and the preference for reduced motion to the picture.
  *
  * @param {Picture} picture
  * @param {ScenePalette} firstPalette
@@ -349,7 +349,7 @@ function watchLook(picture, firstPalette, colours) {
 }
 
 /**
- * What the picture can be asked, and what a source that grows does to it.
+ * Acts on the picture, and its updates when a source grows.
  *
  * @param {{ source: FlightSource, scene: Scene, picture: Picture, flight: Flight, player: Player | null, bar: TimeBar | null }} parts
  */

@@ -21,11 +21,11 @@ const wordsOf = (error) => (error instanceof Error ? error.message : String(erro
 
 /** @param {string | null | undefined} job */
 export function cancelJob(job) {
-  if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+  if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // the page no longer waits for it
 }
 
 /**
- * Plans one selection after the other; what is begun anew ends what went before.
+ * Create a search that plans one selection at a time; stop() cancels it.
  *
  * @param {MissionStore} store
  */
@@ -61,7 +61,7 @@ function createSideSearch(store) {
     async make(other, own) {
       const basis = picks.basisOf(other);
       store.update({ planningBeside: basis });
-      const answer = /** @type {Answer<PlanResult | JobLink>} */ (await post("/plans", picks.requestOf(other))); // not cut short: a job that nobody knows of could not be stopped
+      const answer = /** @type {Answer<PlanResult | JobLink>} */ (await post("/plans", picks.requestOf(other))); // not aborted: a job whose id is unknown could not be stopped
       const begun = "job" in answer.data && answer.status === 202 ? (answer.data.job ?? null) : null;
       if (own.signal.aborted) {
         cancelJob(begun);
@@ -77,9 +77,8 @@ function createSideSearch(store) {
 }
 
 /**
- * Plans by one other objective, or by all of them where somebody compares. A large one waits until the plan on the page
- * is saved and
- * nothing else of this person's runs, and gives way to what is asked for.
+ * Create the planning by another objective, or by all of them for a comparison. A large selection waits until the plan on the page is
+ * saved and no other job of this user runs; it yields to the user's own requests.
  *
  * @param {MissionStore} store
  */
@@ -135,7 +134,7 @@ export function createPlanBeside(store) {
         beginWanted(store.state);
       }
     },
-    /** One after the other; what is refused says why, and the next is made. @param {MissionSelection} asked */
+    /** Plan one after the other; a refused one stores its reason, and the next follows. @param {MissionSelection} asked */
     async wantAll(asked) {
       stop();
       const own = search.begin(asked);

@@ -1,4 +1,4 @@
-/** Saving what is changed: when somebody asks, a moment after each change, and again once the server is back. */
+/** Saving of changes: on request, a moment after each change, and again once the server is back. */
 
 import { ApiError, get, isAbort, patch, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
@@ -14,7 +14,7 @@ import { createStoredMission, unlessOfSaving } from "./stored_mission.js";
 /** @import { MissionContext, MissionPageState, Version } from "../types.d.ts" */
 /** @import { Attempt } from "./save_request.js" */
 
-/** @typedef {{ asCopy?: boolean, byItself?: boolean }} SaveOptions byItself: nobody asked for it, so nothing is said where it goes well */
+/** @typedef {{ asCopy?: boolean, byItself?: boolean }} SaveOptions byItself: saved automatically, so success is not announced */
 /** @typedef {{ meet: (lost: Version | null) => Promise<void>, seeBoth: () => void, showDeleted: () => void }} Conflicts */
 /** @typedef {{ waitForJob: (job: string, words: string) => Promise<unknown>, makeRoom: () => void }} Planner */
 /** @typedef {ReturnType<typeof setTimeout> | undefined} Timer */
@@ -43,7 +43,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
   /** @type {Attempt | null} */
   let unsure = null; // a save whose answer never came
   /** @type {SaveOptions | null} */
-  let wanted = null; // what somebody asked for while another save was under way
+  let wanted = null; // a save that the user requested while another was running
   /** @type {string | null} */
   let refused = null; // what was not saved: it is tried again once it is another
   /** @type {Timer} */
@@ -102,7 +102,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
     clearTimeout(rest);
     const isWanted = page.canPlan && isUnsaved(state) && (state.mission || isPlanCurrent(state));
     if (!isWanted || state.saving || state.planning || state.conflict) return;
-    if (state.isAway || refused === whatIsThere(state)) return; // it is tried again by the clock, by the network's return, by hand
+    if (state.isAway || refused === whatIsThere(state)) return; // retried after a delay, when the network returns, or by the user
     rest = setTimeout(() => save({ byItself: true }), state.mission ? REST_MS : AT_ONCE_MS);
   });
 
@@ -178,7 +178,7 @@ function createSender(context, waitForJob) {
 }
 
 /**
- * What a failed save says, and when it is tried again.
+ * The text on a failed save, and when it is retried.
  *
  * @param {MissionContext} context
  * @param {Conflicts} conflicts

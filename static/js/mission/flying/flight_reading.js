@@ -1,7 +1,4 @@
-/**
- * What became of a mission that is approved: its commands, the connections of its UAVs and their paths home, read while
- * the page is looked at.
- */
+/** State of an approved mission: its commands, the connections of its UAVs and their RTL paths. Read while the page is visible. */
 
 import { ApiError, get } from "../../api.js";
 import { flyersOf, isFlown, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
@@ -25,7 +22,7 @@ export function createFlightReading(store, page) {
   let preflightAt = 0;
 
   /**
-   * By UAV, what is known of it and of what is on board; null while that could not be read.
+   * By UAV, its connection and onboard list; null while that could not be read.
    *
    * @param {Mission} mission
    */
@@ -43,7 +40,7 @@ export function createFlightReading(store, page) {
     store.update({ connections: new Map(read) });
   }
 
-  /** What is in the way home, as it was last looked at; null until then. */
+  /** Obstructions of the RTL paths as last read; null before. */
   async function readReturns() {
     const { mission } = store.state;
     if (!mission) return;
@@ -80,7 +77,7 @@ export function createFlightReading(store, page) {
       if (showChanges(store.state.commands, data.results)) void readConnections(mission);
       store.update({ commands: data.results });
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // else watchMission says that the server is away
+      if (!(error instanceof ApiError)) throw error; // else watchMission reports that the server is unavailable
     } finally {
       isAsking = false;
     }
@@ -100,7 +97,7 @@ export function createFlightReading(store, page) {
   return {
     readCommands,
     readReturns,
-    /** While the page is looked at. */
+    /** Run while the page is visible. */
     watch() {
       if (!page.isFrozen) return;
       setInterval(poll, POLL_MS);
@@ -119,7 +116,7 @@ export function createFlightReading(store, page) {
 }
 
 /**
- * Said once to whoever listens: what was carried out, and what was not. Returns whether something was.
+ * Announce once what was carried out and what was not. Returns whether something was.
  *
  * @param {Command[] | null} before
  * @param {Command[]} now

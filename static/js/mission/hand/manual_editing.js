@@ -1,7 +1,4 @@
-/**
- * Changing one route by hand: its points with undo and redo, what flying them would take asked about at once, and
- * keeping them.
- */
+/** Manual editing of one route: its points with undo and redo, their check by the server after each change, and saving. */
 
 import { ApiError, request } from "../../api.js";
 import { announce, toast } from "../../page/toast.js";
@@ -35,7 +32,7 @@ const beginningOf = (original, sequence) => ({
 });
 
 /**
- * Who plans anew, picks something else or closes the panel is not changing this route any more.
+ * Whether the edit is still open: planning again, choosing something else or closing the panel ends it.
  *
  * @param {Readonly<MissionPageState>} state
  */
@@ -109,7 +106,7 @@ function createSteps(store, { ask, knownOf, put }) {
 }
 
 /**
- * While somebody changes a route, store.state.hand says all of it; else it is null.
+ * Create the manual editing of a route. store.state.hand holds its whole state while a route is edited, else null.
  *
  * @param {MissionContext} context
  * @param {Saving} saving
@@ -152,7 +149,7 @@ export function createManualEditing(context, saving) {
     /** @param {number | null} chosen */
     chooseManually: (chosen) => put({ chosen }),
     /**
-     * While it is dragged: shown and asked about, no step of the history.
+     * Show and check a point while it is dragged; adds no step to the history.
      *
      * @param {HandPoint[]} points
      * @param {number} chosen
@@ -198,15 +195,15 @@ export function createManualEditing(context, saving) {
  * @param {{ put: Put, end: () => void }} editing
  */
 function createKeeping({ store, history, selection, problem, wordsOf }, { keepOpen }, { put, end }) {
-  /** @param {Mission} mission @param {string} name that the page had when it was asked */
+  /** @param {Mission} mission @param {string} name that the page had when the request was sent */
   function taken(mission, name) {
     end();
     keepOpen(mission, { selection: selection(), name });
-    history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
+    history.startFrom(selection()); // undo from here would plan again, and the manual edit would be lost
   }
 
   /**
-   * The route as it was before it was changed by hand last; who has changed the mission since is told so.
+   * Restore the route as it was before its last manual edit. If another user has changed the mission since, the user is notified.
    *
    * @param {number} sequence
    */
@@ -220,7 +217,7 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
         await request("POST", address, { headers: { "If-Match": `"${mission.revision}"` } })
       );
       taken(data, name);
-      store.update({ problem: null }); // what planning again would take away may be there no more
+      store.update({ problem: null }); // a redo could hold points that no longer exist
       toast(t("The last change by hand is taken back."));
     } catch (error) {
       put({ isSaving: false });
@@ -228,7 +225,7 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
     }
   }
 
-  /** What was refused is said at its points and legs. @param {unknown} error */
+  /** Show the server's faults at the points and legs concerned. @param {unknown} error */
   function showRefused(error) {
     const edit = store.state.hand;
     if (!edit) return;

@@ -1,4 +1,4 @@
-/** Search for assets by what people call them, and for places; empty, it lists what is in view. The list does all that the map does. */
+/** Search for assets by their names, and for places; empty, it lists the assets in view. The list offers all acts of the map. */
 
 import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
@@ -40,7 +40,7 @@ const failureWords = (error) => (error instanceof ApiError ? error.message : t("
 const keepFocus = (event) => event.preventDefault();
 
 /**
- * How many of all assets found can be targets; asked only where the answer does not show it.
+ * How many of all assets found can be targets; requested only where the answer does not show it.
  *
  * @param {URLSearchParams} asked
  * @param {AssetCollection} found
@@ -151,7 +151,7 @@ class Finder {
   #timer;
   /** @type {AbortController | null} */
   #asking = null;
-  #isBehind = false; // the list is not yet of what has been typed
+  #isBehind = false; // the list does not yet match the typed text
   #takesFirst = false; // Enter came before the list
 
   /** @param {FinderHow} how */
@@ -298,7 +298,7 @@ class Finder {
     return { icon: image, words, detail, end: t("Go there"), act: () => this.#how.goTo(place) };
   }
 
-  /** What is asked of /assets: the text, and what is in view where that is meant. */
+  /** The query of /assets: the text, and the view where it applies. */
   #question() {
     const { kinds, isInView } = this.#filters;
     const text = this.#input.value.trim();

@@ -1,7 +1,4 @@
-/**
- * The flight of one UAV from the side: ground, zones beside it, flight height, task points and battery, on the axis of
- * the strips.
- */
+/** The flight of one UAV as a profile: terrain, nearby zones, flight height, task points and battery, on the axis of the strips. */
 
 import { post } from "../../api.js";
 import { profileOf } from "../../domain/route_profile.js";
@@ -21,7 +18,7 @@ import { passedZones, zoneWords } from "../zones_passed.js";
 /** @typedef {ReturnType<typeof flightOf>} Flight a flight from the side */
 /** @typedef {{ low: number, high: number }} Span of the heights that are drawn */
 
-const MIN_SPAN_M = 60; // a plain must not look like mountains
+const MIN_SPAN_M = 60; // so that a plain does not look mountainous
 const NEAR_ZONE_M = 300;
 const MAX_VERTICES = 1_900; // of the 2,000 that the server takes
 const MAX_STEPS = 600;
@@ -40,7 +37,7 @@ export function thinned(positions, most = MAX_VERTICES) {
 }
 
 /**
- * The ground under a route, asked once for each route: [{ at_m, ground_m or null }], and zones near it.
+ * Terrain under routes, requested once for each route: [{ at_m, ground_m or null }], and zones near it.
  *
  * @returns {(route: Pick<ShownRoute, "waypoints" | "length_m">) => Promise<GroundUnder>}
  */
@@ -57,7 +54,7 @@ export function createGrounds() {
       step_m: Math.max(5, length_m / MAX_STEPS),
       near_m: NEAR_ZONE_M,
     }).then(({ data }) => groundOf(/** @type {Profile} */ (data), length_m));
-    asked.catch(() => known.delete(waypoints)); // asked again the next time
+    asked.catch(() => known.delete(waypoints)); // requested again the next time
     known.set(waypoints, asked);
     return asked;
   };
@@ -82,9 +79,8 @@ export function groundOf(profile, length_m) {
 }
 
 /**
- * Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat;
- * departs_at of
- * the plan says which zones are in force.
+ * Heights of the flight above their reference: sea level, or the take-off place where terrain is assumed flat. departs_at of the plan
+ * decides which zones are in force.
  *
  * @param {ShownRoute} route
  * @param {GroundUnder | null} ground
@@ -168,8 +164,7 @@ export function heightAt(points, at_m, name) {
 }
 
 /**
- * What is said at a distance: { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }; unknown is
- * null.
+ * The figures at a distance: { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }; null where unknown.
  *
  * @param {Flight} flight
  * @param {number} at_m
@@ -189,7 +184,7 @@ export function readingAt(flight, at_m) {
 }
 
 /**
- * Lowest and highest of what is drawn; a zone without a ceiling does not count.
+ * Lowest and highest value drawn; a zone without a ceiling does not count.
  *
  * @param {Pick<Flight, "path" | "under">} flight
  */

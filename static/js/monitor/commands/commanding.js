@@ -1,4 +1,4 @@
-/** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
+/** Commands from the live page. Each asks for confirmation; none is sent at once. */
 
 import { ApiError, freshKey } from "../../api.js";
 import { certaintyOf, MEASURED } from "../../domain/certainty.js";
@@ -52,7 +52,7 @@ function keptUnsent(store, id, unsent) {
   store.update({ unsent: unsentNow });
 }
 
-/** What reached the server all the same is no longer unsent, as the feed tells once it is back. @param {MonitorStore} store */
+/** Drop unsent commands that reached the server after all, as the feed reports once it is back. @param {MonitorStore} store */
 function dropArrived(store) {
   dropSent(store);
   store.listen(["commands"], ({ commands, unsent }) => {
@@ -63,17 +63,17 @@ function dropArrived(store) {
 }
 
 /**
- * While a question stands: `overtaken` resolves once the UAV does by itself, or as somebody else commanded, what is asked.
+ * While a question is open: `overtaken` resolves once the UAV does what is asked, by itself or on another user's command.
  *
  * @param {MonitorStore} store
- * @param {LiveUav} asked as it was when the question was asked
+ * @param {LiveUav} asked its state when the question opened
  * @param {AskedKind} kind
  */
 export function watchOvertaken(store, asked, kind) {
   let stop = () => {};
   /** @type {Promise<string>} */
   const overtaken = new Promise((resolve) => {
-    if (overtakenWords(kind, asked)) return; // it was so before, and the question says it
+    if (overtakenWords(kind, asked)) return; // true before, and the question states it
     stop = store.listen(["uavs"], ({ uavs }) => {
       const uav = uavs.find(({ id }) => id === asked.id);
       const words = uav && overtakenWords(kind, uav);
@@ -130,7 +130,7 @@ export function createCommanding(store, page) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
-    const isStop = kind === "hold"; // the feed tells what is asked of it
+    const isStop = kind === "hold"; // the feed reports its requests
     const flyer = {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,

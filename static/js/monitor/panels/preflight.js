@@ -33,7 +33,7 @@ const STATES = {
   failed: { image: "octagon-alert", words: t("Blocks the start") },
 };
 /**
- * Of this very plan: one that failed or is of another plan is warned of.
+ * The rehearsal check of this plan: warns of one that failed or belongs to another plan.
  *
  * @param {Pick<Rehearsal, "state" | "level" | "is_outdated"> | null} rehearsal the newest
  * @returns {PreflightCheck}
@@ -58,7 +58,7 @@ const checkRow = ({ code, state, message, detail }, remedy = null) =>
     h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
 
-/** Whether it is being told. @param {number} uav @param {string} name @param {number} height_m */
+/** Whether the command was sent. @param {number} uav @param {string} name @param {number} height_m */
 async function setHeight(uav, name, height_m) {
   try {
     return await commandUav(uav, name, "set-return-height", { height_m });
@@ -233,7 +233,7 @@ class BeforeStart {
   /** @type {PreflightCheck | null} */
   #rehearsal = null;
   #isPilotDone = false;
-  #busy = ""; // what is being done, until the checks are read anew
+  #busy = ""; // the running act, until the checks are read again
   #uploadsNext; // to simulated UAVs that were just started, once all are connected
   #panel;
 
@@ -290,7 +290,7 @@ class BeforeStart {
     this.#panel.drawStep(step, this.#busy);
   }
 
-  /** The page says itself that the server is away. @param {() => Promise<void>} reading */
+  /** The page itself reports that the server is unavailable. @param {() => Promise<void>} reading */
   async #asFarAsItCan(reading) {
     try {
       await reading();
@@ -319,7 +319,10 @@ class BeforeStart {
     });
   }
 
-  /** Says what is being done until the checks are read anew. @param {string} words @param {() => Promise<void>} does @param {string} [failed] */
+  /**
+   * Show the running act until the checks are read again.
+   * @param {string} words @param {() => Promise<void>} does @param {string} [failed]
+   */
   async #doing(words, does, failed = "") {
     this.#busy = words;
     this.#draw();

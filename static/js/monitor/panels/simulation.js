@@ -1,4 +1,7 @@
-/** Simulated UAVs that stand in for a mission's: how each does, started, given wind and faults while they fly, ended. Only where the fleet says that they are simulated. */
+/**
+ * Simulated UAVs in place of a mission's: their state, start, wind and faults in flight, and end. Only where the fleet marks the UAVs as
+ * simulated.
+ */
 
 import { ApiError, freshKey, get, patch, post, remove } from "../../api.js";
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
@@ -27,10 +30,10 @@ import {
 /** @import { Fault } from "../text/simulation_text.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
-/** Sends something, says so, and looks what has become of it. @typedef {(act: () => Promise<unknown>, words?: string) => Promise<void>} Do */
+/** Sends something, announces it, and reads the state again. @typedef {(act: () => Promise<unknown>, words?: string) => Promise<void>} Do */
 
 const EVERY_MS = 2000;
-const LASTS_S = 60; // of the clock on the wall, until somebody says otherwise
+const LASTS_S = 60; // wall clock time, unless the user chooses otherwise
 const MAX_FAULT_S = 86_400;
 const [MAX_WIND_MPS, MAX_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/weather_scenario.py
 
@@ -70,7 +73,7 @@ const group = (words, id, ...parts) =>
   h("div", { class: "simulation-group", role: "group", "aria-labelledby": id }, h("h3", { id }, words), parts);
 
 /**
- * The simulation of a mission: whether simulated UAVs stand in for its own, and how they are told to.
+ * The simulation of a mission: whether simulated UAVs replace its own, and how they are started.
  *
  * @typedef {object} StandIns
  * @property {() => boolean | null} areThere null: not read yet
@@ -149,7 +152,7 @@ class SimulationPanel {
       this.#isRead = true;
       this.#draw();
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the head of the page says that nothing comes in
+      if (!(error instanceof ApiError)) throw error; // the page's head reports the lost connection
     }
   }
 
@@ -242,7 +245,7 @@ function startForm(page, act) {
   );
 }
 
-/** Pace, wind and faults of what flies, and its end. */
+/** Clock rate, wind, faults and end of the running simulation. */
 class ChangesInFlight {
   #act;
   /** @type {Simulation | null} */
@@ -304,7 +307,7 @@ class ChangesInFlight {
     this.#drawMeant();
   }
 
-  /** The UAV that is selected on the page: wind and faults are for it, whoever was chosen here before. @param {number | null} uav */
+  /** Apply wind and faults to the UAV that is selected on the page, in place of the earlier choice. @param {number | null} uav */
   select(uav) {
     this.#selected = uav;
     this.#wished = "";

@@ -1,4 +1,4 @@
-/** Where the camera stands and looks: five ways to look at a flight, turned, zoomed and moved by hand. No picture is drawn here. */
+/** Position and direction of the camera: five modes, each turned, zoomed and moved by the user. Draws nothing. */
 
 import { between, directionOf, lengthOf, minus, plus, towards, turn_deg, within } from "./vectors.js";
 
@@ -19,14 +19,14 @@ const BEGINNINGS = {
   chase: { bearing_deg: 0, elevation_deg: 14, distance_m: 11 }, // bearing: of the camera behind the UAV's tail
   orbit: { bearing_deg: 215, elevation_deg: 14, distance_m: 110 }, // bearing: from the target to the camera
   top: { bearing_deg: 0, elevation_deg: 90, distance_m: 420 },
-  free: { bearing_deg: 0, elevation_deg: -12, distance_m: 0 }, // bearing, elevation: of what is looked at
+  free: { bearing_deg: 0, elevation_deg: -12, distance_m: 0 }, // bearing, elevation: of the camera's target
   onboard: { bearing_deg: 0, elevation_deg: -18, distance_m: 0 }, // bearing: beside the nose
 };
 const FIELDS_DEG = { chase: 50, orbit: 45, top: 40, free: 55, onboard: 65 };
 /** @type {Partial<Record<CameraMode, number>>} */
 const MIN_DISTANCE_M = { chase: 3, orbit: 5, top: 25 };
 const MAX_DISTANCE_M = 60_000;
-const FIT_MARGIN = 1.2; // bars stand over the picture's edges
+const FIT_MARGIN = 1.2; // bars cover the picture's edges
 const ABOVE_GROUND_M = 1.6; // a camera is never lower
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
 const GLIDES_S = 0.22; // of a camera that is sent elsewhere
@@ -64,7 +64,7 @@ function aboveGround({ eye, look, ...rest }, groundAt) {
   return { eye: eye[1] < least ? [eye[0], least, eye[2]] : eye, look, ...rest };
 }
 
-/** What the rig knows of itself; offset: from what it looks at, by hand; eye: of the free camera. */
+/** The rig's state. offset: the user's shift of the target; eye: position of the free camera. */
 const beginning = () => ({
   mode: /** @type {CameraMode} */ ("chase"),
   offset: /** @type {Vector} */ ([0, 0, 0]),
@@ -74,7 +74,7 @@ const beginning = () => ({
 /** @typedef {ReturnType<typeof beginning>} RigState */
 
 /**
- * A camera: pose() says in each frame where it stands.
+ * Create a camera rig; pose() returns the pose in each frame.
  *
  * @param {{ isCalm?: () => boolean }} [how] isCalm: whether movement is unwanted, then the camera is there at once
  */
@@ -117,7 +117,7 @@ export function createRig({ isCalm = () => false } = {}) {
       eyes.settle();
     },
     /**
-     * So far away that all of a sphere is in the picture, from where top and orbit look.
+     * Move top and orbit so far away that the whole sphere is in the picture.
      *
      * @param {number} radius_m
      * @param {number} [field_deg]
@@ -170,7 +170,7 @@ function createEyes(rig, views, isCalm) {
   return {
     shown: () => shown,
     followed_deg: () => heading_deg ?? 0,
-    /** The next pose at once: after a jump in time, or as a link says. */
+    /** Apply the next pose without a transition: after a jump in time, or as a link sets it. */
     settle() {
       mustSettle = true;
     },
@@ -207,7 +207,7 @@ function createEyes(rig, views, isCalm) {
 }
 
 /**
- * Turned, zoomed and moved by hand.
+ * Return the rig turned, zoomed and moved by the user.
  *
  * @param {RigState} rig
  * @param {() => CameraView} view

@@ -19,7 +19,7 @@ import {
 
 /** @typedef {ReturnType<typeof createWays>} Ways */
 /** @typedef {{ positions: number[], at_s?: number[] | null }} TimedPoints at_s: null where time is not shown */
-/** @typedef {{ isLine?: boolean, width_m?: number, least_px?: number, most_px?: number, opacity: number, later: number }} WayLook later: opacity of what is yet to come */
+/** @typedef {{ isLine?: boolean, width_m?: number, least_px?: number, most_px?: number, opacity: number, later: number }} WayLook later: opacity of the part after the moment shown */
 /** @typedef {TimedPoints & { place: number, dashed?: boolean }} WayLine */
 /** @typedef {{ position: Float32Array } & { [name: string]: Float32Array }} Attributes */
 /** @typedef {{ arrays: Attributes, index?: Uint32Array | null }} Built */
@@ -113,7 +113,7 @@ function tangentsOf(positions) {
   return found;
 }
 
-/** Names of a ribbon's attributes with the numbers in each vertex; it is as wide as its material says, and turns to the camera. */
+/** Names of a ribbon's attributes with the count of numbers per vertex; its material sets the width, and it turns to the camera. */
 const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
 
 /**
@@ -206,7 +206,7 @@ export function poleArrays(lines, groundAt, spacing_m) {
 }
 
 /**
- * When so many metres over the ground were flown; asked for in rising order.
+ * Return the function that gives when so many metres over the ground were flown; its argument must not decrease.
  *
  * @param {readonly number[]} positions
  * @param {readonly number[]} at_s
@@ -306,9 +306,9 @@ export function createWays(groundAt) {
     },
     /**
      * @param {object} now
-     * @param {number | null} now.at_ms what is later is faint
-     * @param {readonly { route: number, place: Vector, radius_m: number }[]} now.heads UAVs, which their ways do not cover
-     * @param {number | null} now.looked a route's place
+     * @param {number | null} now.at_ms the part after it is faint
+     * @param {readonly { route: number, place: Vector, radius_m: number }[]} now.heads UAVs, which their paths do not cover
+     * @param {number | null} now.looked place of the selected route
      * @param {number[]} now.viewport
      */
     frame({ at_ms, heads, looked, viewport }) {

@@ -1,5 +1,7 @@
-/** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, the ways to plan it, or a
- * route that is changed by hand. */
+/**
+ * The panel beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, other objectives,
+ * or a manually edited route.
+ */
 
 import { post } from "../../../api.js";
 import { byId, h, icon, setChildren } from "../../../dom.js";
@@ -20,7 +22,7 @@ import { targetExplanation } from "./target.js";
 /** Whether a plan takes shorter paths than the preferred ones. @param {Pick<Plan, "warnings">} plan */
 const takesShortestWays = ({ warnings }) => (warnings ?? []).some(({ code }) => code === "shortest_ways");
 
-/** What the server is asked: the plan as it was made, whatever has been picked since. @param {ShownPlan} plan */
+/** The server's input: the plan as it was made, regardless of later changes to the selection. @param {ShownPlan} plan */
 function questionOf({ result, targets, uavs, charging_w }) {
   const { objective, return_to_start, departs_at, conditions } = result;
   return requestOf({
@@ -55,7 +57,7 @@ function createQuestions() {
   };
 }
 
-/** Gives the focus back to what opened the panel; its row may have been drawn anew. */
+/** Return the focus to the control that opened the panel; its row may have been redrawn. */
 function createOpener() {
   /** @type {Element | null} */
   let opener = null;
@@ -139,7 +141,7 @@ class WhyPanel {
     this.#shown = why;
   }
 
-  /** Shows what is asked. @param {MissionPageState} state @param {ShownPlan} plan @param {Why} why */
+  /** Show the requested explanation. @param {MissionPageState} state @param {ShownPlan} plan @param {Why} why */
   #explain(state, plan, why) {
     const mayChange = this.#canPlan && isPlanCurrent(state);
     if (why.manualEdit !== undefined) {
