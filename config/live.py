@@ -94,7 +94,7 @@ def _faults() -> list[str]:
     try:
         return _readiness.faults()
     finally:
-        connections.close_all()  # this thread's alone
+        connections.close_all()  # only this thread's
 
 
 async def _answer(send: Send, status: int, reported: dict[str, Any]) -> None:

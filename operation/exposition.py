@@ -45,7 +45,7 @@ class _Handler(BaseHTTPRequestHandler):
             try:
                 self._notify("ready", self.server.readiness.faults())
             finally:
-                connections.close_all()  # this thread's alone
+                connections.close_all()  # only this thread's
         else:
             self._answer(404, "text/plain", b"/metrics, /healthz, /readyz\n")
 

@@ -73,7 +73,7 @@ class InstallationState:
             logger.debug("the state cannot be read: %s", error)
             return {DATABASE: {(): 0.0}}
         finally:
-            connections.close_all()  # this thread's alone
+            connections.close_all()  # only this thread's
 
     def _jobs(self, now: datetime) -> dict[str, Values]:
         counts: defaultdict[tuple[str, ...], float] = defaultdict(int)

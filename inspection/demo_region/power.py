@@ -146,7 +146,7 @@ def _draw_tree(drawing: OsmDrawing, code: str, farms: FloatArray, gantries: list
     places = np.vstack([middle, farms])
     tree = minimum_spanning_tree(cdist(places, places))
     order, parents = depth_first_order(tree + tree.T, 0, directed=False)
-    reach_m = np.zeros(len(places))  # how much line hangs on a place
+    reach_m = np.zeros(len(places))  # length of line that a place supplies
     for place in order[:0:-1].tolist():
         reach_m[parents[place]] += reach_m[place] + np.hypot(*(places[place] - places[parents[place]]))
     children: dict[int, list[int]] = {place: [] for place in range(len(places))}

@@ -241,7 +241,7 @@ def _nearest_other_component(network: SupportNetwork, node: IntArray) -> tuple[I
             is_full = np.bincount(row, minlength=len(part)) >= count
             is_full[settled] = False
             still.append(part[is_full])
-        waiting, count = np.concatenate(still), count * 4  # only where all that were asked for hang together with the node
+        waiting, count = np.concatenate(still), count * 4  # only where all found ones are connected to the node
     return partner, best
 
 

@@ -34,7 +34,7 @@ QUALITY = (
     "gap_of",
     "method",
     "wish",
-)  # of a plan's JSON, kept with its mission
+)  # of a plan's JSON, stored with its mission
 
 
 class NothingToPlan(Exception):

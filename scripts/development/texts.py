@@ -52,7 +52,7 @@ def compile_all() -> None:
             write_mo(file, catalogue(language))
 
 
-# --- what the program says ------------------------------------------------------------------------------------------------------
+# --- texts of the program -------------------------------------------------------------------------------------------------------
 
 
 def texts_of_templates() -> Iterator[Text]:

@@ -96,7 +96,7 @@ class JobWatch:
             while not self._stopped.wait(self._interval_s):
                 self._report()
         finally:
-            connections.close_all()  # this thread's alone
+            connections.close_all()  # only this thread's
 
     def _report(self) -> None:
         best = self._drawn()

@@ -63,7 +63,7 @@ WHERE s.kind = twice.kind AND s.osm_type = twice.osm_type AND s.osm_id = twice.o
 class OsmDifference:
     """The changes of an OSM file: all totals, and the first few rows of each action."""
 
-    counts: dict[str, Any]  # what is in the file
+    counts: dict[str, Any]  # content of the file
     numbers: dict[str, int]
     samples: dict[ChangeAction, list[Sample]]
 

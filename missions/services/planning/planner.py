@@ -112,7 +112,7 @@ def make_plan(
         except PLANNER_FAULTS:
             _keep_context(context, request)
             raise
-        release_planning_lock()  # taken here or by the caller: the final check is done
+        release_planning_lock()  # the caller's, if it holds one: nothing after the final check needs it
         if current_dataset_version() == ground.dataset_version:
             return answer
         # Only a plan checked against the current zones, on the terrain version of its heights, is returned.
