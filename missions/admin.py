@@ -56,9 +56,7 @@ class UavAdmin(_FleetAdmin):
     ]  # fmt: skip
 
     def get_deleted_objects(self, objs: Any, request: HttpRequest) -> tuple[Any, Any, Any, list[Any]]:
-        """Return what Django returns, with the reasons why a UAV must stay among the protected objects, so that neither page nor action
-        deletes it.
-        """
+        """Return Django's result with the reasons why a UAV must stay among the protected objects, so that it cannot be deleted."""
         objects, counts, permissions, protected = super().get_deleted_objects(objs, request)
         return objects, counts, permissions, [*protected, *(reason.message for uav in objs for reason in removal_reasons(uav))]
 

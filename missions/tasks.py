@@ -85,9 +85,7 @@ def solve_plan(job_id: str) -> None:
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def plan_mission(job_id: str) -> None:
-    """Plan a mission, and store the plan if the mission is unchanged since the request. If stopped, store the best
-    plan found until then.
-    """
+    """Plan a mission, and store the plan, or the best one found when stopped, if the mission is unchanged since the request."""
 
     def do(job: Job, watch: JobWatch) -> None:
         services.plan_mission_for_job(

@@ -19,10 +19,9 @@ def freeze_startup_objects() -> None:
     """Freeze the objects of a start (code, models, graphs), which stay, so that no collection traverses them again.
 
     Collections are then cheap and run often: each database query leaves ten cycles, which at a threshold of 20,000 would take half an hour
-    to
-    collect. Python collects old objects only when a quarter of them is new, and counts frozen ones until its next full collection. Without
-    the second collection here some 800,000 start objects count, and cycles from requests wait for 200,000 of their kind: a web program grew
-    by a sixth an hour.
+    to collect. Python collects old objects only when a quarter of them is new, and counts frozen ones until its next full collection.
+    Without the second collection here some 800,000 start objects count, and cycles from requests wait for 200,000 of their kind: a web
+    program grew by a sixth an hour.
     """
     gc.collect()
     gc.freeze()
@@ -34,8 +33,7 @@ def trim_memory() -> None:
     """Collect cycles and return unused memory to the OS after a piece of work.
 
     Otherwise each task starts with the garbage of earlier ones and peaks higher. The allocator returns memory only from the top of the
-    heap,
-    which one small object can block: a data worker grew by some 6 MiB an hour, none of it in use.
+    heap, which one small object can block: a data worker grew by some 6 MiB an hour, none of it in use.
     """
     gc.collect()
     if _RETURN_TO_SYSTEM is not None:

@@ -64,9 +64,9 @@ class JsonFormatter(logging.Formatter):
 
 
 def named_in(record: logging.LogRecord) -> dict[str, str]:
-    """Return the context of a line: its own `extra` before the current context. Django logs some lines after a request, and passes the
-    request
-    object in them.
+    """Return the context of a line: its own `extra` before the current context.
+
+    Django logs some lines after a request, and passes the request object in them.
     """
     reported = {name: getattr(record, name, None) for name in FIELDS}
     read = getattr(reported.pop("request"), ABOUT_REQUEST, None)

@@ -88,8 +88,7 @@ def fetch(
     """Write the response of an address to a file. Raises OutgoingRefused or OutgoingFailed; then there is no file.
 
     A name is resolved once, and the connection goes to the address that was checked; each redirect is checked again. timeout_s is the
-    longest
-    silence, total_s the longest total time. The headers must hold no secret: they are also sent to redirects.
+    longest silence, total_s the longest total time. The headers must hold no secret: they are also sent to redirects.
     Proxies named in the environment are not used. progress is called with the bytes so far, and may raise to stop.
     """
     sent = {"User-Agent": USER_AGENT, "Accept-Encoding": "identity", "Connection": "close", **(headers or {})}

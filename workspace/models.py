@@ -242,8 +242,7 @@ class Job(models.Model):
     """Work that takes longer than a request. The row is authoritative; the queue is a hint.
 
     A worker holds a job by a lease. A job with an expired lease, or that was never picked up, is queued again. The attempt number
-    identifies
-    the lease: writes of an earlier attempt match no row.
+    identifies the lease: writes of an earlier attempt match no row.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)

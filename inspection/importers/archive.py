@@ -85,9 +85,7 @@ class Archive:
 
 @contextmanager
 def opened_archive(path: Path, *, most_ratio: int = MAX_RATIO) -> Iterator[Archive]:
-    """Open an archive. most_ratio: largest ratio of unpacked to packed size. Raises AssetFileError for an archive that no ordinary program
-    writes.
-    """
+    """Open an archive. most_ratio: largest ratio of unpacked to packed size. Raises AssetFileError for an implausible archive."""
     with path.open("rb", buffering=0) as raw, _CappedFile(raw) as file:
         try:
             archive = zipfile.ZipFile(file)

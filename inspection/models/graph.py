@@ -25,9 +25,7 @@ class Ground(models.Model):
 
 
 class GraphSnapshot(models.Model):
-    """An immutable network without zones. Its counts are those of the graph cleared of the zones of its time. The
-    primary key is the version.
-    """
+    """An immutable network without zones, with counts of the graph cleared of its time's zones. The primary key is the version."""
 
     version = models.BigAutoField(primary_key=True)
     ground_revision = models.PositiveBigIntegerField(help_text="the ground that it shows")

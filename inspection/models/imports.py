@@ -45,9 +45,9 @@ class DataImport(models.Model):
 
 
 class Upload(models.Model):
-    """A file that arrives part by part; received parts survive a lost connection. The bytes are in the database, so that any web process
-    can
-    receive them and any worker can read them.
+    """A file that arrives part by part; received parts survive a lost connection.
+
+    The bytes are in the database, so that any web process can receive them and any worker can read them.
     """
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)

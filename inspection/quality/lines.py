@@ -113,8 +113,7 @@ def line_ends(network: SupportNetwork) -> list[FoundIssue]:
     """Return ends from which no other leg leaves: a few metres from another line, or with nothing around them.
 
     Spanwise stores no substations. An end counts as intended where another line, a cable, a busbar, a portal or a tower tagged as terminal
-    is
-    within 150 m. A substation with one line and none of these is not recognised, and a curator dismisses the issue.
+    is within 150 m. A substation with one line and none of these is not recognised, and a curator dismisses the issue.
     """
     vertex = _loose_ends(network)
     position = network.node_position[network.node_of_vertex[vertex]]

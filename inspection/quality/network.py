@@ -101,9 +101,7 @@ class SupportNetwork:
         return metres_by(self.component[pair[:, 0]], metres, count)
 
     def joining_m(self, one: IntArray, other: IntArray) -> FloatArray:
-        """Return the length of the smaller of the two components that joining the nodes would connect; 0 where they
-        are connected already.
-        """
+        """Return the length of the smaller of the two components that joining the nodes would connect; 0 if already connected."""
         first, second = self.component[one], self.component[other]
         return np.where(first == second, 0.0, np.minimum(self.component_m[first], self.component_m[second]))
 
@@ -112,8 +110,7 @@ class SupportNetwork:
         """Return for each pair the metres on its smaller side if it is the only link between its sides, else 0.
 
         It is the only link if it is in the breadth-first forest and no pair outside the forest spans it: each of those gets a number, which
-        its
-        two ends cancel wherever both are on one side.
+        its two ends cancel wherever both are on one side.
         """
         pair, metres, _ = self.pairs
         side = np.zeros(len(pair))

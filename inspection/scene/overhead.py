@@ -103,8 +103,7 @@ def bearings_deg(found: Overhead, weight: FloatArray) -> tuple[FloatArray, IntAr
     """Return the line's direction at each support (n,), the number of its spans (n,), and the bend where there are two (n,).
 
     weight (k,) of the spans: the heavier line decides. The bearing bisects a bend; 0 where no span is. Along a line it keeps its
-    orientation
-    from support to support.
+    orientation from support to support.
     """
     count = len(found.position)
     if not len(found.span):
@@ -158,7 +157,6 @@ def sag_m(length_m: float, lowest_slot_m: float) -> float:
     """Return the sag of a phase in the middle, below the straight line between its ends.
 
     lowest_slot_m: above ground, the lower of both ends' lowest slots. A catenary is never above the straight line between its ends, so a
-    wire
-    is never higher than planners assume.
+    wire is never higher than planners assume.
     """
     return min(length_m**2 / (8.0 * CATENARY_M), MAX_SAG_SHARE * max(lowest_slot_m, 0.0))

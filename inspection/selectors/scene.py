@@ -48,9 +48,7 @@ def layer_of(tags: Mapping[str, str]) -> int:
 
 
 def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
-    """Return a level deck height: at least the highest terrain at its edge, and layer clearances over the lowest.
-    ground_m of shape (n,).
-    """
+    """Return a level deck height: at least the highest terrain at its edge, and layer clearances over the lowest. ground_m (n,)."""
     return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
 
 

@@ -16,9 +16,7 @@ MAX_ZONES = 200
 
 @dataclass(frozen=True)
 class ZoneStretch:
-    """The part of a line in a zone; a line may enter a zone several times. is_crossed: it enters the zone instead of
-    only passing near it.
-    """
+    """The part of a line in a zone, which a line may enter several times. is_crossed: it enters the zone, not only its margin."""
 
     zone: NoFlyZone
     from_m: float

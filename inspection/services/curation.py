@@ -93,8 +93,7 @@ def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = N
     """Delete an asset. Raises StaleRevision.
 
     An asset from a file, or one that a mission's target refers to, is marked as manually vanished: the target keeps its place, and the
-    file's
-    next import does not restore the asset. A drawn one is deleted.
+    file's next import does not restore the asset. A drawn one is deleted.
     """
     with transaction.atomic():
         hold_ground()

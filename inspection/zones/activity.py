@@ -41,8 +41,8 @@ def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float |
     """Return seconds since the epoch of an event (schedule.EVENTS) on a solar day at sea level; None where it does not happen.
 
     day counts from 1970-01-01 by the place's mean solar time, so that sunrise comes before sunset everywhere. Accurate to a minute below 65
-    degrees of latitude. Raises KeyError for another event.
-    Source: NOAA solar equations as in the library astral, after J. Meeus, Astronomical Algorithms.
+    degrees of latitude. Raises KeyError for another event. Source: NOAA solar equations as in the library astral, after J. Meeus,
+    Astronomical Algorithms.
     """
     zenith_deg, direction = _ZENITH_AND_DIRECTION[event]
     latitude = min(max(lat_deg, -MAX_LAT_DEG), MAX_LAT_DEG)
@@ -70,8 +70,7 @@ def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float
 
     schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in UTC
     as well as at the place, and the span reaches from the earliest start to the latest end in the box. Where an event does not happen at
-    all,
-    the zone applies that whole day; where it happens only in a part of the box, until the end of the third day after.
+    all, the zone applies that whole day; where it happens only in a part of the box, until the end of the third day after.
     """
     if not from_s < to_s:
         return ()

@@ -2,8 +2,7 @@
 
 The form, which is also stored: a list of periods {"startDateTime", "endDateTime", "schedule"}; dates and times are UTC in RFC 3339 or null
 for "open"; schedule is a list of {"day", "startTime", "startEvent", "endTime", "endEvent"}, empty for "all the time". None stands for a
-zone that always applies.
-Source: EUROCAE ED-318, limitedApplicability; ED-269, applicability.
+zone that always applies. Source: EUROCAE ED-318, limitedApplicability; ED-269, applicability.
 """
 
 import re

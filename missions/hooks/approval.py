@@ -12,8 +12,7 @@ _before_starts: list[str] = []
 
 
 def register_check(name: str) -> None:
-    """Register a function by its dotted name. It takes a mission, loaded by selectors.mission_of_organisation, and lists reasons against
-    it.
+    """Register a function by its dotted name. It lists reasons against a mission, loaded by selectors.mission_of_organisation.
 
     The function is imported on first use, so that programs that approve nothing start without it.
     """

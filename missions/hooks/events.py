@@ -82,8 +82,7 @@ class EventSource:
     """Events of one kind of rows.
 
     `statement` selects row (text), step (text), at and mission_id for the missions `%(missions)s` (uuid[]); `%(names)s` are the same as
-    text.
-    `read` returns the events at places of this source, with one query for all of them; rows deleted in the meantime are omitted.
+    text. `read` returns the events at places of this source, with one query for all of them; rows deleted in the meantime are omitted.
     """
 
     name: str

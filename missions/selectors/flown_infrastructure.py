@@ -19,8 +19,7 @@ def flown_missions_touched(written: WrittenGround) -> list[AutoApplyRefusal]:
     """Return why an import may not be applied automatically; empty where it touches no mission of any organisation.
 
     An ended mission counts while its UAVs are in the air: those of an aborted one are returning. Assets count within 200 m of a route, or
-    as
-    its target or waypoint. Zones count anywhere on a straight return from the route to its take-off, at any height and time.
+    as its target or waypoint. Zones count anywhere on a straight return from the route to its take-off, at any height and time.
     """
     touched = {route.mission_id for route in _routes() if _touches(written, route)}
     if not touched:

@@ -50,8 +50,7 @@ def resolved_targets(
     """Return the place of each target, and the targets whose asset has been deleted since they were picked.
 
     points: the towers and bridges among `whole_assets`, if already read. Raises InvalidRequest with every fault: an unknown asset, a point
-    or
-    stretch that is not on its asset.
+    or stretch that is not on its asset.
     """
     plain = _whole_towers_and_bridges(targets, points)
     if plain is not None:

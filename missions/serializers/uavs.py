@@ -86,9 +86,7 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
 
 
 class UavFlatSerializer(UavPropertiesSerializer):
-    """A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
-    too.
-    """
+    """A UAV as one object: its properties and `position`, by default its base's. A GeoJSON Feature is accepted too."""
 
     position = PositionField(required=False)
 

@@ -25,8 +25,7 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
 
     It ends as completed where no target was open, else as aborted, or failed where a flight has failed. One that has ended already keeps
     its state. UAVs that may hold a mission that was not started get the command to clear it. Raises MissionChanged, or Refused: while one
-    of
-    its UAVs is in the air, where an open target has no reason, and where nothing is left to close.
+    of its UAVs is in the air, where an open target has no reason, and where nothing is left to close.
     """
     with transaction.atomic():
         held = locked_mission(mission.pk, expected_revision)

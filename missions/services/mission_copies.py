@@ -31,8 +31,7 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
     """Create a draft of the missed targets with the same UAVs and constraints, without departure or targets that a continuation took over.
 
     UAVs begin where they return to. Raises Refused where the mission is not over, or nothing was missed, and InvalidRequest where its
-    targets
-    no longer exist.
+    targets no longer exist.
     """
     if mission.state not in ENDED_STATES:
         raise refuse("not_over", _("A follow-up is planned once the mission is over."))

@@ -14,8 +14,7 @@ def stored_routes(mission: Mission) -> list[PlannedRoute] | None:
     """Return the routes in the order of the mission's UAVs, without lines; heights, times and Wh have the stored precision.
 
     Points of one target share its key: what is attached to a target may be passed near there. Returns None without a plan, or for an old
-    plan
-    without times.
+    plan without times.
     """
     found = list(mission.routes.select_related("mission_uav").prefetch_related("waypoints"))
     if not found or any(waypoint.arrival_s is None for route in found for waypoint in route.waypoints.all()):

@@ -42,8 +42,7 @@ def explain_mission(
     """Explain routes and unassigned targets on current map data; mission: with its routes, waypoints and targets loaded.
 
     uavs, targets: those requested, by their places in the mission; None: all of them, up to MAX_EXPLAINED of each. A route that can no
-    longer
-    be explained, as the map data have changed, has the reason under `fault`. Raises NoGraph.
+    longer be explained, as the map data have changed, has the reason under `fault`. Raises NoGraph.
     """
     place_of = {target.pk: target.sequence for target in mission.targets.all()}
     orders: list[list[int]] = [[] for _ in request.uavs]

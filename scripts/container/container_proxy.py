@@ -34,10 +34,8 @@ def site_of_environment(folder: Path) -> Site:
     """Return the site of SPANWISE_PROXY_WEB, SPANWISE_PROXY_LIVE and SPANWISE_PROXY_UAV_LINK (default: web serves UAVs).
 
     Each is a comma-separated list of addresses, or one name with SPANWISE_PROXY_RESOLVES=1. SPANWISE_PROXY_NAME_SERVER sets the name
-    server,
-    by default that of the container's resolv.conf. SPANWISE_PROXY_TRUST: the authority of the certificates of web, live and uav-link;
-    without
-    it they are reached by plain HTTP. SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them nginx serves TLS on
+    server, by default that of the container's resolv.conf. SPANWISE_PROXY_TRUST: the authority of the certificates of web, live and
+    uav-link; without it they are reached by plain HTTP. SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them nginx serves TLS on
     SPANWISE_PROXY_TLS_PORT.
     """
     certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")

@@ -36,9 +36,8 @@ class Site:
     """The programs behind one nginx.
 
     `web`, `live` and `uav_link` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) each is
-    one
-    name, resolved every two seconds to any number of programs. Without a certificate and with `is_behind_https` a proxy in front terminates
-    TLS, and reports it in a header.
+    one name, resolved every two seconds to any number of programs. Without a certificate and with `is_behind_https` a proxy in front
+    terminates TLS, and reports it in a header.
     """
 
     folder: Path

@@ -15,9 +15,7 @@ class SpanwiseAdminSite(AdminSite):
     index_title = "Administration"
 
     def login(self, request: HttpRequest, extra_context: dict[str, Any] | None = None) -> HttpResponse:
-        """Redirect anonymous users to the program's own login, which limits wrong tries; raise PermissionDenied for
-        users without the role.
-        """
+        """Redirect anonymous users to the program's own login, which limits wrong tries. Raises PermissionDenied for a wrong role."""
         if request.user.is_authenticated and not self.has_permission(request):
             raise PermissionDenied
         return redirect_to_login(request.GET.get("next") or reverse("admin:index"))

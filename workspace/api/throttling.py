@@ -51,8 +51,7 @@ class ScopedRate(ScopedRateThrottle):
     """Limits views that name a `throttle_scope`, per user, in fixed windows counted atomically over all processes.
 
     Most users send requests rarely. At a generous limit the first request of a user in a window and process passes uncounted, so each
-    process
-    may let one more pass.
+    process may let one more pass.
     """
 
     quiet_until_s = 0.0  # of this process: limits how often the failure is logged

@@ -57,9 +57,7 @@ def create_job(*, organisation: Organisation, created_by: User | None, task: str
 def create_job_within(
     limit: int, *, organisation: Organisation, created_by: User, task: str, parameters: dict[str, Any], message: Why = ""
 ) -> Job:
-    """Create a job as create_job does, for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs;
-    concurrent calls wait.
-    """
+    """Create a job for a user with fewer than `limit` open jobs of this app. Raises TooManyJobs; concurrent calls are serialised."""
     with transaction.atomic():
         User.objects.select_for_update(no_key=True).filter(pk=created_by.pk).values_list("pk").first()
         refuse_jobs_beyond(limit, user=created_by, task=task)
@@ -98,8 +96,7 @@ def report_progress(*, job: Job, progress: float, message: Why = "", best: Any =
     """Store the progress and the best result so far if there is a new one, and renew the lease.
 
     Raises JobCancelled when the user has cancelled the job (the lease is renewed, so that results can still be stored), and JobLost when
-    this
-    worker no longer holds the job.
+    this worker no longer holds the job.
     """
     held = _held(job)
     values: dict[str, Any] = {"lease_expires_at": from_now(LEASE_S)}

@@ -30,9 +30,7 @@ def job_group(job_id: UUID | str) -> str:
 
 
 def live_channel(organisation_id: int | str) -> str:
-    """Return a plain Redis channel: a process listens to all of them at once, where Channels needs a group per
-    socket. "*" is a wildcard.
-    """
+    """Return a plain Redis channel, which a process can match with "*", where Channels needs a group per socket."""
     return f"spanwise-live.organisation.{organisation_id}"
 
 

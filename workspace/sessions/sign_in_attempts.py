@@ -34,9 +34,7 @@ _of_process: BaseCache = LocMemCache("sign-in attempts", {"OPTIONS": {"MAX_ENTRI
 
 
 class TooManyAttempts(Exception):
-    """Raised instead of checking a try. `wait_s` is the time until the next one; `name_is_slow`: guesses at this name
-    come from everywhere.
-    """
+    """Raised instead of checking a try. `wait_s`: time until the next one; `name_is_slow`: guesses at this name come from everywhere."""
 
     def __init__(self, wait_s: int, *, name_is_slow: bool = False) -> None:
         super().__init__(f"held back for {wait_s} s")

@@ -183,9 +183,7 @@ def _check_shape(kind: str, shape: Shape, place: str) -> None:
 
 
 def _parts(shape: Shape) -> list[BaseGeometry]:
-    """Return the assets of a shape: disjoint parts of a line are several assets; an area in parts is one, a single
-    part is stored as such.
-    """
+    """Return the assets of a shape: one per disjoint part of a line; an area is one, and stored as single if it has one part."""
     if shape.geom_type == "MultiLineString" or (shape.geom_type == "MultiPolygon" and len(shape.geoms) == 1):
         return list(shape.geoms)
     return [shape]

@@ -52,8 +52,7 @@ def read_osm(path: Path, progress: Progress | None = None, take: Take | None = N
     """Return the assets of an .osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON file. Raises OsmFileError if it is not readable.
 
     With `take` the records are passed to it in batches and not stored, so that memory does not grow with their number. A duplicate object
-    in
-    an unsorted file is then passed twice, the valid one last.
+    in an unsorted file is then passed twice, the valid one last.
     """
     file_format = examine(path, progress)
     try:

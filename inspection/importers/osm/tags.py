@@ -42,8 +42,7 @@ def voltages_v(value: str | None) -> tuple[int, ...]:
     """Return each voltage of a list such as "138000;69000", "110 kV" or "220000-400000" in volts, highest first, without duplicates.
 
     A comma separates values, unless digits are grouped by thousands as in "138,000". Unreadable values are omitted. A single unit at the
-    end
-    applies to the whole list ("110/20 kV"), but only to values too small to be volts.
+    end applies to the whole list ("110/20 kV"), but only to values too small to be volts.
     """
     if not value:
         return ()

@@ -121,8 +121,7 @@ def enclosing_polygon(centre: LonLat, radius_m: float, place: str, budget: Verte
     """Return a regular polygon of 64 corners around the circle of points radius_m from the centre along the ellipsoid.
 
     Its sides are straight in longitude and latitude, as everywhere. It is widened until they clear the circle, which takes about a
-    centimetre
-    per kilometre of radius at middle latitudes.
+    centimetre per kilometre of radius at middle latitudes.
     """
     (budget or VertexBudget()).take(CORNERS + 1, place)
     pole_m = min(WGS84.inv(centre.lon, centre.lat, centre.lon, latitude)[2] for latitude in (90.0, -90.0))

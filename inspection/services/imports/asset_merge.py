@@ -119,9 +119,7 @@ WHERE f.fate = %(fate)s ORDER BY {self.order} LIMIT %(most)s
 
     @cached_property
     def changes(self) -> tuple[str, ...]:
-        """Return the statements that update assets to the file, except new ones. They are ordered so that the history
-        has the former state.
-        """
+        """Return the statements that update assets, except new ones, to the file, ordered so that the history has the former state."""
         after = self.facts_of("a", vanished="true", data_import_id="%(data_import)s::bigint", is_edited="false")
         return (
             f"""{_ENTRY}

@@ -38,8 +38,7 @@ def import_terrain(
     """Store the heights of a GeoTIFF or HGT file, or of a zip of several. Raises TerrainFileError and changes nothing.
 
     Importing the same file again changes nothing; a changed file of the same name replaces the earlier one. vertical_datum is for a file
-    that
-    does not state one. It counts as a change of the map data, as missions were planned with other heights.
+    that does not state one. It counts as a change of the map data, as missions were planned with other heights.
     """
     origin = provenance or Provenance(file_name=path.name)
     with opened_terrain(path) as file, transaction.atomic():

@@ -74,8 +74,8 @@ def difference_of(
     """Compare the set's rows with a file or a version; edited rows are kept unless they are to be replaced.
 
     A zone with an unreadable record does not vanish, as its content in the file is unknown. Where a file has several zones of its
-    identifier,
-    their numbers do not match records to zones: the set's zones stay as they are, and records that differ from all of them are added.
+    identifier, their numbers do not match records to zones: the set's zones stay as they are, and records that differ from all of them are
+    added.
     """
     found = ZoneDifference()
     held = {(zone.identifier, zone.layer): zone for zone in zone_set.zones.all()} if zone_set else {}

@@ -42,8 +42,7 @@ def import_zones(
 
     Unchanged zones keep their rows; others are changed, added or removed. Those that a curator edited stay unless replace_edited is set.
     Raises ZoneFileError and changes nothing, also when all zones of the set are elsewhere, as they would be removed unnoticed. Naming a
-    set,
-    or replace_all, confirms that this is intended.
+    set, or replace_all, confirms that this is intended.
     """
     content, sha256 = read_zone_file(path, source_format=source_format, leave_out_faulty=leave_out_faulty)
     name = set_name_of(path, set_name)

@@ -201,8 +201,7 @@ def apply_proposal(*, job: Job, progress: Progress) -> None:
     """Update the map data to the file: the rows, the import, the proposal's state and the job's end in one transaction.
 
     If the difference has changed since the review, nothing is applied, and the new difference waits for review. An automatic one is
-    compared
-    with its bounds as it is written, and rolled back if it exceeds them.
+    compared with its bounds as it is written, and rolled back if it exceeds them.
     """
     proposal = ImportProposal.objects.select_related("upload", "decided_by").get(pk=job.parameters["proposal"])
     if proposal.job_id != job.pk or proposal.state != ProposalState.APPLYING:

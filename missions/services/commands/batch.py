@@ -54,8 +54,8 @@ def command_missions(
     """Give UAVs of these missions a command in one transaction: a refusal for one UAV does not affect the others.
 
     Only UAVs with a route of the named mission sent or in flight get it. ways: for UAV ids, the parameters of a return. Raises Refused for
-    a
-    kind that is not in BATCH_KINDS, for `ways` of another kind than a return, and where no UAV is named and no mission has a UAV to reach.
+    a kind that is not in BATCH_KINDS, for `ways` of another kind than a return, and where no UAV is named and no mission has a UAV to
+    reach.
     """
     if kind not in BATCH_KINDS:
         raise refuse("no_batch", _("This command is given to one UAV at a time."))

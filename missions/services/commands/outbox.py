@@ -116,9 +116,8 @@ def claim_commands(
     """Claim up to `limit` commands to these UAVs, the most urgent first, then the oldest; commands that others hold are skipped.
 
     With `link`, only commands of this link to UAVs that use it now; with `axes`, only commands on these axes. `to_unreachable`: only
-    commands
-    suitable for a UAV that sends nothing: safety commands that are neither a step that others follow nor a return that depends on its
-    position.
+    commands suitable for a UAV that sends nothing: safety commands that are neither a step that others follow nor a return that depends on
+    its position.
 
     Claims commands that nobody holds and those whose lease has run out, and increments the attempts of each. `holder` names one run of one
     program: a restarted gateway has another name.

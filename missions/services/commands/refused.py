@@ -9,9 +9,7 @@ from workspace.reason_texts import reason_text
 
 @dataclass(frozen=True)
 class RefusalReason:
-    """One reason. `uav` is its place in the mission, where the reason concerns one UAV. `why` is the stored form of a
-    reason with a code.
-    """
+    """One reason. `uav` is its place in the mission, if it concerns one UAV. `why` is the stored form of a reason with a code."""
 
     code: str
     message: str

@@ -282,9 +282,7 @@ def _levels(way: RtlPaths, own: RtlBehaviour) -> np.ndarray[tuple[int, ...], np.
 
 
 def _safe_height_m(ways: Sequence[RtlPaths], own: RtlBehaviour) -> float | None:
-    """Return the lowest clear height for all paths, in whole metres or slightly above, within the flight limit; None
-    where there is none.
-    """
+    """Return the lowest clear height for all paths within the flight limit, in whole metres or slightly above; None without one."""
     most_m = settings.FLIGHT_RULES.max_agl_m
     highest_m = max(most_m, *(way.most_agl_m(_levels(way, own)) for way in ways))
     lowest_m = max(own.height_m, *(way.lowest_safe_m() for way in ways))

@@ -85,8 +85,7 @@ def _in_the_air(
 
     First those that are as planned. Then those in the air of which that is unknown: held, commanded to return or to another speed since,
     failed, aborted, or with a start that was sent and not confirmed. Then UAVs in the air without such a flight, for example manually
-    flown,
-    by name with their last position.
+    flown, by name with their last position.
     """
     since = now - timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
     is_real = uav.twin_of_id is None  # twins and other UAVs do not obstruct each other

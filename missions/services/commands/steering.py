@@ -47,9 +47,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
 
     parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off for a take-off, `out_of_slot` for a
     start although others in the air are near its route, `height_m` above the take-off for a return height, with `then_return` where it is
-    to
-    return at that. For a return `wait_s`, which it holds before, `height_m`, which is set before, or `along_route`.
-    Raises Refused.
+    to return at that. For a return `wait_s`, which it holds before, `height_m`, which is set before, or `along_route`. Raises Refused.
     """
     if kind not in BY_HAND:
         raise refuse("not_by_hand", _("Missions are sent and taken back with the whole mission."))

@@ -79,9 +79,7 @@ _NOTE_USE = """
 
 
 def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) -> None:
-    """Record when a UAV last authenticated with this token, to the minute, as it polls every few seconds. The first
-    use ends earlier tokens.
-    """
+    """Record when a UAV last authenticated with this token, to the minute, as it polls often. The first use ends earlier tokens."""
     now = timezone.now()
     if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
         prepared_rows(_NOTE_USE, [now, credential_id])

@@ -73,9 +73,7 @@ class ManualEditCheck:
 
 
 def check_manual_edit(*, mission: Mission, uav: int, points: Sequence[EditedPoint]) -> ManualEditCheck:
-    """Return the faults of these points and the figures of flying them, and store nothing. Raises InvalidRequest if
-    the UAV has no route.
-    """
+    """Return faults of these points and figures of flying them, storing nothing. Raises InvalidRequest if the UAV has no route."""
     ground = manual_edit_context()
     route = kept_route(mission, uav, ground.dataset_version)
     if route is None:

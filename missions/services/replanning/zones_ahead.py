@@ -31,8 +31,7 @@ def suggest_for_zones() -> list[ReplanOffer]:
     """Suggest offers for flying missions when the map data change: once for each zone that crosses a remaining route.
 
     The cache records each checked mission after its check: if a worker is killed or runs out of time, the next one does the rest. Without
-    the
-    cache missions are checked again, but suggested only once.
+    the cache missions are checked again, but suggested only once.
     """
     revision, now = ground_revision(), timezone.now()
     flying = Mission.objects.filter(state=MissionState.ACTIVE, deleted_at=None).exclude(ground_revision=revision)
