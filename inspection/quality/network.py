@@ -143,9 +143,7 @@ class SupportNetwork:
         return side
 
     def _forest(self) -> tuple[IntArray, IntArray, IntArray]:
-        """Return nodes in breadth-first order from a root above all components, each node's parent, and the pair that
-        leads to it (or -1).
-        """
+        """Return nodes in breadth-first order from a root above all components, their parents, and the pairs to them (or -1)."""
         pair = self.pairs[0]
         root = self.node_count
         _, first = np.unique(self.component, return_index=True)

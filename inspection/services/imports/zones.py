@@ -158,9 +158,7 @@ def _origin(content: ZoneFile, provenance: Provenance | None, *, is_synthetic: b
 
 
 def _seen_again(data_import: DataImport, origin: dict[str, Any], counts: dict[str, Any]) -> DataImport:
-    """Update an import when its file is imported again: new facts of its source are stored. The row keeps its counts, the caller gets this
-    run's.
-    """
+    """Store new facts of the source of a file that is imported again. The row keeps its counts, the caller gets this run's."""
     for name, value in origin.items():
         setattr(data_import, name, value)
     data_import.save(update_fields=list(origin))

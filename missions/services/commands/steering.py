@@ -125,9 +125,7 @@ def _of_return(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
 
 
 def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
-    """Return a return height's parameters. Raises Refused, also if the autopilot's RTL behaviour was never read: its
-    parameters are unknown.
-    """
+    """Return a return height's parameters. Raises Refused, also if the autopilot's RTL parameters were never read."""
     values = {"uav": uav.name}
     if uav.link == LinkKind.HTTP:
         raise refuse("not_by_companion", _("The return height of %(uav)s is set by its companion, not from here.") % values)
