@@ -3610,10 +3610,7 @@ export interface components {
             geometry?: components["schemas"]["PointRequest"];
             properties?: components["schemas"]["UavPropertiesRequest"];
         };
-        /**
-         * @description A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
-         *     too.
-         */
+        /** @description A UAV as one object: its properties and `position`, by default its base's. A GeoJSON Feature is accepted too. */
         PatchedUavFlatRequest: {
             name?: string;
             /** Format: int64 */
@@ -6727,10 +6724,7 @@ export interface components {
          * @enum {string}
          */
         UavFigure: "max_range_m" | "cruise_speed_mps" | "battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps" | "rotor_disk_m2" | "hover_power_w" | "sensors";
-        /**
-         * @description A UAV as one object: its properties and `position`; a new one without it takes its base's position. A GeoJSON Feature is accepted
-         *     too.
-         */
+        /** @description A UAV as one object: its properties and `position`, by default its base's. A GeoJSON Feature is accepted too. */
         UavFlatRequest: {
             name: string;
             /** Format: int64 */
