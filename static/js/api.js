@@ -6,7 +6,7 @@ import { t } from "./text.js";
 /** @import { Job } from "./api_types.d.ts" */
 
 /**
- * An answer of the server. The caller says of which shape its data are, by an annotation `Answer<Mission>`.
+ * An answer of the server. The caller states the shape of its data by an annotation `Answer<Mission>`.
  *
  * @template [Data=unknown]
  * @typedef {{ data: Data, status: number, etag: string | null }} Answer
@@ -26,7 +26,7 @@ export class ApiError extends Error {
     this.status = status;
     this.code = code;
     this.details = details;
-    this.retryAfter_s = retryAfter_s; // where the server says when it may be asked again
+    this.retryAfter_s = retryAfter_s; // if the server sends Retry-After
   }
 
   get isAway() {
@@ -57,7 +57,10 @@ export function isSignedOut(status, code, message) {
   return status === 401 || (status === 403 && (code === "not_authenticated" || (message ?? "").startsWith("CSRF")));
 }
 
-/** The door, and from there back to where the page is now. @param {{ pathname: string, search?: string, hash?: string }} [place] */
+/**
+ * The address of the login page, which leads back to the present page.
+ * @param {{ pathname: string, search?: string, hash?: string }} [place]
+ */
 export function signInAddress({ pathname, search = "", hash = "" } = location) {
   return `/sign-in?next=${encodeURIComponent(pathname + search + hash)}`;
 }
@@ -98,7 +101,7 @@ async function problemOf(response) {
   try {
     error = (await response.json()).error ?? {};
   } catch {
-    /* not our server's answer: the status says what can be said */
+    /* not our server's answer: only the status is known */
   }
   const detail = status === 400 ? firstDetail(error.details) : "";
   /** @type {Record<number, string>} */

@@ -1,4 +1,4 @@
-/** SI and ISO times become text here and nowhere else, in the units, the time zone and the language of whoever reads.
+/** SI and ISO times become text here and nowhere else, in the reader's units, time zone and language.
  *
  * A no-break space stands before each unit, minus is −. What is stored and sent stays metric and UTC.
  */
@@ -141,8 +141,9 @@ export function voltageText(voltage_kv) {
 }
 
 /**
- * People read latitude first; everything else in the program has longitude first. The decimal sign is a point in every language: it is
- * typed and copied.
+ * Latitude comes first for readers; all code has longitude first. The decimal separator is a point in every language,
+ * because the text is typed and copied.
+ * 
  *
  * @param {readonly number[]} position longitude, latitude
  */
@@ -151,7 +152,7 @@ export function coordinateText([longitude, latitude]) {
 }
 
 /**
- * "56.12345° N, 10.12345° E", to 1 m: to be read over a radio and pasted into a map program. Alerts say it alike
+ * "56.12345° N, 10.12345° E", to 1 m: to be read over a radio and pasted into a map program. Alerts use the same format
  * (telemetry/alerting/detectors/down.py).
  *
  * @param {readonly number[]} position longitude, latitude
@@ -252,8 +253,8 @@ export function typedMoment(iso) {
 }
 
 /**
- * Returns the moment that a field for date and time says, by the reader's clock, null where it says none. An hour that a change of
- * the clocks leaves out is the one after it.
+ * Returns the moment in a field for date and time, by the reader's clock; null where it is empty. An hour that a change of the clocks
+ * skips becomes the one after it.
  *
  * @param {string} typed
  */

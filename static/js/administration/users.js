@@ -1,4 +1,4 @@
-/** Users: their role, whether they may sign in, their sessions and tokens. Each act says what it did and can be taken back. */
+/** Users: their role, whether they may sign in, their sessions and tokens. Each act reports what it did and can be undone. */
 
 import { ApiError, patch, post, remove } from "../api.js";
 import { h, icon } from "../dom.js";
@@ -119,7 +119,7 @@ class Users {
     ];
   }
 
-  /** Keeps somebody out, or lets them in again. @param {User} user @returns {MenuItem} */
+  /** Deny a user to sign in, or allow it again. @param {User} user @returns {MenuItem} */
   #accessAct(user) {
     const { username: name, is_active } = user;
     const words = is_active ? t("{name} can no longer sign in.", { name }) : t("{name} may sign in.", { name });
@@ -198,7 +198,7 @@ class Users {
   /**
    * @param {string} path
    * @param {User} without as they are afterwards
-   * @param {{ done: string, title: string }} words title: of what is said where it fails
+   * @param {{ done: string, title: string }} words title: of the message on failure
    */
   async #take(path, without, { done, title }) {
     try {

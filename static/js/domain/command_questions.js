@@ -1,4 +1,4 @@
-/** What each command to a UAV does, in the words in which it is asked for. */
+/** Questions that confirm each command to a UAV, with its effect. */
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
@@ -46,19 +46,19 @@ import {
  * @typedef {object} Question
  * @property {string} title
  * @property {(string | null | false | undefined)[]} lines
- * @property {string} act the words of the button
- * @property {string} [keep] the words of the way out
+ * @property {string} act text of the button
+ * @property {string} [keep] text of the cancel button
  * @property {string} [hint] the tooltip of the act
  * @property {QuestionField | null} [field]
  * @property {QuestionChoices | null} [choices]
- * @property {{ name: string, words: string }[]} [checks] what is done with it unless it is unticked
+ * @property {{ name: string, words: string }[]} [checks] done with the act unless unticked
  * @property {Safer | null} [safer]
- * @property {Promise<Pick<Question, "lines" | "act" | "safer">>} [later] what is asked once more is known; until then it is asked as it is
- * @property {Promise<string>} [overtaken] why there is nothing more to ask, once that is so: the question then says it and can only be closed
+ * @property {Promise<Pick<Question, "lines" | "act" | "safer">>} [later] update of the question once more is known
+ * @property {Promise<string>} [overtaken] the reason once the question is obsolete; it can then only be closed
  * @property {boolean} [isDanger]
- * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
+ * @property {boolean} [isBack] whether the act can be undone: then it has the focus, else the cancel button
  * @property {string | null} [image] name of an icon
- * @property {HTMLElement | null} [opener] the button out of which the question grows
+ * @property {HTMLElement | null} [opener] the button that opens the question
  */
 
 export const LATE = t("The command expires if it is not delivered in time.");
@@ -69,7 +69,7 @@ const ABORT_DOES = t(
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
- * A UAV of whose flight is asked, as far as the command needs it. `returns`: from where it is now; `planned`: from all along its route.
+ * The UAV of a question, with the facts that the command needs. `returns`: from where it is now; `planned`: from all along its route.
  * `landing`: what lies below it; `hold_s`: how long it can stay where it is.
  *
  * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: PresentReturn | null,
@@ -178,10 +178,10 @@ const ASKED = {
 };
 
 /**
- * What is asked where a start is refused because others in the air come near its route.
+ * The question after a start was refused because others in the air come near its route.
  *
  * @param {string} name of the UAV
- * @param {string} why in the server's words
+ * @param {string} why text of the server
  * @returns {Omit<Question, "opener">}
  */
 export const outOfSlotQuestion = (name, why) => ({

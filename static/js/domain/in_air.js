@@ -1,4 +1,4 @@
-/** Whether a UAV is in the air, by what it told and by what its link knows: true, false, or null where nobody has said. */
+/** Whether a UAV is in the air by its reports and its link: true, false, or null where neither states it. */
 
 import { isOnItsWay } from "./flying.js";
 
@@ -7,7 +7,7 @@ import { isOnItsWay } from "./flying.js";
 const RECEIVED_WITHIN_MS = 3_600_000;
 
 /**
- * A flight that was told to be over is, though no report has said so.
+ * Whether a UAV is in the air. A flight that its link knows to be over is over, even without such a report.
  *
  * @param {{ measured?: Pick<Measured, "is_in_air"> | null, link?: Pick<LiveLink, "is_in_air"> | null }} uav
  */
@@ -19,8 +19,8 @@ const wasReceived = ({ link }, now_ms) =>
   link?.last_message_at ? now_ms - Date.parse(link.last_message_at) < RECEIVED_WITHIN_MS : false;
 
 /**
- * UAVs that can be told something: on a mission that is on its way and not known to stand on the ground, or still in the air after it, as
- * far as they were heard within the hour.
+ * UAVs that can receive commands: on a mission in progress unless known to stand on the ground, or still in the air after it if a message
+ * arrived within the hour.
  *
  * @param {{ uavs: LiveUav[], missions: LiveMission[], now_ms: number }} live
  */

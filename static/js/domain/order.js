@@ -8,7 +8,10 @@ const CALM = 3;
 
 /** @param {Pick<Alert, "closed_at">} alert */
 export const isOpenAlert = ({ closed_at }) => closed_at === null;
-/** A critical one that has ended stays until somebody acknowledges it. @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
+/**
+ * Whether a critical alert has ended and is not acknowledged; it stays until then.
+ * @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert
+ */
 export const isEndedUnseen = (alert) =>
   !isOpenAlert(alert) && alert.acknowledged_at === null && alert.level === "critical";
 /** @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
@@ -22,7 +25,7 @@ export function downAt({ code, details }) {
 }
 
 /**
- * What somebody has to see: open ones, and critical ones that ended; of one cause the newest.
+ * Alerts that a user must see: open ones, and unacknowledged critical ones that ended; only the newest of each cause.
  *
  * @template {Pick<Alert, "uav" | "code" | "subject" | "opened_at" | "closed_at" | "acknowledged_at" | "level">} Shown
  * @param {Shown[]} alerts
@@ -68,8 +71,7 @@ export function inOrder(uavs, missions) {
 }
 
 /**
- * Unanswered ones of the highest level first, the newest first; critical ones that have ended; then those somebody knows of, then what
- * is over.
+ * Alerts in order: open unacknowledged ones by level, newest first; critical ones that have ended; acknowledged ones; closed ones.
  *
  * @param {Alert[]} alerts
  */
@@ -100,7 +102,7 @@ function sorted(items, keysOf) {
 }
 
 /**
- * Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse.
+ * Alerts to notify since the last poll: each cause once, and again when its level has risen.
  *
  * @param {Alert[]} alerts
  * @param {Map<number, AlertLevel>} reported level by id

@@ -1,4 +1,4 @@
-/** How a UAV is connected: by which door, when it was heard last, what it says of itself. Asked again while it is looked at. */
+/** How a UAV is connected: its link, its last message, its own report. Polled while it is shown. */
 
 import { get } from "../api.js";
 import { h, term } from "../dom.js";
@@ -13,7 +13,7 @@ const ASKED_EVERY_MS = 5_000;
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 
 /**
- * One sentence, and whether it is heard at present.
+ * One sentence, and whether messages arrive at present.
  *
  * @param {Pick<UavConnection, "last_message_at" | "last_message_link" | "server_time">} connection
  */
@@ -93,6 +93,6 @@ export async function mountConnection(place, uav) {
   await draw();
   const clock = setInterval(() => {
     if (!place.isConnected) clearInterval(clock);
-    else if (document.visibilityState === "visible") draw().catch(() => {}); // what was heard last stays, and grows old
+    else if (document.visibilityState === "visible") draw().catch(() => {}); // the last message stays, with its age
   }, ASKED_EVERY_MS);
 }

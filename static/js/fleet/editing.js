@@ -47,7 +47,7 @@ const newKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 /** @param {{ revision: number }} row @returns {Options} */
 export const ifUnchanged = (row) => ({ headers: { "If-Match": `"${row.revision}"` } });
 
-/** What a new row does not say is left to the server. @param {Body} body */
+/** The stated values of a new row; the server fills in the rest. @param {Body} body */
 const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
 
 export class Editing {
@@ -196,7 +196,7 @@ export class Editing {
   /** @param {Edit} edit @param {ApiError} error @param {KeptEdit} kept */
   #failed(edit, error, kept) {
     edit.isSaving = false;
-    if (!error.isAway) edit.key = newKey(); // an answer that was lost is asked for again under the same key
+    if (!error.isAway) edit.key = newKey(); // after a lost answer the request is repeated with the same key
     if (this.#edit !== edit)
       toast(t("Not saved: {message}", { message: error.message }), {
         label: t("Look"),
@@ -211,7 +211,7 @@ export class Editing {
       );
   }
 
-  /** Asks what becomes of an edit after somebody else's. @param {Edit} edit @param {Row} now @param {string} who */
+  /** Merge an edit with another user's. @param {Edit} edit @param {Row} now @param {string} who */
   #settle(edit, now, who) {
     const { tab, form, began } = edit;
     form.ask(

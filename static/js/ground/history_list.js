@@ -57,7 +57,7 @@ const QUIET = new Set(["is_edited", "layer", "osm_type", "osm_id", "source_key",
 /** @param {string} name */
 export const factName = (name) => NAMES[name] ?? name;
 
-/** A fact as people say it. @param {string} name @param {any} value as the history keeps it @returns {string} */
+/** A fact as text. @param {string} name @param {any} value as the history keeps it @returns {string} */
 export function factText(name, value) {
   if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length))
     return t("not stated");
@@ -78,7 +78,7 @@ const countPoints = (coordinates) =>
     ? 1
     : /** @type {unknown[][]} */ (coordinates).reduce((sum, part) => sum + countPoints(part), 0);
 
-/** Lines "Ref: 18 → 18a" of what differs. @param {Facts | null} before @param {Facts | null} after */
+/** Lines "Ref: 18 → 18a" of the differences. @param {Facts | null} before @param {Facts | null} after */
 export function differences(before, after) {
   if (!before || !after) return [];
   return Object.keys(before)
@@ -96,7 +96,7 @@ function momentText(iso) {
 }
 
 /**
- * entries as the API gives them; `revert(entry)` where somebody may, `ring(geometries)` shows on the map where it was.
+ * entries as the API gives them; `revert(entry)` where the user may, `ring(geometries)` shows on the map where it was.
  *
  * @param {GroundHistoryEntry[]} entries
  * @param {{ revert?: ((entry: GroundHistoryEntry) => void) | null, ring?: (geometries?: Geometry[]) => void }} [options]

@@ -1,4 +1,4 @@
-/** "Bring in data": choosing and dropping files, and sending them; what was cut short goes on. */
+/** "Bring in data": choosing, dropping and sending files; an interrupted upload is resumed. */
 
 import { ApiError, post } from "../api.js";
 import { byId, h, keyedList } from "../dom.js";
@@ -218,7 +218,10 @@ async function headOf(file) {
   return new Uint8Array(await file.slice(0, HEAD_BYTES).arrayBuffer());
 }
 
-/** A file may be dropped anywhere on the page; the drop place says so meanwhile. @param {HTMLElement} drop @param {(files: File[]) => void} take */
+/**
+ * Accept a file dropped anywhere on the page; the drop area is highlighted meanwhile.
+ * @param {HTMLElement} drop @param {(files: File[]) => void} take
+ */
 function listenToDrops(drop, take) {
   const hasFiles = (/** @type {DragEvent} */ event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
   let depth = 0;
@@ -248,7 +251,7 @@ function listenToDrops(drop, take) {
   });
 }
 
-/** Said instead of the tools where the user may not bring data in. */
+/** The notice in place of the tools where the user may not import data. */
 export function notAllowed() {
   return h(
     "div",

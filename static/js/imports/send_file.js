@@ -10,11 +10,11 @@ const MAX_WAIT_S = 15;
 const WORTH_ANOTHER_TRY = new Set([0, 408, 429, 500, 502, 503, 504]);
 
 /**
- * Sends a file, and returns the upload's id.
+ * Send a file; returns the upload's id.
  *
  * @param {File} file
- * @param {SendHints & { uploadId?: string | null, onBegun?: (id: string) => void }} options uploadId: of an upload that was begun before
- * @throws {ApiError} for what another try does not mend; AbortError where `signal` says so
+ * @param {SendHints & { uploadId?: string | null, onBegun?: (id: string) => void }} options uploadId: of an upload to resume
+ * @throws {ApiError} for errors that a retry cannot solve; AbortError if `signal` is aborted
  */
 export async function sendFile(file, { uploadId = null, notify, nudge = () => {}, onBegun = () => {}, signal }) {
   /** @type {Upload | null} */
@@ -37,7 +37,7 @@ export async function sendFile(file, { uploadId = null, notify, nudge = () => {}
       if (!(error instanceof ApiError)) throw error;
       uploadId = upload?.id ?? uploadId;
       upload = null;
-      if (error.code === "gap") continue; // asked again how much is there
+      if (error.code === "gap") continue; // the received size is requested again
       if (!WORTH_ANOTHER_TRY.has(error.status)) throw error;
       await pause(wait_s, { notify, nudge, signal });
       wait_s = Math.min(wait_s * 2, MAX_WAIT_S);
@@ -70,7 +70,7 @@ async function begin(file, uploadId, signal) {
       const { data } = /** @type {Answer<Upload>} */ (await get(`/uploads/${uploadId}`, { signal }));
       if (data.size_bytes === file.size) return data;
     } catch (error) {
-      if (!(error instanceof ApiError) || error.status !== 404) throw error; // 404: it was forgotten after a day
+      if (!(error instanceof ApiError) || error.status !== 404) throw error; // 404: deleted after a day
     }
   }
   const body = { file_name: file.name, size_bytes: file.size };

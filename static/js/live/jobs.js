@@ -1,4 +1,4 @@
-/** Following a job as the server tells it, over its websocket; by asking again and again where there is none. */
+/** Following a job over its websocket; by polling where there is none. */
 
 import { ApiError, follow } from "../api.js";
 import { t } from "../text.js";
@@ -7,7 +7,7 @@ import { t } from "../text.js";
 
 /** @typedef {{ onProgress?: (job: Job) => void, signal?: AbortSignal }} Following */
 
-const SILENT_MS = 45_000; // the server says now and then that it is still there
+const SILENT_MS = 45_000; // the server sends keepalives
 
 /** @param {string} jobId */
 function socketAddress(jobId) {
@@ -64,7 +64,7 @@ function listen(jobId, { onProgress, signal, Socket }) {
 }
 
 /**
- * Follows a job until it ends, like follow in api.js; what the socket cannot tell is asked for.
+ * Follow a job until it ends, like follow in api.js; requests what the socket cannot deliver.
  *
  * @param {string} jobId
  * @param {Following & { Socket?: typeof WebSocket }} [options]

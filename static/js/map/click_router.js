@@ -22,7 +22,7 @@ const KINDS = {
 };
 
 /**
- * Of what lies under the pointer, the first in the order of picking: { kind, layer, id, properties, geometry } or null.
+ * The first of the features under the pointer, in the order of picking: { kind, layer, id, properties, geometry } or null.
  *
  * @param {PickedFeature[]} features
  * @param {string[] | null} [kinds]
@@ -48,7 +48,7 @@ export function firstInOrder(features, kinds = null) {
 }
 
 /**
- * All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge.
+ * All loaded pieces of a thing: a tile holds a line only up to its own edge.
  *
  * @param {MapLibreMap} map
  * @param {MapThing} thing
@@ -97,7 +97,7 @@ export function routeClicks(map, on) {
       on.hover(thing, event.point, [event.lngLat.lng, event.lngLat.lat]);
     });
   });
-  // After a tap the browser may tell where the resting mouse is: outside the map. What the tap shows stays.
+  // After a tap the browser may report the position of the resting mouse, outside the map. The tapped thing stays shown.
   let isTouched = false;
   /** @param {PointerEvent} event */
   const notePointer = (event) => {

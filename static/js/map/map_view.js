@@ -86,7 +86,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     },
     /** Fits [west, south, east, north] into what is visible of the map. */
     fit(box, { animate = true } = {}) {
-      keepsAddress = true; // from here on the view is one that somebody may come back to
+      keepsAddress = true; // from here on the user may return to the view
       if (!box) return;
       const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
       fitTo(box, animate && !calm ? 350 : 0);
@@ -104,7 +104,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
  */
 function keepFitted(map, container) {
   /** @type {Box | null} */
-  let fitted = null; // the box that the map was brought to, until somebody moves it
+  let fitted = null; // the box that the map was fitted to, until the user moves the map
   let isFitting = false;
   let footOfFit = 0;
   let size = sizeOf(container);
@@ -147,10 +147,9 @@ function keepFitted(map, container) {
 }
 
 /**
- * What goes wrong in a map is told in the console, once in our words: every map needs this, or MapLibre tells it there as it is.
- *
- * A base map that cannot be reached is no fault of ours, the map is complete without it. Nor are tiles that were asked for when the network
- * went away, or the page: the page says so itself.
+ * Show faults of a map in the console, once and in our words: every map needs this, or MapLibre logs them as they are. An unreachable
+ * base map is not logged, because the map is complete without it. Nor are tiles whose request ended with the network or the page: the
+ * page reports that itself.
  *
  * @param {MapLibreMap} map
  */

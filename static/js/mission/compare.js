@@ -1,4 +1,4 @@
-/** Two plans of one mission against each other: what each UAV flies more or less, and which targets changed hands. */
+/** Comparison of two plans of one mission: the difference for each UAV, and targets that moved to another UAV. */
 
 import { distance_m } from "../domain/geodesy.js";
 import { profileOf } from "../domain/route_profile.js";
@@ -8,7 +8,7 @@ import { keyOf, wishesOf } from "./selection.js";
 /** @import { PickedTarget, ShortPlan, ShortRoute, ShownPlan } from "./types.d.ts" */
 
 /**
- * A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer.
+ * A plan on the page in the short form that the server stores of the previous one: see LastPlanSerializer.
  *
  * @param {Pick<ShownPlan, "result" | "targets">} plan
  * @returns {ShortPlan}
@@ -75,8 +75,7 @@ const PRIORITIES = ["high", "normal", "low"];
 const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
 
 /**
- * Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then
- * longer.
+ * Whether a plan is worse than another of the same selection on the same map data: fewer targets reached, then longer.
  *
  * @param {ShownPlan} plan
  * @param {ShownPlan} than

@@ -23,7 +23,7 @@ const MAX_WAYS = 3; // that a row names for each UAV
 const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(to) });
 
 /**
- * The server's answer with moments as ms; routes: those that were asked about, with name, letter and waypoints.
+ * The server's answer with moments as ms; routes: those of the request, with name, letter and waypoints.
  *
  * @param {LegalWindows} answer
  * @param {Pick<ShownRoute, "name" | "letter" | "waypoints">[]} [routes]
@@ -105,7 +105,7 @@ export const marginText = ({ zones, margin_s: time_s, height_margin_m: height_m 
   zones.length ? marginWords({ time_s, height_m }) : "";
 
 /**
- * What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }.
+ * The text of the bar, and whether the chosen departure is a legal one: { sentence, departure }.
  *
  * @param {LegalTimes} times
  * @param {string | null} departs_at
@@ -196,7 +196,7 @@ export function mayDepartBetter({ gap_of, unassigned = [] }, targets) {
   );
 }
 
-/** The answer about a better departure in words: { words, departs_at }. @param {LaterDeparture} answer */
+/** The answer about a better departure as text: { words, departs_at }. @param {LaterDeparture} answer */
 export function betterWords({ departs_at, looked_until, before, then }) {
   if (departs_at === null || then === null) {
     const words =

@@ -33,7 +33,7 @@ export function areContrary(a, b) {
   );
 }
 
-/** Whether a lock to this name says which UAV is meant. @param {MissionSelection} selection @param {string} uav */
+/** Whether a lock to this name identifies one UAV. @param {MissionSelection} selection @param {string} uav */
 const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => name === uav);
 
 /**
@@ -135,7 +135,7 @@ export function wishedOrders(orders, locks) {
 }
 
 /**
- * Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands.
+ * The selection after targets are given to a UAV: ties to another UAV are removed, because the later wish counts.
  *
  * @param {MissionSelection} selection
  * @param {string[]} keys
@@ -162,7 +162,7 @@ const withLock = (locks, lock) => [
 ];
 
 /**
- * Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else.
+ * Keys of the targets that a UAV may fly: still picked, and not tied to another UAV.
  *
  * @param {MissionSelection} selection
  * @param {string} uav

@@ -14,7 +14,7 @@ import { durationText, exactHeightText, numberText } from "../units.js";
 /** @typedef {Partial<LostLink> | null | undefined} Wish */
 /** @typedef {"go-on" | "unplanned" | "unknown" | "waiting" | "home" | "lost"} CheckState */
 /**
- * Waypoints of one route that do not return for the same reason, with the worst figures.
+ * Waypoints of one route whose returns fail for the same reason, with the worst figures.
  *
  * @typedef {object} FailureGroup
  * @property {string} key
@@ -198,8 +198,7 @@ export const returnPointText = (return_point) => (return_point === 0 ? t("its st
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
 
 /**
- * What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve
- * kept" }.
+ * The text of a group of failures: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }.
  *
  * @param {Pick<FailureGroup, "waypoints" | "return_point" | "trouble" | "zone" | "missing_wh" | "over_m">} group
  */
@@ -231,7 +230,7 @@ export function failureText({ waypoints, return_point, trouble, zone, missing_wh
 /** @param {ShownPlan} plan */
 const flownOf = (plan) => plan.result.routes.filter(({ geometry }) => geometry);
 
-/** UAVs whose energy nobody counts: their return may be too far all the same. @param {ShownPlan} plan */
+/** UAVs without an energy model: their return may still be too long. @param {ShownPlan} plan */
 export const uncountedOf = (plan) =>
   flownOf(plan)
     .filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined)

@@ -1,4 +1,4 @@
-/** UAVs of a mission: taken from the fleet, told apart by name, moved, changed for it. Values in, values out. */
+/** UAVs of a mission: taken from the fleet, distinguished by name, moved, changed for it. Values in, values out. */
 
 import { OWN_FIGURES } from "../uav_figures.js";
 
@@ -25,7 +25,7 @@ export function uavOf(feature) {
   } = feature.properties;
   const figures = OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null]);
   /** @type {FleetUav["usual"]} */
-  const usual = Object.fromEntries(figures); // a mission may say otherwise
+  const usual = Object.fromEntries(figures); // a mission may override it
   return {
     id: feature.id,
     name,
@@ -72,7 +72,7 @@ export function withUav(selection, uav) {
 }
 
 /**
- * UAVs are told apart by name where a target is tied or locked to one: not where two have the same.
+ * UAVs by name, for ties and locks; without names that two of them share.
  *
  * @param {Pick<MissionSelection, "uavs">} selection
  */

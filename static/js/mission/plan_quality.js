@@ -1,4 +1,4 @@
-/** How good a plan is, what its locks cost, and the best of a search so far: in words. Values in, values out. */
+/** Texts on the quality of a plan, the cost of its locks, and the best plan of a running search. Values in, values out. */
 
 import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
@@ -8,16 +8,13 @@ import { durationText, energyText, lengthText, numberText } from "../units.js";
 
 /** @param {number} share */
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
-const MIN_SHARE = 0.0005; // less is not told from nothing
+const MIN_SHARE = 0.0005; // smaller values are indistinguishable from 0
 
 const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
 /**
- * How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
- *
- * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the
- * search has left some
- * out, a figure would be taken for more than it is.
+ * Quality of a plan: { isProven, words, detail }; null where it is unknown, or no UAV flies. A bound holds for the plans that reach as
+ * many targets. No bound exists on which targets can be reached together: where the search has dropped some, a figure would mislead.
  *
  * @param {Plan} result
  */
@@ -120,7 +117,7 @@ const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLoc
  */
 export function wishWordsOf({ objective, wish }) {
   if (!wish) return "";
-  const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
+  const isTotal = objective !== "makespan"; // the cost in flying time or energy is not shown: it is stored in metres
   const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
   const leftOut =
     wish.left_out > 0

@@ -1,7 +1,4 @@
-/**
- * When routes reach their targets, what is left of their batteries, and how they are kept apart: in words. Values in,
- * values out.
- */
+/** When routes reach their targets, the battery left, and their separation, as text. Values in, values out. */
 
 import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
@@ -10,7 +7,7 @@ import { timeAt } from "./flight_options.js";
 /** @import { Plan, Route, Separation } from "../api_types.d.ts" */
 /** @import { ShownPlan } from "./types.d.ts" */
 
-const SHORT_S = 120; // from here on a gap is told in minutes
+const SHORT_S = 120; // shorter gaps are shown in seconds
 
 /** @typedef {{ index: number, kind: "base" | "charging", stay_s: number, charged_wh: number | null }} Stay */
 
@@ -32,7 +29,7 @@ export function visitsOf({ waypoints, arrival_s, battery_left_percent }) {
   return visits;
 }
 
-/** key of a target → when it is reached, in words; empty for plans without times. @param {ShownPlan | null} plan */
+/** Map of a target's key → text of its arrival; empty for plans without times. @param {ShownPlan | null} plan */
 export function arrivalsOf(plan) {
   /** @type {Map<string, string>} */
   const arrivals = new Map();
@@ -120,9 +117,8 @@ export function batteryOf({ battery_percent, energy_wh }) {
 }
 
 /**
- * How the UAVs are kept apart: { isFault, words }; null where the plan does not say or one flies alone.
- *
- * separation: see SeparationSerializer; layers are those of the routes that are flown.
+ * Separation of the UAVs: { isFault, words }; null where the plan does not state it or only one flies. separation: see
+ * SeparationSerializer; layers are those of the flown routes.
  *
  * @param {Pick<Plan, "separation" | "routes">} plan
  */

@@ -67,7 +67,7 @@ export function withPresentFigures(selection, changes) {
 }
 
 /**
- * The same selection with the figures of the fleet in place of those that were said for the mission alone.
+ * The selection with the fleet's figures in place of those set for the mission.
  *
  * @param {MissionSelection} selection
  * @param {Pick<UavChange, "id" | "said">[]} changes
@@ -153,7 +153,7 @@ function figureWords({ name, kept, now }) {
 }
 
 /**
- * With as many decimals as it takes to tell one from the other.
+ * Two numbers with as many decimals as distinguish them.
  *
  * @param {number | null} kept
  * @param {number | null} now

@@ -1,4 +1,4 @@
-/** The missions that are listed: what is asked for, the pages of the answer, and which of them are chosen. */
+/** The list of missions: its query, the pages of the answer, and the chosen missions. */
 
 import { ApiError, get } from "../api.js";
 import { createStore } from "../store.js";

@@ -114,12 +114,12 @@ mountCloseMission(store, page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
-/** On the page of one mission that one, else the one of the chosen UAV, else the first. @param {Readonly<MonitorState>} state */
+/** The mission of its own page, else that of the chosen UAV, else the first. @param {Readonly<MonitorState>} state */
 const missionSeen = ({ uavs, chosen, missions }) =>
   page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
 store.listen(["missions"], (state) => scene.show(missionSeen(state) !== null));
 
-/** The 3D view is told what the page is told. @param {Stage} stage */
+/** Pass the feed's changes to the 3D view. @param {Stage} stage */
 function followFeed(stage) {
   const { source } = stage;
   if (source.kind !== "live") return () => {};
@@ -191,7 +191,7 @@ startChrome({
   ],
 });
 
-// What comes in is drawn together, once a frame at most; what nobody looks at, by and by.
+// Changes are drawn together, at most once a frame; on a hidden page after a delay.
 
 const HIDDEN_MS = 500;
 /** @type {Set<keyof Live> | null} */
@@ -240,7 +240,7 @@ async function load() {
   try {
     store.update({ ground: /** @type {Answer<Ground>} */ (await get("/ground")).data });
   } catch (error) {
-    if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
+    if (!(error instanceof ApiError)) throw error; // the map itself reports that it cannot be read
   }
   const loading = byId("map-loading");
   store.listen(["isWhole", "missions", "details"], (state) => {

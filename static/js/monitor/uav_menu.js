@@ -12,7 +12,7 @@ import { t } from "../text.js";
 /** @import { Flyer } from "../domain/flying.js" */
 /** @import { MenuItem } from "../page/chrome.js" */
 
-/** @typedef {{ mission: Mission, commands: Command[], connection: UavConnection | null }} Known what the server says of a UAV's mission */
+/** @typedef {{ mission: Mission, commands: Command[], connection: UavConnection | null }} Known the server's state of a UAV's mission */
 /** @typedef {{ kind: AskedKind | "send", icon: string, label: string, reason: string, flight: number }} Entry */
 
 /** @type {[AskedKind, string][]} */
@@ -24,11 +24,11 @@ const KIND_ICONS = [
 ];
 
 /**
- * What can be asked of a UAV beside the buttons of the command bar.
+ * Entries for a UAV beside the buttons of the command bar.
  *
  * @param {Known} known
  * @param {Flyer} flyer
- * @param {string} silent why it can be told nothing in the air; "" where it can
+ * @param {string} silent why it cannot receive commands in the air; "" where it can
  * @returns {Entry[]}
  */
 export function menuEntries({ mission, commands, connection }, flyer, silent) {
@@ -67,7 +67,7 @@ async function knownOf(mission, uav) {
   };
 }
 
-/** To one UAV, once it is asked. @param {Mission} mission @param {Flyer} flyer @param {number} flight @param {HTMLElement} opener */
+/** Send to one UAV after confirmation. @param {Mission} mission @param {Flyer} flyer @param {number} flight @param {HTMLElement} opener */
 async function send(mission, { name, place }, flight, opener) {
   const asked = await confirmAct({
     title:

@@ -1,4 +1,4 @@
-/** The bell of every page: how many alerts nobody has acknowledged, also in the title of the browser's tab. */
+/** The bell of every page: the count of unacknowledged alerts, also in the title of the browser's tab. */
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
@@ -21,7 +21,7 @@ function markTitle() {
   if (document.title !== title) document.title = title;
 }
 
-/** @param {{ all: number, critical: number }} counts alerts that nobody has acknowledged */
+/** @param {{ all: number, critical: number }} counts unacknowledged alerts */
 export function showAlertCount({ all, critical }) {
   const [bell, badge] = [byId("open-alerts"), byId("alert-badge")];
   badge.hidden = all === 0;
@@ -40,11 +40,11 @@ async function ask() {
     const { critical, warning, advisory } = /** @type {Answer<UnansweredAlerts>} */ (await get("/alerts/counts")).data;
     if (!isFed) showAlertCount({ all: critical + warning + advisory, critical });
   } catch (error) {
-    if (!(error instanceof ApiError)) throw error; // the server is away: the number stays as it was
+    if (!(error instanceof ApiError)) throw error; // the server is unavailable: keep the number
   }
 }
 
-/** The page has a feed of its own: it tells the number, and opens the alerts where they are. @param {() => void} open */
+/** Use the page's own feed: it updates the number, and the bell opens the alerts on the page. @param {() => void} open */
 export function feedBell(open) {
   isFed = true;
   byId("open-alerts").addEventListener("click", (event) => {
@@ -53,7 +53,7 @@ export function feedBell(open) {
   });
 }
 
-/** On pages without a feed the server is asked now and then, also while they are hidden: the tab's title tells. */
+/** Poll the server on pages without a feed, also while they are hidden, for the tab's title. */
 export function startBell() {
   if (!document.getElementById("open-alerts")) return;
   new MutationObserver(markTitle).observe(/** @type {Node} */ (document.querySelector("title")), { childList: true });

@@ -36,7 +36,7 @@ export const isShown = ({ ended_at, end, uavs }, now_ms) =>
   now_ms - Date.parse(ended_at) <
     (end === "done" && uavs.every(({ state }) => state === "started") ? DONE_SHOWN_AFTER_MS : SHOWN_AFTER_MS);
 
-/** What is said of one UAV's start. @param {PlannedStart} start @param {boolean} goesOn @param {number} now_ms */
+/** The text on one UAV's start. @param {PlannedStart} start @param {boolean} goesOn @param {number} now_ms */
 export function startWords({ state, due_at, why }, goesOn, now_ms) {
   if (state === "started") return t("Start given");
   if (state === "refused") return t("Not started: {why}", { why });
@@ -68,12 +68,12 @@ async function tried(act, failed) {
 }
 
 /**
- * Asks, and has the server start them; who asks has looked at what only a pilot can see.
+ * Ask for confirmation, and start them through the server; the user confirms the pilot's visual checks.
  *
  * @param {string} mission
  * @param {WaitingStart[]} waiting those that are to be started
  * @param {HTMLElement} opener
- * @param {{ left: string[] }} others of each UAV that is not started with them, why
+ * @param {{ left: string[] }} others the reason of each UAV that is not started with them
  */
 export async function beginStarts(mission, waiting, opener, { left }) {
   const asked = await confirmAct({
@@ -152,7 +152,7 @@ export function mountPlannedStarts({ mission, canFly }) {
       ahead_ms = Date.parse(await (mission === null ? readAll() : readMission())) - Date.now();
       draw();
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the page says itself that the server is away
+      if (!(error instanceof ApiError)) throw error; // the page itself reports that the server is unavailable
     }
   }
 

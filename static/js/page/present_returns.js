@@ -1,4 +1,4 @@
-/** What UAVs meet if they return now or land where they are, asked for while somebody is asked whether they shall. */
+/** Obstructions if UAVs return or land now, requested while the confirmation is open. */
 
 import { ApiError, get } from "../api.js";
 import { questionOf } from "../domain/command_questions.js";
@@ -8,7 +8,7 @@ import { t } from "../text.js";
 /** @import { LandingHere, PresentReturn, PresentReturns } from "../api_types.d.ts" */
 /** @import { Answer } from "../api.js" */
 
-const CHECK_TIMEOUT_MS = 4000; // then it is said that nobody has looked
+const CHECK_TIMEOUT_MS = 4000; // then the question states that the path was not checked
 export const CHECKING_HOME = t("Checking the return path …");
 /** @type {Partial<Record<AskedKind, string>>} */
 const LOOKED_AT = {
@@ -19,7 +19,7 @@ const LOOKED_AT = {
 };
 
 /**
- * What the server says of it now; null where that could not be read in time.
+ * The server's present answer; null where it could not be read in time.
  *
  * @template Found
  * @param {string} path
@@ -36,7 +36,7 @@ async function askedInTime(path) {
 }
 
 /**
- * By UAV; empty where that could not be read: the question then says that nobody has looked.
+ * Returns by UAV; empty where they could not be read: the question then states that the path was not checked.
  *
  * @param {number[]} uavs that return at once
  * @returns {Promise<Map<number, PresentReturn>>}
@@ -65,12 +65,12 @@ async function presentOf(uav, kind) {
 }
 
 /**
- * The question as it can be asked at once, and with what the server says of the present once that has come.
+ * The question as it can be asked at once, and updated once the server has answered.
  *
  * @param {number | null} uav
  * @param {AskedKind} kind
  * @param {AskedOf} flyer
- * @param {(lines: Question["lines"]) => Question["lines"]} [withMore] puts in what else is said
+ * @param {(lines: Question["lines"]) => Question["lines"]} [withMore] adds the other lines
  * @returns {Question}
  */
 export function presentQuestion(uav, kind, flyer, withMore = (lines) => lines) {

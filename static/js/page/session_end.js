@@ -1,4 +1,4 @@
-/** A word before the session ends because nobody was there, and one after it. What is not saved stays in this browser meanwhile. */
+/** Notice before the session ends for inactivity, and after it. Unsaved changes stay in this browser meanwhile. */
 
 import { ApiError, get, post, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
@@ -11,12 +11,12 @@ import { clockText } from "../units.js";
 /** @typedef {{ ends_at_ms?: number, isOver?: boolean }} Ending */
 
 export const WARNS_S = 300;
-const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: somebody may be busy in another window
+const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: the user may be active in another window
 const MAX_TIMER_S = 86_400;
 
 /**
- * Looks when the session is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is told null,
- * { ends_at_ms } or { isOver: true }. Returns the functions of its two buttons: { look, keep }.
+ * Checks the session when it is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is called with
+ * null, { ends_at_ms } or { isOver: true }. Returns the functions of its two buttons: { look, keep }.
  *
  * @param {object} options
  * @param {number} options.endsIn_s
@@ -74,7 +74,7 @@ export function createSessionWatch({
   return { look, keep: () => by(stay) };
 }
 
-/** On every page with the bar. A computer that slept asks as soon as somebody looks at the page again. @param {number} endsIn_s */
+/** Start on every page with the bar. A computer that slept checks as soon as the page is visible again. @param {number} endsIn_s */
 export function watchSessionEnd(endsIn_s) {
   /** @type {HTMLElement | null} */
   let box = null;

@@ -8,9 +8,9 @@ import { clockText, durationText, energyText, exactHeightText, lengthText, numbe
 /** @typedef {{ mission: { state: MissionState } }} InState */
 
 const UNDER_WAY = ["dispatched", "active"];
-const ENOUGH_TO_SHARE = 20; // estimates beside a measurement: of fewer a share says nothing
-const OTHER_CLOCK = 0.05; // of a rate from 1, from which on a simulation's clock is told apart from real time
-/** Incidents that are told even where they are no target's reason. @type {readonly Incident["kind"][]} */
+const ENOUGH_TO_SHARE = 20; // estimates beside a measurement: with fewer no share is shown
+const OTHER_CLOCK = 0.05; // deviation of a rate from 1, from which on a simulation's clock is distinguished from real time
+/** Incidents that are shown even where they are no target's reason. @type {readonly Incident["kind"][]} */
 const TOLD = ["crashed", "down", "failsafe-return", "failsafe-land", "aborted", "battery"];
 const NOT_BEGUN = ["draft", "planned", "approved", "dispatched"];
 

@@ -54,7 +54,7 @@ let routes = [];
 let events = [];
 /** @type {Labels} */
 let labels = new Map();
-/** @type {number | null} place of the UAV that is looked at */
+/** @type {number | null} place of the selected UAV */
 let looked = null;
 
 /** @param {number} place of a UAV */
@@ -198,7 +198,7 @@ function lookAtLeg(leg) {
 
 // replaying
 
-/** What is known of a flight that ended by a fall, in words. @param {ReplayEvent} event */
+/** The text on a flight that ended in a crash. @param {ReplayEvent} event */
 function fallAt({ place, at_ms }) {
   const fall = loaded?.record.incidents.find(
     ({ kind, uav, at }) => uav === place && FALLS.includes(kind) && Math.abs(Date.parse(at) - at_ms) < ONE_FALL_MS,
@@ -321,7 +321,7 @@ function chooseAt(index) {
   return route !== undefined;
 }
 
-/** Looks at no UAV in particular, or closes what is open over the map. */
+/** Clear the selection of a UAV, or close what is open over the map. */
 function leave() {
   if (looked === null) return map.closeTop();
   choose(looked);

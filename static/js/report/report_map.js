@@ -1,4 +1,4 @@
-/** The map of a record: planned thin, flown solid, targets by what became of them, UAVs where they were at the cursor. */
+/** The map of a record: planned thin, flown solid, targets by result, UAVs at the time of the cursor. */
 
 import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -32,7 +32,7 @@ import * as layers from "./record_layers.js";
 
 /** @typedef {{ routes: ReplayRoute[], targets: RecordTarget[], labels: Labels, incidents: Incident[] }} Shown */
 
-const REST = { light: 0.3, dark: 0.42 }; // of routes that are not looked at
+const REST = { light: 0.3, dark: 0.42 }; // of routes that are not selected
 const NEAR_ZOOM = 14;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
@@ -40,11 +40,11 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const idOf = ({ uav, place }) => uav ?? `place ${place}`;
 
 /**
- * A UAV as it is drawn at a moment; null where nothing is known of it.
+ * A UAV as drawn at a moment; null where its position is unknown.
  *
  * @param {Pick<ReplayRoute, "uav" | "place" | "colour" | "name" | "track">} route
  * @param {number} at_ms
- * @param {number | null} looked place of the UAV that is looked at
+ * @param {number | null} looked place of the selected UAV
  * @returns {MarkedUav | null}
  */
 export function markerOf({ uav, place, colour, name, track }, at_ms, looked) {
@@ -230,7 +230,7 @@ export function createReportMap(page, { onPick, onIncident }) {
       shown = next;
       draw();
     },
-    /** UAVs as they were then; one of them may be looked at. @param {number} at_ms @param {number | null} place */
+    /** Show the UAVs at a moment; one may be selected. @param {number} at_ms @param {number | null} place */
     point(at_ms, place) {
       if (!parts || !shown) return;
       parts.markers.update(shown.routes.flatMap((route) => markerOf(route, at_ms, place) ?? []));

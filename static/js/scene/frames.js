@@ -15,7 +15,7 @@ import { reportBefore, sunTime, targetToSee } from "./state.js";
 
 const READ_EVERY_MS = 250; // instruments while it plays
 const DESCRIBE_EVERY_MS = 2_000;
-const REACH_M = 3_000; // wires and towers are looked for
+const REACH_M = 3_000; // search radius of wires and towers
 const PICK_PX = { uav: 26, target: 18 };
 const TARGET_NAMES_M = 500; // from where on a target has its name besides its label
 const ROUTES = 8;
@@ -63,7 +63,7 @@ const TOGETHER_SHARE = 0.4;
  * @typedef {object} Shown
  * @property {DrawnUav[]} drawn
  * @property {DrawnUav | null} subject the UAV that is followed
- * @property {SourceTarget | null} target that is looked at
+ * @property {SourceTarget | null} target that is selected
  * @property {Pose} pose
  * @property {Date} sun
  * @property {Wind | null} wind
@@ -84,7 +84,7 @@ function drawnUavs({ stage: { source }, flight, targets, palette }) {
     return { ...piece.samples[0], kind: piece.kind, ...stands };
   }
 
-  /** Where it was last heard. @param {FlightRoute} route @param {Moment} moment */
+  /** The last report of a route before a moment. @param {FlightRoute} route @param {Moment} moment */
   function reportOf(route, moment) {
     const report = source.kind === "live" ? route.uavNow?.measured : reportBefore(route, moment);
     if (!report?.position) return null;
@@ -111,7 +111,7 @@ function createWriting(context) {
   const assets = new Set(targets.map(({ asset }) => asset)); // a target's own label names it already
   let read_ms = -Infinity;
   let described_ms = -Infinity;
-  /** @type {SceneLabel[]} of what stands on the ground */
+  /** @type {SceneLabel[]} labels of towers, bridges and zones */
   let ground = [];
   /** @type {ScreenBox[]} of the picture that labels keep out of */
   let covered = [];

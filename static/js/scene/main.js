@@ -1,4 +1,4 @@
-/** The page of the 3D view: one mission, from where and when the address says. */
+/** The page of the 3D view: one mission, at the place and time that the address states. */
 
 import { ApiError, get, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -12,7 +12,7 @@ import { readLink } from "./link.js";
 import { readSource } from "./sources/read.js";
 import { openStage } from "./stage.js";
 
-const KEPT_MS = 400; // after a change the address says it
+const KEPT_MS = 400; // delay until the address is updated after a change
 const TICK_MS = 500; // of a live source: silence is seen without a word
 const AGAIN_MS = 30_000; // a record that still grows is read
 /** @type {Record<SourceKind, string>} */
@@ -34,7 +34,7 @@ let stage = null;
 let feed = null;
 /** @type {ReturnType<typeof setTimeout> | undefined} */
 let timer;
-/** @type {ReturnType<typeof setInterval> | undefined} of what grows */
+/** @type {ReturnType<typeof setInterval> | undefined} of a source that grows */
 let following;
 let opened = 0; // the last one wins
 
@@ -74,7 +74,7 @@ function notify(words, again = null) {
   );
 }
 
-/** What went wrong in words, with a way on. @param {unknown} error @param {() => void} again */
+/** Show a fault with a way to continue. @param {unknown} error @param {() => void} again */
 function showFault(error, again) {
   if (!(error instanceof ApiError)) throw error;
   notify(error.message, error.isSignedOut ? null : again);

@@ -1,4 +1,4 @@
-/** What the view looks at: one UAV, one target, a moment; what of it stands in a link. Values in, values out. */
+/** Selection of the view: one UAV, one target, a moment; and its part of a link. Values in, values out. */
 
 /** @import { Task } from "./instruments/task.js" */
 /** @import { FlightRoute, FlightSource, Moment, SourceTarget } from "./types.d.ts" */
@@ -19,7 +19,7 @@ export function nextOf(places, at, step) {
 }
 
 /**
- * The target to look at: the one asked for, else that of the UAV's task, else the nearest one of its route.
+ * The selected target: the requested one, else that of the UAV's task, else the nearest one of its route.
  *
  * @param {{ targets: readonly SourceTarget[] }} source
  * @param {number | null} wanted
@@ -47,7 +47,7 @@ export function sunTime(source, at_ms, longitude_deg, today = Date.now()) {
 }
 
 /**
- * Where a UAV was last heard, by the moment of its report: of an estimate's piece the report before it.
+ * A UAV's last report before a moment; for an estimated piece the report before it.
  *
  * @param {Pick<FlightRoute, "pieces">} route
  * @param {Pick<Moment, "at_ms">} moment

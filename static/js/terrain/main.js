@@ -1,4 +1,4 @@
-/** The page "Terrain": composes the list of models, the map and the dock; a click tells the height, several points the profile. */
+/** The page "Terrain": composes the list of models, the map and the dock; a click shows the height, several points the profile. */
 
 import { get, post, remove } from "../api.js";
 import { byId, find, h } from "../dom.js";
@@ -81,7 +81,7 @@ function choose(next) {
   map.map.getCanvas().style.cursor = tool === "profile" ? "crosshair" : "";
 }
 
-/** Closes the dock and forgets the points; whatever is still being asked comes too late. */
+/** Close the dock and clear the points; answers of running requests are dropped. */
 function end() {
   asked += 1;
   points = [];
@@ -95,7 +95,7 @@ function end() {
 const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(7)));
 
 /**
- * What `question` answers, or null where the user has gone on to something else in the meantime, or it failed, which is said.
+ * The answer of `question`; null where the user has gone on meanwhile, or after a failure, which is shown.
  *
  * @template Result
  * @param {() => Promise<Result>} question

@@ -21,8 +21,8 @@ export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
 /** @typedef {Pick<Profile, "length_m" | "distance_m" | "positions" | "ground_amsl_m" | "lowest_m" | "highest_m">} ProfileLine */
 /** @typedef {NonNullable<ReturnType<typeof scalesOf>>} Scales */
 
-const MIN_SPAN_M = 20; // a plain must not look like mountains
-const UNTOLD_TOWER_PX = 12; // of a tower whose height nobody has stated; drawn broken
+const MIN_SPAN_M = 20; // so that a plain does not look mountainous
+const UNTOLD_TOWER_PX = 12; // of a tower with an unknown height; drawn broken
 const RULES = 3;
 
 /**
@@ -104,7 +104,7 @@ export function nearestSample(distances_m, distance_m) {
 const placeKey = ([longitude, latitude]) => `${longitude.toFixed(6)} ${latitude.toFixed(6)}`;
 
 /**
- * Towers (features) that stand at vertices of the profile's line, along it. What is not known of one is null.
+ * Towers (features) at vertices of the profile's line, along it. Unknown values are null.
  *
  * @param {ProfileLine} profile
  * @param {AssetFeature[]} features

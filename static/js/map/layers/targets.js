@@ -40,7 +40,7 @@ class Targets {
   #on;
   /** @type {TargetPill[]} */
   #pills = [];
-  /** By what a group says. @type {Map<string, Drawn>} */
+  /** By key of the group. @type {Map<string, Drawn>} */
   #drawn = new Map();
   /** @type {number | null} */
   #lookedAt = null;
@@ -121,7 +121,7 @@ class Targets {
     return element;
   }
 
-  /** Markers that say the same as before stay, so that the pointer and the focus stay with them. */
+  /** Draw the pills. Markers with the same text are kept, so that they keep pointer and focus. */
   #draw() {
     /** @type {Map<string, Drawn>} */
     const next = new Map();

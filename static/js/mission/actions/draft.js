@@ -7,7 +7,7 @@ import { EMPTY, storedBasisOf } from "../selection.js";
 /** @import { Mission } from "../../api_types.d.ts" */
 
 /**
- * What somebody has picked is theirs alone, also where several use one browser.
+ * Key of a user's own draft, also where several users share a browser.
  *
  * @param {number} user
  * @param {string | null} mission
@@ -15,8 +15,7 @@ import { EMPTY, storedBasisOf } from "../selection.js";
 export const keyOf = (user, mission) => `spanwise.draft.${user}.${mission ?? "new"}`;
 
 /**
- * Drafts of one user. `editor` names this page: what another window of the same user keeps is not dropped when this one
- * saves.
+ * Drafts of one user. `editor` identifies this page: drafts of another window of the same user are kept when this one saves.
  *
  * @param {{ user: number, editor: string, storage?: () => Storage }} options
  */
@@ -77,8 +76,7 @@ export function isStarted({ name, selection }) {
 }
 
 /**
- * What to do with a draft of a stored mission: "none", "restore" it, or say that it is "behind" what somebody has saved
- * since.
+ * What to do with a draft of a stored mission: "none", "restore", or "behind" where another user has saved since.
  *
  * @param {Draft | null} draft
  * @param {Pick<Mission, "name" | "revision">} mission

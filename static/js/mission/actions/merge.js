@@ -1,4 +1,4 @@
-/** Two people's changes of one mission put together, part by part. Values in, values out. */
+/** Merge of two users' changes of one mission, part by part. Values in, values out. */
 
 import { t, tn } from "../../text.js";
 import { flightOptionsOf } from "../flight_options.js";
@@ -42,7 +42,7 @@ const uavFacts = ({
   sorties = 1,
 }) => JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
 /**
- * What nobody has said of a UAV is its type's, which the server writes down: that is the same.
+ * Whether two values are equal. An unset value of a UAV is its type's, which the server fills in.
  *
  * @param {PickedUav} a
  * @param {PickedUav} b
@@ -97,7 +97,7 @@ const keyOfLock = ({ uav, targets, at_start, at_end }) =>
 const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).map(keyOfLock).join();
 
 /**
- * Whether somebody else than `uav` alone may fly a target.
+ * Whether only another UAV than `uav` may fly a target.
  *
  * @param {PickedTarget} target
  * @param {string | null | undefined} uav
@@ -218,7 +218,7 @@ export function isAlike(a, b) {
   );
 }
 
-/** ["2 targets added", "renamed"]: what somebody did. @param {Version} before @param {Version} after */
+/** ["2 targets added", "renamed"]: a user's changes. @param {Version} before @param {Version} after */
 export function wordsOfChange(before, after) {
   const words = [];
   if (before.name !== after.name) words.push(t("renamed to “{name}”", { name: after.name }));

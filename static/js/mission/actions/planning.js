@@ -96,11 +96,11 @@ function createWaiting({ store, running }) {
 function createSearch(context, aside, waitForJob) {
   const { store, selection, problem, failed, running, page, runningJob } = context;
   const show = createShowing(context, aside, plan);
-  let isWanted = false; // somebody asked while a save was under way
+  let isWanted = false; // planning was requested during a save
   store.listen(["saving"], ({ saving }) => {
     if (saving || !isWanted) return;
     isWanted = false;
-    queueMicrotask(plan); // after whoever saved has settled
+    queueMicrotask(plan); // after the save has settled
   });
 
   async function plan() {
@@ -125,7 +125,7 @@ function createSearch(context, aside, waitForJob) {
     });
   }
 
-  /** Shows the plan of what was asked. @param {MissionSelection} asked @param {Begin} begin */
+  /** Show the plan of a selection. @param {MissionSelection} asked @param {Begin} begin */
   async function search(asked, begin) {
     const what = tn(asked.targets.length, "Planning {count} target", "Planning {count} targets");
     const mission = store.state.mission?.id ?? null;
@@ -269,9 +269,8 @@ function createStopping({ store, failed, running }) {
 }
 
 /**
- * A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when
- * the answer to an
- * earlier save brings back the plan of what was picked then.
+ * Show the known plan of a selection that was planned before, after undo or a change of objective; also when the answer to an earlier
+ * save brings back the plan of the present selection.
  *
  * @param {MissionContext} context
  * @param {PlanBeside} aside

@@ -1,6 +1,4 @@
-/**
- * What the server refuses of a selection: in words without the places of its fields, and the changes that would help.
- */
+/** Texts on what the server refuses of a selection, without paths of fields, and the changes that would help. */
 
 import { t } from "../../text.js";
 import { withUavAs } from "../mission_uavs.js";
@@ -34,7 +32,7 @@ function firstFault(details, place = []) {
 }
 
 /**
- * asked: the selection that was refused. Gives { words, ways }, null where the answer names no fault.
+ * asked: the refused selection. Returns { words, ways }, null where the answer names no fault.
  *
  * A way is { label, href } or { label, changed }: the selection to go on with, from the one of that moment.
  *

@@ -1,7 +1,4 @@
-/**
- * What a route takes as it is changed by hand, in words: length, time, battery, and the speed on a leg. Values in,
- * words out.
- */
+/** Figures of a manually edited route as text: length, time, battery, and the speed on a leg. Values in, text out. */
 
 import { t } from "../../text.js";
 import { durationText, lengthText, percentText, speedText } from "../../units.js";
@@ -20,8 +17,7 @@ const signed = (difference, least, textOf) =>
   Math.abs(difference) < least ? "" : ` (${difference < 0 ? "−" : "+"}${textOf(Math.abs(difference))})`;
 
 /**
- * "21.7 km (+412 m) · 32 min (+1 min) · 51 % at landing (−2 %)"; empty where nothing can be flown. `stored` is the
- * route as it is kept.
+ * "21.7 km (+412 m) · 32 min (+1 min) · 51 % at landing (−2 %)"; empty where the route cannot be flown. `stored` is the saved route.
  *
  * @param {HandLook | null} look
  * @param {Pick<Route, "length_m" | "duration_s" | "battery_percent"> | null | undefined} stored
@@ -44,8 +40,7 @@ export function figuresOfCheck(look, stored) {
 }
 
 /**
- * Over the leg to a point: as set by hand, or what the UAV flies there. own_mps is its speed in still air, flown_mps
- * over ground; null: not known.
+ * Speed over the leg to a point: as edited, or the UAV's own. own_mps is its speed in still air, flown_mps over ground; null: unknown.
  *
  * @param {Pick<HandPoint, "kind" | "speed_mps">} point
  * @param {number | null | undefined} own_mps

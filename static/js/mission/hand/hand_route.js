@@ -1,10 +1,7 @@
-/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in,
- * values out.
- *
- * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isManual }; `was` is its place in the route as
- * stored,
- * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and
- * targets stay.
+/**
+ * A manually edited route: waypoints moved, inserted, removed, with another height or speed. Values in, values out. A point is {
+ * position, altitude_agl_m, speed_mps, was, kind, target, isManual }; `was` is its place in the stored route, null where it is new;
+ * speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and targets stay.
  */
 
 /** @import { HandFaults, HandPoint } from "../types.d.ts" */
@@ -70,8 +67,8 @@ export const paced = (points, index, speed_mps) =>
     : points;
 
 /**
- * A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg
- * where no place is said.
+ * Insert a point after `index`, as high as the higher of its neighbours, with the leg's speed; in the middle of the leg without
+ * `position`.
  *
  * @param {HandPoint[]} points
  * @param {number} index
@@ -154,7 +151,7 @@ export const bodyOf = (points) => ({
 });
 
 /**
- * What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }.
+ * The server's faults by place: { points: Map index → words, legs: Map index → words, other: [words] }.
  *
  * @param {unknown} details
  * @returns {HandFaults}

@@ -1,6 +1,4 @@
-/**
- * What the server says of waypoints while they are changed: asked one request after the other, kept by what was asked.
- */
+/** Server checks of edited waypoints: one request at a time, cached by their input. */
 
 import { post } from "../../api.js";
 import { t } from "../../text.js";
@@ -10,7 +8,7 @@ import * as hand from "./hand_route.js";
 /** @import { HandLook } from "../../api_types.d.ts" */
 /** @import { HandEdit, HandFaults, HandPoint, MissionContext } from "../types.d.ts" */
 
-const MAX_KNOWN = 50; // routes as they were wished, with what the server said of them
+const MAX_KNOWN = 50; // checked routes with the server's answer
 /** @type {HandFaults} */
 export const NO_FAULTS = hand.faultsOf(null);
 
@@ -19,7 +17,7 @@ const keyOf = (points) => JSON.stringify(hand.bodyOf(points));
 
 /** @param {Pick<MissionContext, "store" | "wordsOf">} context */
 export function createManualEditChecks({ store, wordsOf }) {
-  /** @type {Map<string, HandLook>} by what was asked */
+  /** @type {Map<string, HandLook>} by the request */
   const looks = new Map();
   let isAsking = false;
 

@@ -1,4 +1,4 @@
-/** The map of a mission: what the store says is drawn, what the pointer says goes to the actions. */
+/** The map of a mission: draws the store's state and passes pointer events to the actions. */
 
 import { byId, h } from "../../dom.js";
 import { mountControls } from "../../map/controls.js";
@@ -136,7 +136,7 @@ function easeTo(map, center, least_zoom) {
 }
 
 /**
- * Routes, targets and rally points; UAVs only as long as nothing says which of them fly.
+ * Positions of routes, targets and rally points; of UAVs only while the plan does not state which of them fly.
  *
  * @param {MissionPageState} state
  */
@@ -193,8 +193,7 @@ function createLayers(view, frame, store, actions, page) {
   let styled = null; // once the map has its style
 
   /**
-   * One route forward; all of them back while they are no plan of what is picked, or a better one is being searched
-   * for.
+   * Highlight one route; fade all while they do not match the selection, or a better plan is being searched for.
    *
    * @param {Readonly<MissionPageState>} state
    */
@@ -303,7 +302,7 @@ function showSearch({ map, fit }, store, drawn) {
  */
 function watchPlans({ map, opensAtPlace }, store, fitting) {
   store.listen(["plan"], ({ plan }) => {
-    // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.
+    // Fit a plan that was just made. The map opened at a stored one, but the dock then took room from it; after saving nothing moves.
     if (plan && !store.state.planIsStored) fitting.fit();
     else if (plan && !opensAtPlace && !fitting.wasFitted()) fitting.fit({ animate: false });
   });

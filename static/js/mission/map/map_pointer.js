@@ -23,7 +23,7 @@ import { createMapPicking } from "./map_picking.js";
  * @property {ReturnType<typeof createTargets>} targets
  * @property {ReturnType<typeof createPickedShapes>} shapes
  * @property {() => ReturnType<typeof mountReachLayer> | null} reach null until the map has its style
- * @property {() => boolean} isHandOn whether a route is changed by hand
+ * @property {() => boolean} isHandOn whether a route is manually edited
  * @property {(position: number[]) => void} askForUav
  */
 
@@ -41,7 +41,7 @@ export function mountMapPointer(context) {
   const keyOf = (thing) => `${thing.kind} ${thing.id}`;
 
   /**
-   * What the tooltip says, with the reason why the asset can be inspected or not while that layer is shown.
+   * The text of the tooltip, with the reason why the asset can be inspected or not while that layer is shown.
    *
    * @param {MapThing} thing
    * @param {Position | null} place
@@ -69,7 +69,7 @@ export function mountMapPointer(context) {
   }
 
   /**
-   * With a finger there is no hovering: what cannot be picked or inspected is told.
+   * Handle a click on a thing. Touch has no hovering, so a notice states what cannot be picked or inspected.
    *
    * @param {MapThing} thing
    * @param {Position} place

@@ -1,7 +1,4 @@
-/**
- * The layer of what can be inspected: asked for when it is switched on and when what decides over it changes, with a
- * legend of reasons.
- */
+/** The layer of assets that can be inspected: requested when switched on and when its inputs change, with a legend of reasons. */
 
 import { isAbort, post } from "../../api.js";
 import { h, icon, setChildren, svg } from "../../dom.js";
@@ -55,7 +52,7 @@ const LEGEND = [
   },
 ];
 
-/** @typedef {{ answer: Reachability, uavs: PickedUav[] }} Answered uavs: as they were asked about */
+/** @typedef {{ answer: Reachability, uavs: PickedUav[] }} Answered uavs: as in the request */
 
 /**
  * Returns { entry: for the layers menu, textOf(id), reachability(id), recolour(), close(): whether it was on }.
@@ -154,7 +151,7 @@ export function mountReachLayer(map, frame, store) {
   };
 }
 
-/** Draws anew once tiles have been read. @param {MapLibreMap} map @param {() => void} draw */
+/** Redraw once tiles have been read. @param {MapLibreMap} map @param {() => void} draw */
 function drawOnceRead(map, draw) {
   let isDue = true;
   map.on("sourcedata", () => {

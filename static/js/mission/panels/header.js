@@ -1,4 +1,4 @@
-/** The mission's name, state and one line of facts; what has to be said stands below. */
+/** The mission's name, state and one line of facts, with notices below. */
 
 import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
@@ -74,7 +74,7 @@ async function changeAlertLimits({ id, name }) {
  * @param {MissionStore} store
  * @param {MissionActions} actions
  * @param {boolean} canPlan
- * @param {{ canCopy: boolean, showPlace: ShowPlace }} how `canCopy`: who plans missions may copy one that nobody can change
+ * @param {{ canCopy: boolean, showPlace: ShowPlace }} how `canCopy`: users who plan missions may copy a read-only one
  */
 export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
   const name = byId("mission-name", HTMLInputElement);
@@ -187,7 +187,7 @@ function noticesOf(state, context) {
   ];
 }
 
-/** What went wrong, or that the server is away. @param {MissionPageState} state @param {boolean} canPlan */
+/** The present problem, or that the server is unavailable. @param {MissionPageState} state @param {boolean} canPlan */
 function problemNotice({ problem, isAway }, canPlan) {
   if (problem) {
     const image = problem.level === "warning" ? "triangle-alert" : isAway ? "cloud-off" : "circle-alert";
@@ -248,7 +248,7 @@ function planNotices({ plan }, { actions, canPlan, askWhy }) {
   ]);
 }
 
-let isUnfolded = false; // on a phone, where several warnings take one line until somebody wants to read them
+let isUnfolded = false; // on a phone, where several warnings are collapsed to one line until they are opened
 
 /** @param {(HTMLElement | false)[]} notices @returns {Child[]} */
 function folded(notices) {

@@ -1,4 +1,4 @@
-/** The mission's history in words: who did what, and when. */
+/** The mission's history: who did what, and when. */
 
 import { get } from "../../api.js";
 import { h, icon } from "../../dom.js";
@@ -11,7 +11,7 @@ import { lostLinkText } from "../lost_link.js";
 /** @import { HistoryEntry, HistoryPage, LostLinkOutput, Mission } from "../../api_types.d.ts" */
 
 /**
- * What an entry says of the mission before or after it: of each action only a part.
+ * Facts of an entry on the mission before or after it; each action has some of them.
  *
  * @typedef {object} Facts
  * @property {string} [name]
@@ -106,7 +106,7 @@ function changeWords({ before, after }) {
   return words.join("; ") || t("places or tasks changed");
 }
 
-/** What an entry says. @param {Pick<Entry, "action" | "before" | "after">} entry @returns {EntryWords} */
+/** The text of an entry. @param {Pick<Entry, "action" | "before" | "after">} entry @returns {EntryWords} */
 export function wordsOfEntry(entry) {
   return wordsOfMaking(entry) ?? wordsOfFlying(entry) ?? { title: t("Changed"), detail: changeWords(entry) };
 }
@@ -183,7 +183,7 @@ function wordsOfFlying({ action, after }) {
 }
 
 /**
- * Changes of one person within ten minutes are one line, the newest first: [[entry, …], …].
+ * Changes of one user within ten minutes are one line, the newest first: [[entry, …], …].
  *
  * @param {Entry[]} entries
  */

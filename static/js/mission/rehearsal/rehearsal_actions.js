@@ -25,7 +25,7 @@ function worstOf(runs) {
 }
 
 /**
- * isStage: the page is about rehearsals alone, and its address names the one that is looked at.
+ * Create the rehearsals of a mission. isStage: the page shows only rehearsals, and its address names the selected one.
  *
  * @param {MissionStore} store
  * @param {{ isStage?: boolean }} [options]
@@ -103,7 +103,7 @@ function createChanging(store) {
     missionId,
     address: (rehearsal = "", rest = "") =>
       `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`,
-    /** What the server refuses is told on the panel. @param {() => Promise<void>} act */
+    /** Run an act; shows the server's refusal on the panel. @param {() => Promise<void>} act */
     async reported(act) {
       try {
         await act();
@@ -116,12 +116,12 @@ function createChanging(store) {
   };
 }
 
-/** Which rehearsal and which of its runs is looked at. @param {MissionStore} store @param {boolean} isStage */
+/** Create the selection of a rehearsal and of one of its runs. @param {MissionStore} store @param {boolean} isStage */
 function createShowing(store, isStage) {
   const { change, address, reported } = createChanging(store);
   const ofAddress = new URLSearchParams(isStage ? location.search : "");
 
-  /** What is looked at stands in the address: it can be loaded again, and passed on. */
+  /** Store the selection in the address: it can be reloaded and shared. */
   function remember() {
     const { detail, run } = store.state.rehearsal;
     if (!isStage || !detail) return;

@@ -1,4 +1,4 @@
-/** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
+/** Recipients of a command to several UAVs by mission, and the text of its question. Values in, values out. */
 
 import { inAir } from "../../domain/in_air.js";
 import { returnLinesOfAll } from "../../domain/rtl_check.js";
@@ -66,7 +66,7 @@ export function scopeChoices(scopes) {
 }
 
 /**
- * What is in each UAV's way home, as the question of one UAV says it; those that say the same stand together.
+ * Obstructions of each UAV's RTL path, as the question of one UAV states them; equal ones are grouped.
  *
  * @param {BatchScope[]} scopes
  * @param {Map<number, PresentReturn>} returns by UAV
@@ -93,7 +93,7 @@ export function batchRequest(kind, scopes, ways = null) {
   return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...separate } };
 }
 
-/** What became of it, in words. @param {BatchAnswer[]} results */
+/** The outcome as text. @param {BatchAnswer[]} results */
 export function answerWords(results) {
   const reported = results.filter((answer) => answer.is_accepted).length;
   const refused = results.filter((answer) => !answer.is_accepted);

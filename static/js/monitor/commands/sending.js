@@ -1,10 +1,10 @@
-/** Commands that are on their way to the server, or there and not told by the feed yet: said on the card at once. */
+/** Commands on their way to the server, or not yet in the feed: shown on the card at once. */
 
 /** @import { CommandKind } from "../../api_types.d.ts" */
 /** @import { MonitorStore } from "../types.d.ts" */
 
 const CLOCKS_APART_MS = 3000;
-const MAX_SENDING_MS = 12_000; // what the feed has not told by then is said by its other parts
+const MAX_SENDING_MS = 12_000; // after this time the other parts of the card show it
 
 /** @param {MonitorStore} store @param {number[]} ids of UAVs @param {CommandKind | null} kind null: nothing is on its way */
 export function markSending(store, ids, kind) {
@@ -16,7 +16,7 @@ export function markSending(store, ids, kind) {
   store.update({ sending });
 }
 
-/** Once the feed tells them they are commands like others. @param {MonitorStore} store */
+/** Drop them once the feed reports the commands. @param {MonitorStore} store */
 export function dropSent(store) {
   store.listen(["commands", "now_ms"], ({ commands, sending, now_ms }) => {
     for (const [id, { kind, at_ms }] of sending) {

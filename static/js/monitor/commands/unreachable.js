@@ -1,15 +1,15 @@
-/** What becomes of a command to UAVs of which nothing is heard. */
+/** Delivery of a command to UAVs without a link. */
 
 import { t } from "../../text.js";
 
 /** @import { CommandKind, LiveUav } from "../../api_types.d.ts" */
 
 /** @type {Set<CommandKind>} */
-const SENT = new Set(["hold", "return", "land", "abort"]); // by a gateway to where it was heard; a companion computer asks by itself
+const SENT = new Set(["hold", "return", "land", "abort"]); // by a gateway at the last address; a companion computer polls by itself
 const RECEIVED_WITHIN_MS = 3_600_000;
 
 /**
- * Sentences: of those that are told all the same, and of those whose command waits.
+ * Sentences on UAVs that receive the command anyway, and on those whose command waits.
  *
  * @param {LiveUav[]} uavs
  * @param {CommandKind} kind

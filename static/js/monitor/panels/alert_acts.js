@@ -1,4 +1,4 @@
-/** What people do about an alert: they acknowledge, note and close it, take the UAV over, and go to where it is down. */
+/** Acts on an alert: acknowledge, note, close, take over the UAV, and go to where it is down. */
 
 import { ApiError, post } from "../../api.js";
 import { h } from "../../dom.js";
@@ -51,7 +51,7 @@ export async function acknowledgeEnded(ended) {
 }
 
 /**
- * A pilot on site flies it from now on: said to all by a note.
+ * A pilot on site takes over the flight: reported to all users by a note.
  *
  * @param {Alert} alert
  * @param {string} name
@@ -85,7 +85,10 @@ export async function note(alert) {
   await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("Note saved."));
 }
 
-/** A UAV that is down where its flight does not end stays on the board until somebody says what became of it. @param {Alert} alert */
+/**
+ * Close an alert. A UAV that is down away from the end of its flight stays on the board until a user states its outcome.
+ * @param {Alert} alert
+ */
 export async function close(alert) {
   const asked = await confirmAct({
     title: t("Close this alert"),

@@ -63,14 +63,15 @@ function historyWords(alert) {
   return summary.filter(Boolean).join(" ");
 }
 
-/** What was worse than what it says now. @param {Alert} alert */
+/** The text at the alert's worst level. @param {Alert} alert */
 const worstWords = ({ worst, message }) =>
   worst &&
   worst.message !== message &&
   t("Worst, {time}: {message}", { time: exactClockText(worst.at), message: worst.message });
 
 /**
- * What a row is made anew for: words that move with the time are written into it. A button that is made anew loses its press.
+ * Key of a row: it is redrawn only if this changes; words that change with time are updated in place. A button that is redrawn would lose
+ * its press.
  *
  * @param {Alert} alert
  * @param {LiveUav | undefined} uav
@@ -263,7 +264,10 @@ class AlertPanel {
     );
   }
 
-  /** Now, and as time goes on where that changes what is said. @param {Alert} alert @param {HTMLElement} message @param {HTMLElement} beside */
+  /**
+   * Write the texts now, and again over time where they change.
+   * @param {Alert} alert @param {HTMLElement} message @param {HTMLElement} beside
+   */
   #write(alert, message, beside) {
     /** @param {number} now_ms */
     const write = (now_ms) => {
@@ -332,7 +336,7 @@ class AlertPanel {
     return this.#ended.filter(({ id }) => (this.#endedSince.get(id) ?? Infinity) <= latest);
   }
 
-  /** @param {Alert[]} ended shown ones that nobody has acknowledged */
+  /** @param {Alert[]} ended shown ones that are not acknowledged */
   #drawAcknowledgeEnded(ended) {
     this.#ended = ended.slice(0, MAX_ACKNOWLEDGED);
     this.#endedSince = new Map(this.#ended.map(({ id }) => [id, this.#endedSince.get(id) ?? Date.now()]));

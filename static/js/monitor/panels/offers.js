@@ -24,7 +24,7 @@ import {
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { LiveOffer, MonitorPage, MonitorState, MonitorStore, OfferedRoute } from "../types.d.ts" */
 
-/** Offers whose decision is on its way: nobody decides them twice. @type {Set<string>} */
+/** Offers whose decision is being sent: prevents a second decision. @type {Set<string>} */
 const deciding = new Set();
 
 /** @param {LiveOffer} offer @param {"accept" | "decline"} act @param {string} words once it is done */
@@ -171,7 +171,7 @@ const followUp =
   (/** @type {Event} */ { currentTarget }) =>
     askToClose({ mission, opener: /** @type {HTMLElement} */ (currentTarget) });
 
-/** Labels of the targets that are still open. @param {MonitorState["missions"]} missions @param {string} id of one of them */
+/** Labels of the open targets. @param {MonitorState["missions"]} missions @param {string} id of one of them */
 const openTargets = (missions, id) =>
   (missions.find((mission) => mission.id === id)?.targets ?? [])
     .filter(({ state }) => state === "pending" || state === "in-progress")
@@ -207,7 +207,7 @@ export function mountOffers(store, page) {
     if (routesOf === wanted) store.update({ offered });
   }
 
-  /** The newest that is over stands until somebody puts it away. @param {LiveOffer} offer @param {string[]} open */
+  /** Show the newest closed offer until the user dismisses it. @param {LiveOffer} offer @param {string[]} open */
   function over(offer, open) {
     const isFollowed = offer.state === "accepted" && page.mission === offer.mission;
     return overCard(offer, {

@@ -1,4 +1,4 @@
-/** What an alert says on a live page: words that move with the time, what is said beside them, and acts that still make sense. */
+/** Text of an alert on a live page: words that change with time, additional lines, and the acts that still apply. */
 
 import { inAir } from "../../domain/in_air.js";
 import { isOpenAlert } from "../../domain/order.js";
@@ -9,7 +9,7 @@ import { contactWords, durationWords, isLanding, isReturning } from "./uav_text.
 /** @import { Alert, LiveUav } from "../types.d.ts" */
 
 /**
- * When the UAV of an alert of a silent link was last heard [s since 1970]; null for other alerts, and once it is heard again.
+ * When the UAV of a lost-link alert last sent a message [s since 1970]; null for other alerts, and once messages arrive again.
  *
  * @param {Alert} alert
  */
@@ -18,7 +18,7 @@ function silentSince_s(alert) {
   return alert.code === "link-lost" && isOpenAlert(alert) && typeof received_s === "number" ? received_s : null;
 }
 
-/** Whether what it says changes with the time alone. @param {Alert} alert */
+/** Whether its text changes with time alone. @param {Alert} alert */
 export const isMoving = (alert) => silentSince_s(alert) !== null;
 
 /**
@@ -63,8 +63,8 @@ function ownActWords({ own_act }) {
 export const CONTACT_MEANS = t("Calculated from the route and from where UAVs were heard on earlier flights.");
 
 /**
- * What is said beside an alert that is open: what the UAV does by itself, what an act costs or why it is not offered, and when a silent
- * UAV is expected to be heard; "" where there is nothing.
+ * Additional lines of an open alert: what the UAV does by itself, what an act costs or why it is not offered, and when a silent UAV is
+ * expected to report; "" without any.
  *
  * @param {Alert} alert
  * @param {LiveUav | undefined} uav
@@ -108,7 +108,7 @@ export function overtakenWords(kind, uav) {
 export const SEEN_AFTER_MS = 1000; // a level that is shown for less was not read before a click
 
 /**
- * Which level of an alert somebody has seen who acknowledges it: one that rose under the pointer was not read.
+ * Create the levels at which the user saw alerts before acknowledging: a level that rose under the pointer was not read.
  *
  * @returns {{ show: (alerts: Pick<Alert, "id" | "level">[], at_ms: number) => void, of: (id: number, at_ms: number) => Alert["level"] | undefined }}
  */

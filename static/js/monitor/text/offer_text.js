@@ -1,4 +1,4 @@
-/** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
+/** Texts of an offer of another plan: why, and the change for each UAV and target. Values in, text out. */
 
 import { routeLetter } from "../../domain/palette.js";
 import { FEED_LOST_MS } from "../../live/feed.js";
@@ -115,7 +115,7 @@ const figureWords = (figures) =>
     .join(", ");
 
 /**
- * Per UAV: [{ place, letter, name, what, before, after, why }]. Of one that is out its reason names it and says all.
+ * Lines by UAV: [{ place, letter, name, what, before, after, why }]. The reason of a UAV that is out names it and suffices.
  *
  * @param {Pick<LiveOffer, "difference">} offer
  */
@@ -148,7 +148,7 @@ export const validWords = (until, now_ms) =>
   });
 
 /**
- * Why an offer cannot be decided any more, though the server has not said so yet; empty.
+ * Why an offer can no longer be decided, though the server has not reported it yet; "" where it can.
  *
  * @param {LiveOffer} offer
  * @param {{ now_ms: number, silent_ms: number }} times

@@ -1,4 +1,4 @@
-/** What the panel of simulated UAVs says, and what its buttons send. */
+/** Texts of the panel of simulated UAVs, and the requests of its buttons. */
 
 import { t, tn } from "../../text.js";
 import { heightText, numberText, percentText, speedText } from "../../units.js";
@@ -29,7 +29,7 @@ const BEHIND_S = 2; // of real time that was lost, from which on it is shown
  * @property {string} image name of an icon
  * @property {string} words
  * @property {boolean} [lasts] it is over after a time
- * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} of what is sent for a vehicle, for so many of its seconds
+ * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} the request for a vehicle, for a duration in its own seconds
  */
 
 /** Faults by the name of their button: what is sent for a vehicle, for so many of its seconds. */
@@ -75,11 +75,11 @@ export const isPresent = (simulation) => simulation?.state === "wanted" || simul
 /** @param {Pick<SimulatedVehicle, "state">} vehicle */
 export const isFlown = (vehicle) => vehicle.state === "flying";
 
-/** Wind and faults of all UAVs of the mission, where somebody chooses that. */
+/** Wind and faults for all UAVs of the mission. */
 export const ALL = "all";
 
 /**
- * Whom wind and faults are meant for: who was chosen in the panel, else the UAV that is selected on the page, else nobody.
+ * The vehicle that wind and faults apply to: the one chosen in the panel, else the UAV selected on the page, else none.
  *
  * @param {string} wished id of a vehicle, ALL, or empty
  * @param {number | null} selected UAV of the page

@@ -1,4 +1,4 @@
-/** What a live page says of one UAV: its state, the age of its report, the estimate. Values in, words out. */
+/** Texts on one UAV of a live page: its state, the age of its report, the estimate. Values in, text out. */
 
 import { ESTIMATED, hasFix, isLate, LOST, MEASURED, reportAge_s, withinOf_m } from "../../domain/certainty.js";
 import { inAir } from "../../domain/in_air.js";
@@ -19,7 +19,7 @@ const MODES = [
 ];
 
 /**
- * { words, level }: what it does, as far as it has told.
+ * { words, level }: what it does by its own reports.
  *
  * @param {Pick<LiveUav, "measured"> & Partial<Pick<LiveUav, "link">>} uav
  * @returns {{ words: string, level: string | null }}
@@ -54,7 +54,7 @@ export function durationWords(age_s) {
   return age_s < 100 ? `${short}\u00a0s` : durationText(age_s);
 }
 
-/** When it is expected to be heard again: a time that has passed is overdue. @param {string} at @param {number} now_ms */
+/** When its next message is expected; a time that has passed is overdue. @param {string} at @param {number} now_ms */
 export const contactWords = (at, now_ms) =>
   Date.parse(at) > now_ms
     ? t("Next contact expected {time}.", { time: exactClockText(at) })

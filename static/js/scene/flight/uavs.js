@@ -31,7 +31,7 @@ const MIN_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
 const GLOW = 0.4;
 const MAX_CONE = 1.6; // times that, from far away
-const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
+const CONE_HALF_DEG = 22; // half the width that an inspection camera sees
 const LIT_DARK = "#66727a"; // what shines of it where all else is dark
 const ROTOR_LIGHT = 5; // times its own colour, there
 const GHOST_LIGHT = 0.4; // towards white, there
@@ -190,7 +190,7 @@ export function createUavs(count) {
      * @param {MetresPerPixel} how.metresPerPixel
      * @param {boolean} [how.isDark] by theme or night
      * @param {number} [how.dt_s] how far rotors turn
-     * @param {number | null} [how.hidden] the one whose camera looks
+     * @param {number | null} [how.hidden] the one whose camera is used
      */
     show(drawn, { palette, metresPerPixel, isDark = palette.isDark, dt_s = 0, hidden = null }) {
       spin += dt_s * 23; // seen turning, not as fast as they do

@@ -2,12 +2,12 @@
 
 /** @import { FlightSource } from "../types.d.ts" */
 
-const ROUND_M = 900; // on each side of what is flown
-const MAX_LENGTH_M = 39_000; // a side of what the server gives at once
+const ROUND_M = 900; // on each side of the flight
+const MAX_LENGTH_M = 39_000; // longest side that the server returns at once
 const METRES_PER_DEGREE = 111_195;
 
 /**
- * Returns west, south, east, north round places, cut to what can be asked for; null without places.
+ * Returns west, south, east, north round places, cut to the largest box of a request; null without places.
  *
  * @param {readonly number[][]} places lon, lat
  */

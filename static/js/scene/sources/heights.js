@@ -1,18 +1,17 @@
-/** Heights of what flies as heights above sea level of the drawn ground. Values in, values out. */
+/** Heights of UAVs, converted to heights above sea level of the drawn terrain. Values in, values out. */
 
 /** @import { GroundGrid } from "../../api_types.d.ts" */
 /** @import { SourceKind } from "../types.d.ts" */
 
-/** @typedef {"amsl" | "relative"} Trust which height is believed */
+/** @typedef {"amsl" | "relative"} Trust which height is used */
 /** @typedef {GroundGrid["kind"]} GroundKind */
 
 const ON_GROUND_M = 0.12; // of a UAV's middle above what it stands on
 
 /**
- * Returns the height above sea level to draw at.
- *
- * What a plan or a simulation says above sea level is of the same ground as the one that is drawn, where there is a terrain model ("amsl").
- * What a UAV reports above sea level is off by metres: there its height above take-off counts, from the drawn ground ("relative").
+ * Return the height above sea level to draw at. Where there is a terrain model, AMSL heights of a plan or a simulation refer to the drawn
+ * terrain ("amsl"). AMSL heights that a UAV reports are off by metres: its height above take-off is added to the drawn terrain instead
+ * ("relative").
  *
  * @param {{ altitude_amsl_m?: number | null, altitude_relative_m?: number | null }} heights
  * @param {number} takeOff_amsl_m
@@ -25,7 +24,8 @@ export function altitudeOf({ altitude_amsl_m = null, altitude_relative_m = null 
 }
 
 /**
- * Which height of a source to believe, over this ground ("terrain", "partly", "flat"). Flat ground is 0 everywhere, and so is what a rehearsal over it says.
+ * Which height of a source to use over this terrain ("terrain", "partly", "flat"). Flat terrain is 0 everywhere, and so are AMSL heights
+ * of a rehearsal over it.
  *
  * @param {SourceKind} sourceKind
  * @param {GroundKind} groundKind

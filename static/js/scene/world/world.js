@@ -1,4 +1,4 @@
-/** The world of the 3D view: everything that stands on the ground, with sun and sky. Its interface is told in docs/scene.md. */
+/** The world of the 3D view: everything that stands on the ground, with sun and sky. Its interface is described in docs/scene.md. */
 
 import { isInForce } from "../../domain/zones_in_force.js";
 import { bridgeSolid } from "../geometry/bridges.js";
@@ -25,8 +25,8 @@ const BRACING = { high: { near_m: 900, most: 50 }, low: { near_m: 300, most: 8 }
 const NIGHT_STEP = 0.06; // things get other colours after so much of dusk
 /** @type {[number, number]} */
 const FOG_M = [4_000, 30_000]; // begins, hides all
-const FOG_SHARES = [1.1, 3]; // of what is looked at from farther away: that is never in the fog
-const LINES_M = 4_000; // what is looked at from farther away has lines as strong as from here
+const FOG_SHARES = [1.1, 3]; // of the camera's distance to its target: the target is never in the fog
+const LINES_M = 4_000; // targets farther away have lines as strong as from here
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
 const NO_AIR = { points: new Float64Array(0), first: new Uint32Array(1), marks: new Float32Array(0) };
 const NO_WIRES = {
@@ -222,10 +222,10 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
       repaint();
     },
     /**
-     * Returns whether the next picture is another one.
+     * Update for a camera. Returns whether the next picture differs.
      *
      * @param {PerspectiveCamera} camera
-     * @param {number} [look_m] to what is looked at
+     * @param {number} [look_m] distance to the target
      */
     update(camera, look_m = 0) {
       [fog.near, fog.far] = FOG_M.map((least_m, end) => Math.max(least_m, FOG_SHARES[end] * look_m));

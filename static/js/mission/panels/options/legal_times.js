@@ -1,4 +1,4 @@
-/** The dialog "When is this mission legal?": the chart of two days, and the look for a better departure. */
+/** The dialog "When is this mission legal?": the chart of two days, and the search for a better departure. */
 
 import { get, post } from "../../../api.js";
 import { h } from "../../../dom.js";
@@ -24,7 +24,7 @@ const messageOf = (error) => (error instanceof Error ? error.message : "");
 const waypointOf = ({ position, altitude_agl_m, altitude_amsl_m }) => ({ position, altitude_agl_m, altitude_amsl_m });
 
 /**
- * What the server says of the stored mission while its plan is the one on the page, else of the routes on the page.
+ * The server's answer for the stored mission while its plan is the one on the page, else for the routes on the page.
  *
  * @param {MissionPageState} state
  * @param {AbortSignal} signal
@@ -159,7 +159,7 @@ function fillBody(body, store, actions, { signal, close }) {
 }
 
 /**
- * Offers to look for a departure with which the plan does better, or the one that was found.
+ * Offer the search for a better departure, or show the one that was found.
  *
  * @param {HTMLElement} place
  * @param {MissionStore} store

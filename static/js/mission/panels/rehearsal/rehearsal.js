@@ -1,4 +1,4 @@
-/** The panel of rehearsals: conditions, progress, and the assessment by route and by target. Everything in it is simulated, and says so. */
+/** The panel of rehearsals: conditions, progress, and the assessment by route and by target. Its content is marked as simulated. */
 
 import { byId, h, refill } from "../../../dom.js";
 import { t } from "../../../text.js";
@@ -18,8 +18,8 @@ import { mountForm } from "./form.js";
  * @typedef {object} RehearsalHow
  * @property {boolean} canRehearse of operators
  * @property {boolean} isFrozen
- * @property {boolean} isStage the page is about it alone
- * @property {() => unknown} seeInSpace opens the 3D view of what is shown
+ * @property {boolean} isStage the page shows only it
+ * @property {() => unknown} seeInSpace opens the 3D view
  */
 
 /** @param {string} name */
@@ -106,7 +106,7 @@ function drawRunning({ running }) {
 }
 
 /**
- * Which of the rehearsals is looked at, where there are several.
+ * Draw the choice between several rehearsals.
  *
  * @param {HTMLSelectElement} select
  * @param {Rehearsal[]} list

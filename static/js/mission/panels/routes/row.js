@@ -1,4 +1,4 @@
-/** The row of a route: who flies it, its strip, its figures, and the doors to changing and to explaining it. */
+/** The row of a route: its UAV, strip and figures, and the buttons to edit and to explain it. */
 
 import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
@@ -26,7 +26,7 @@ import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js
  * @property {() => void} look
  * @property {() => void} leave
  * @property {() => void} choose
- * @property {() => void} change by hand
+ * @property {() => void} change edit manually
  * @property {() => void} explain
  */
 
@@ -43,7 +43,7 @@ export function moreOrLess(difference, least, textOf) {
 }
 
 /**
- * One that cannot take off; the notice and the row of the UAV say which.
+ * Whether its UAV cannot take off; the notice and the UAV's row name it.
  *
  * @param {PlanResult} result
  * @param {ShownRoute} route

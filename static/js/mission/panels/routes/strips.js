@@ -22,7 +22,7 @@ import { passedZones } from "../../zones_passed.js";
 /** @typedef {ReturnType<typeof spanStrip>} Strip */
 /** @typedef {{ plan: ShownPlan, longest_m: number, width_px: number }} Drawn what all strips have in common */
 
-const MAX_LOOKED_AT = 12; // routes beside which zones are looked for at once
+const MAX_LOOKED_AT = 12; // count of routes whose zones are requested at once
 
 /**
  * Keys by the place of each route; what is locked to a UAV without a route is not drawn.
@@ -146,7 +146,7 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
         strip.point(along?.sequence === sequence && !along.isWished ? along.at_m : null);
     },
     /**
-     * Asks where routes go round zones; onFound() once the server has said so.
+     * Request where routes go round zones; onFound() once the server has answered.
      *
      * @param {ShownPlan} plan
      * @param {() => void} onFound
@@ -161,7 +161,7 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
             zonesOf.set(route.waypoints, passedZones(ground, route, places, plan.result.departs_at ?? null));
             if (ground.zones.length && store.state.plan === plan) onFound();
           },
-          () => {}, // the strip stands without them; the profile says what failed
+          () => {}, // the strip works without them; the profile shows the failure
         );
       }
     },
