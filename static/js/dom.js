@@ -75,7 +75,7 @@ export const term = (name, value) =>
     : [h("dt", {}, name), h("dd", {}, value)];
 
 /**
- * A choice of one of several, drawn side by side: of each its value and its words.
+ * A choice between several options, drawn side by side: the value and text of each.
  *
  * @param {string} name of the radio buttons
  * @param {[string, Child][]} choices

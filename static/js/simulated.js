@@ -1,4 +1,4 @@
-/** The one mark of what no real aircraft does, wherever a UAV or what it did is named. */
+/** The mark of simulation, wherever a simulated UAV or its data are shown. */
 
 import { h } from "./dom.js";
 import { t } from "./text.js";

@@ -1,4 +1,4 @@
-/** Where a static file is that is loaded by name and not imported: its address changes with its content, so the page says it. */
+/** Address of a static file that is loaded by name and not imported: it changes with the content, so the page supplies it. */
 
 /** @param {string} name below /static/ */
 export function staticAddress(name) {

@@ -4,9 +4,9 @@
  * @template {object} State
  * @typedef {object} Store
  * @property {Readonly<State>} state
- * @property {(change: Partial<State>) => void} update Puts new values in and tells those who listen to one of the changed names.
+ * @property {(change: Partial<State>) => void} update Stores new values and notifies listeners of the changed names.
  * @property {(names: (keyof State)[], notify: (state: Readonly<State>) => void) => () => void} listen
- *   tell(state) is called at once and after each change of one of the names. Returns a function that ends it.
+ *   notify(state) is called at once and after each change of one of the names. Returns a function that ends it.
  */
 
 /**

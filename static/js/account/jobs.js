@@ -82,7 +82,7 @@ export function mountJobs({ notify, settle }) {
   return { load };
 }
 
-/** Without `cancel` for whoever may not stop a job. @param {Job} job @param {(() => void) | null} cancel */
+/** The row of a job; without `cancel` where the user may not stop it. @param {Job} job @param {(() => void) | null} cancel */
 export function jobRow(job, cancel) {
   const what = TASKS[job.task] ?? job.task;
   const at = job.finished_at ?? job.created_at;

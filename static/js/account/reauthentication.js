@@ -1,4 +1,4 @@
-/** What wants the password again asks for it, and goes on then. */
+/** Reauthentication: asks for the password again, then continues the act. */
 
 import { ApiError, post } from "../api.js";
 import { h, icon } from "../dom.js";

@@ -1,4 +1,4 @@
-/** Where somebody is signed in: each browser can be signed out from here. */
+/** Sessions of the user: each browser can be signed out from here. */
 
 import { get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";

@@ -1,4 +1,4 @@
-/** The admin's geometry fields: the map shows what the text says; a point can be dragged or set by a click. */
+/** The admin's geometry fields: the map shows the text's geometry; a point can be dragged or set by a click. */
 
 import { find, h } from "../dom.js";
 import { addSources, setFeatures } from "../map/look/style.js";

@@ -1,4 +1,4 @@
-/** A list behind filters: asked for again when one changes, continued by "Show more", with words for when nothing is found. */
+/** A list with filters: requested again when one changes, continued by "Show more", with a text for an empty result. */
 
 import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";

@@ -1,4 +1,4 @@
-/** What an organisation asks for: of a mission before it is approved, and of everybody at the door. */
+/** Rules of an organisation: for a mission before approval, and for the login of all users. */
 
 import { get, request } from "../api.js";
 import { byId } from "../dom.js";

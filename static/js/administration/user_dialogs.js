@@ -31,7 +31,7 @@ export function confirmRemoval({ title, words, keep, go, act }) {
 }
 
 /**
- * Edits name and address. What somebody else has changed meanwhile is shown in the row, and then counts as seen.
+ * Edit name and address. Another user's change in the meantime is shown in the row, and then counts as seen.
  *
  * @param {User} user
  * @param {object} on

@@ -1,4 +1,4 @@
-/** Where alerts begin, in words and units: what each limit is called, and which of them go together. Values in, values out. */
+/** Limits of alerts with units: the name of each limit, and their groups. Values in, values out. */
 
 import { t } from "../text.js";
 import { SHORT_UNIT, SPEED_UNIT } from "../units.js";

@@ -1,4 +1,4 @@
-/** The page "Assets": find, look, draw, correct. */
+/** The page "Assets": search, view, draw, correct. */
 
 import { byId, h, segments, term } from "../dom.js";
 import { mountRecordPage } from "../ground/record_page.js";

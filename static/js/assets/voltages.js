@@ -1,4 +1,4 @@
-/** Voltages as people write them. */
+/** Parser of voltages. */
 
 export const MAX_KV = 2_000;
 

@@ -11,7 +11,7 @@ const DOTS = "issues-dots";
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 16 : 7;
 
 /** @param {number} far @param {number} near [px] */
-const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 9, far, 13, near]; // a hundred places of one line must not become a blot
+const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 9, far, 13, near]; // keeps a hundred places of one line readable
 const isPoint = ["==", ["geometry-type"], "Point"];
 const isLine = ["==", ["geometry-type"], "LineString"];
 

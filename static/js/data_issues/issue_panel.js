@@ -10,14 +10,14 @@ import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 const MAX_NOTE_LENGTH = 500;
 
 /**
- * What the acts of the panel do; curators are offered them.
+ * Handlers of the panel's acts, which are offered to curators.
  *
  * @typedef {object} PanelHandlers
  * @property {(body: Record<string, unknown> & { action: string }) => void} repair
  * @property {(note: string) => void} dismiss
  * @property {() => void} reopen
  * @property {(collection: Collection | null) => void} preview
- * @property {(notify: (count: number) => void) => void} place begins to take places from the map and tells how many there are
+ * @property {(notify: (count: number) => void) => void} place begins to take places from the map and reports their count
  * @property {(offer: DataIssueOffer) => void} placeDone
  * @property {() => void} placeBack
  * @property {() => void} placeCancel
@@ -205,7 +205,7 @@ class DataIssuePanel {
     note.focus();
   }
 
-  /** While places are clicked on the map the acts say how many there are. @param {DataIssueOffer} offer @param {number} count */
+  /** Show the count of places that are clicked on the map. @param {DataIssueOffer} offer @param {number} count */
   #placing(offer, count) {
     this.#drawn = "";
     const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");

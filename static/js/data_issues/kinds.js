@@ -43,7 +43,7 @@ export function cutOffText({ kind, cut_off_m: cutOff_m }) {
 const onlyConcerns = (kind) => kind === "line_without_towers" || kind === "tower_on_no_line";
 
 /**
- * Facts for the panel, beside what the sentence says: [term, value].
+ * Facts for the panel, in addition to the sentence: [term, value].
  *
  * @param {Pick<Properties, "kind" | "details" | "cut_off_m">} issue
  * @returns {[string, string][]}

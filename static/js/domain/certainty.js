@@ -24,7 +24,7 @@ export function reportAge_s({ measured }, now_ms) {
 }
 
 /**
- * Whether its next report should have come, by how often they come and by the limits that alerts keep to: not of one that has landed.
+ * Whether the next report is overdue, by its interval and the limits of alerts; false after landing.
  *
  * @param {LiveUav} uav
  * @param {number} now_ms
@@ -53,7 +53,7 @@ export const hasFix = ({ measured }) => typeof measured?.gps_fix !== "number" ||
 export function certaintyOf(uav, now_ms) {
   const { measured, estimated } = uav;
   if (!measured?.position && !estimated) return null;
-  if (measured?.position && inAir(uav) === false) return MEASURED; // it stands where it said, switched off perhaps
+  if (measured?.position && inAir(uav) === false) return MEASURED; // at the place of its last report, possibly switched off
   const age_s = reportAge_s(uav, now_ms);
   const isFresh = !isSilent(uav, now_ms);
   if (!hasFix(uav) && isFresh) return ESTIMATED; // what it reports of its place is dead reckoning

@@ -1,4 +1,4 @@
-/** Lengths and areas while drawing, on the sphere: within 0.5 % of what the server then measures on the ellipsoid. */
+/** Lengths and areas while drawing, on the sphere: within 0.5 % of the server's measurement on the ellipsoid. */
 
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const RADIANS = Math.PI / 180;

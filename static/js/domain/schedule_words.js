@@ -1,4 +1,4 @@
-/** When a zone applies, in words and by the clock of whoever reads. Values in, values out; what is stored is UTC. */
+/** When a zone applies, as text in the reader's time zone. Values in, values out; stored times are UTC. */
 
 import { t } from "../text.js";
 import { clockText, longDayText, minutesAheadOfUtc, typedMoment } from "../units.js";
@@ -11,7 +11,7 @@ const EVENT_WORDS = Object.fromEntries(EVENTS);
 
 /**
  * "21 November, 14:00 to 17:00", "Mon to Fri 09:00 to 19:00 (08:00 to 18:00 UTC), until 31 December". schedule: the stored periods, null
- * for always; now [ms]: from whose offset to UTC hours of the week are told. What cannot be read is told as it is stored, in `otherwise`.
+ * for always; now [ms]: its offset from UTC applies to hours of the week. What cannot be parsed is returned as stored, in `otherwise`.
  *
  * @param {SchedulePeriod[] | null} schedule
  * @param {{ now?: number, otherwise?: string }} [how]

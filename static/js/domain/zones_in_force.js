@@ -15,7 +15,7 @@ const EVENTS = {
 };
 
 /**
- * The moment of an event on the day that begins at `day` (ms, UTC) as people at [lon, lat] count it, within some two minutes; null where
+ * The moment of an event on the day that begins at `day` (ms, UTC) in local time at [lon, lat], within some two minutes; null where
  * the sun does not rise or set. Source: the sunrise equation, with the mean anomaly and ecliptic longitude of the Astronomical Almanac.
  *
  * @param {keyof typeof EVENTS} name
@@ -49,7 +49,7 @@ function timeOf(entry, side, day, place) {
 }
 
 /**
- * true, false, or null where the sun has no say: then it is not known.
+ * true, false, or null (unknown) where a sun event of the entry has no time.
  *
  * @param {ScheduleEntry} entry
  * @param {number} now

@@ -61,7 +61,7 @@ class DrawPanel {
   );
   /** @type {EditorState | null} */
   #now = null;
-  /** What the server says. @type {Fault | null} */
+  /** Figures from the server. @type {Fault | null} */
   #reported = null;
 
   /** @param {Editor} editor @param {ShowPlace} show */

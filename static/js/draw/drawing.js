@@ -19,7 +19,7 @@ import {
 /** @import { Drawing, Shape } from "./types.d.ts" */
 
 /**
- * A shape that lacks vertices is drawn on, also one that was left in the middle.
+ * Begin to draw a shape, or continue one without enough vertices.
  *
  * @param {Shape} shape
  * @returns {Drawing}

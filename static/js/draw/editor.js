@@ -108,7 +108,7 @@ export class Editor {
     this.notify();
   }
 
-  /** Draws what there is now and tells it. */
+  /** Draw the present shape and report it. */
   notify() {
     const { map } = this;
     if (this.chosen && (!this.#steps || !shapes.positionAt(this.drawing.shape, this.chosen))) this.chosen = null;

@@ -1,5 +1,5 @@
 /**
- * What is being drawn, and every step that changes it. A shape is a value: steps give a new one.
+ * A shape that is drawn, and every step that changes it. Shapes are immutable: steps return a new one.
  *
  * { kind: "point" | "line" | "area" | "circle", parts: [[ring, …], …], radius_m }
  * A ring is a list of positions [lon, lat]; a point has one ring of one position, a line one ring, an area its outer ring first and then

@@ -1,4 +1,4 @@
-/** What is wrong with a shape while it is being drawn: said at once; the server has the last word before anything is stored. */
+/** Faults of a shape while it is drawn, shown at once; the server validates it again before it is stored. */
 
 import { continuous } from "../domain/geodesy.js";
 import { t } from "../text.js";
@@ -6,7 +6,7 @@ import { isInside, leastOf } from "./shape.js";
 
 /** @import { Fault, Shape, VertexPath } from "./types.d.ts" */
 
-export const MAX_CHECKED = 2_000; // vertices; of more the server says whether they cross
+export const MAX_CHECKED = 2_000; // vertices; for more, the server checks crossings
 /** @typedef {{ from: number[], to: number[] }} Ends */
 /**
  * @typedef {Ends & { part: number, ring: string, index: number, size: number, low: number, high: number }} Side

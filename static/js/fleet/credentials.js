@@ -79,10 +79,10 @@ const revokeQuestion = (name, { keep, revoke }) =>
   );
 
 /**
- * @typedef {object} Insisting what was refused for now
+ * @typedef {object} Insisting an act that was refused for now
  * @property {CredentialKind} kind
  * @property {string} why
- * @property {string} act in words
+ * @property {string} act text of the button
  * @property {(reason: string) => unknown} again
  */
 

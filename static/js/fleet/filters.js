@@ -1,4 +1,4 @@
-/** What is looked at: the tab, the words, and a UAV's state, type and base. */
+/** Filters of the fleet: the tab, the search text, and a UAV's state, type and base. */
 
 import { byId, find, h } from "../dom.js";
 import { t } from "../text.js";

@@ -1,4 +1,4 @@
-/** The three things of the fleet: where each comes from, what its table shows, how it is named and told in full. */
+/** The three kinds of rows of the fleet: source, columns of the table, name and full description. */
 
 import { h, term } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
@@ -24,7 +24,7 @@ import {
 const caption = (words) => words && h("span", { class: "caption" }, words);
 
 /**
- * What it is charged to, and what a full one holds; the latter alone where nobody knows the former.
+ * The present charge and the capacity; only the capacity where the charge is unknown.
  *
  * @param {Uav} uav
  * @returns {Child}

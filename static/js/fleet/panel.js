@@ -188,7 +188,7 @@ export function mountPanel(how) {
 }
 
 /**
- * Somebody else was faster: what they changed, and what can be done.
+ * Notice that another user was faster: their changes, and the possible acts.
  *
  * @param {object} conflict
  * @param {string} conflict.who

@@ -80,7 +80,7 @@ export function placeFields(position, onMove) {
 }
 
 /**
- * By which door a UAV is told what to do, and what is taken for its word.
+ * Fields of the link through which a UAV receives commands, and of the checks of its messages.
  *
  * @param {UavBody} uav
  * @param {boolean} isAdministrator

@@ -1,4 +1,4 @@
-/** Vehicles that spoke to a gateway and belong to no UAV: an administrator says whose they are, or that nobody cares. */
+/** Vehicles that sent messages to a gateway and belong to no UAV: an administrator adopts or ignores them. */
 
 import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -30,7 +30,7 @@ export function aboutVehicle(vehicle, now = Date.now()) {
 }
 
 /**
- * The form that says which UAV a vehicle is.
+ * The form that adopts a vehicle as a UAV.
  *
  * @param {UnknownVehicle} vehicle
  * @param {UavFeature[]} uavs

@@ -1,4 +1,4 @@
-/** What the fleet's pages say about UAVs, types and bases. */
+/** Texts of the fleet's pages on UAVs, types and bases. */
 
 import { h, icon } from "../dom.js";
 import { t, tn } from "../text.js";

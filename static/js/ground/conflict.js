@@ -1,4 +1,4 @@
-/** Somebody else was faster: both versions side by side, and nothing is overwritten unseen. */
+/** Another user's faster change: both versions side by side, and none is overwritten unseen. */
 
 import { h } from "../dom.js";
 import { t } from "../text.js";

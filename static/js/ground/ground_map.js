@@ -1,4 +1,4 @@
-/** The map of a page about the ground: made, furnished, and told what the pointer means. */
+/** The map of a page on map data: created, with controls and pointer events. */
 
 import { byId } from "../dom.js";
 import { piecesOf, routeClicks } from "../map/click_router.js";

@@ -1,4 +1,4 @@
-/** A record that is drawn and edited: shape and facts, kept in the browser until they are stored, and never over somebody's change. */
+/** Drawing and editing of a record: shape and facts, kept in the browser until they are stored. Never overwrites another user's change. */
 
 import { ApiError, patch, post } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";
@@ -30,7 +30,7 @@ const CHECK_AFTER_MS = 700;
  * @property {(id: number, how?: { stay?: boolean }) => Promise<void>} choose
  * @property {() => { feature: Feature, etag: string | null } | null} chosen
  * @property {() => void} forget what is chosen
- * @property {() => void} cancelled called when an edit of nothing chosen is left
+ * @property {() => void} cancelled called when an edit without a chosen record is left
  * @property {() => void} back to the list
  * @property {() => Promise<void>} reload the list and the map
  */

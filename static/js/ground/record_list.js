@@ -1,4 +1,4 @@
-/** The list of a record page: what is looked for, what was found, and more of it on demand. */
+/** The list of a record page: search, results, and more of them on demand. */
 
 import { get } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";

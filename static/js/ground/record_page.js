@@ -1,4 +1,4 @@
-/** A page of records, assets or zones: find, look, draw, edit, history, undo. What differs between the two is its RecordKind. */
+/** A page of records, assets or zones: search, view, draw, edit, history, undo. What differs between the two is its RecordKind. */
 
 import { ApiError } from "../api.js";
 import { byId } from "../dom.js";

@@ -1,4 +1,4 @@
-/** One record to look at: its facts, its history, and what curators can do with it. */
+/** One record: its facts, its history, and the acts of curators. */
 
 import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";

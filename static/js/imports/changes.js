@@ -87,7 +87,7 @@ function row(change, acts) {
   return element;
 }
 
-/** The names of what differs, for the second line. @param {Change["properties"]} properties */
+/** The names of the differences, for the second line. @param {Change["properties"]} properties */
 function shortOf(properties) {
   if (properties.action !== "changed" && properties.action !== "kept") return "";
   const names = factLines(properties).map(({ words }) => words);

@@ -33,7 +33,7 @@ const PLACES = { lon: t("Longitude, or x"), lat: t("Latitude, or y"), wkt: t("Ge
 /** "voltage:kV" → "voltage": a meaning that only one column can have. @param {string} meaning */
 const roleOf = (meaning) => meaning.split(":")[0];
 
-/** The meaning of each column by name, as a mapping of the API says it. @param {Mapping} mapping */
+/** The meaning of each column by name, from a mapping of the API. @param {Mapping} mapping */
 export function meaningsOf({ kind, columns = {}, units = {}, geometry = {} }) {
   /** @type {Meanings} */
   const found = {};
@@ -245,7 +245,7 @@ class ColumnMapping {
     this.#drawValues();
   }
 
-  /** Where a column says the kind, what each of its values means. */
+  /** Draw the meaning of each value of a column that states the kind. */
   #drawValues() {
     if (this.#kind.value !== BY_COLUMN) {
       this.#values.replaceChildren();

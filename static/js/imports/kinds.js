@@ -1,4 +1,4 @@
-/** Which kind of data a file has, guessed from its name and its first bytes; a curator can say otherwise. */
+/** Kind of data of a file, guessed from its name and its first bytes; a curator can change it. */
 
 /** @import { ImportKind } from "./types.d.ts" */
 
@@ -32,7 +32,7 @@ export function guessKind(name, head = new Uint8Array()) {
   return /\.zip$/i.test(name) ? "assets" : "zones";
 }
 
-/** What a set is called if nobody says otherwise: the file's name without its ending. @param {string} fileName */
+/** The default name of a set: the file's name without its extension. @param {string} fileName */
 export function setNameOf(fileName) {
   return (
     fileName

@@ -1,4 +1,4 @@
-/** The list of what has come in, newest first. */
+/** The list of imports, newest first. */
 
 import { byId, h, icon, keyedList } from "../dom.js";
 import { t } from "../text.js";

@@ -1,4 +1,4 @@
-/** Of an asset file that was refused because nobody knows where its coordinates are: the system is asked for, and the file read again. */
+/** Form after an asset file was refused because its coordinate system is unknown: asks for the system and reads the file again. */
 
 import { h } from "../dom.js";
 import { t } from "../text.js";

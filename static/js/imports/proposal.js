@@ -192,7 +192,7 @@ class ProposalPanel {
   }
 }
 
-/** @param {number} kept rows that were edited by hand @param {() => void} apply */
+/** @param {number} kept manually edited rows @param {() => void} apply */
 function askToOverwrite(kept, apply) {
   const question = tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?");
   const effect = tn(
@@ -370,7 +370,7 @@ function versionRow({ version: number, zone_count, created_by, created_at }, rol
   );
 }
 
-/** Why it was not applied by itself, although that was asked for. @param {Proposal} proposal */
+/** Why it was not applied automatically, although that was requested. @param {Proposal} proposal */
 function heldBack({ state, held_back }) {
   if (state !== "ready" || !held_back.length) return null;
   const reasons = held_back.map(({ message }) => h("li", {}, message));

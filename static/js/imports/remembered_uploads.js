@@ -2,13 +2,13 @@
 
 /** @import { RememberedUpload } from "./types.d.ts" */
 
-const KEPT_MS = 24 * 3_600_000; // the server forgets them then, too
+const KEPT_MS = 24 * 3_600_000; // the server deletes them then, too
 
 /** @param {Pick<File, "name" | "size" | "lastModified">} file */
 export const markOf = ({ name, size, lastModified }) => `${name}\n${size}\n${lastModified}`;
 
 /**
- * Whatever the storage refuses or garbles is no more than a forgotten upload.
+ * Create the list of interrupted uploads. An error or unreadable content of the storage only loses uploads.
  *
  * @param {number | string} userId
  * @param {Pick<Storage, "getItem" | "setItem">} [storage]

@@ -13,7 +13,7 @@ export const KINDS = ["uavs", "missions", "alerts", "commands", "offers"];
 
 export const nothingShown = () => shownAfterSnapshot({});
 
-/** Everything anew: { uavs: [{ id, … }], … } → what is shown. @param {Partial<Live>} live */
+/** State after a snapshot: { uavs: [{ id, … }], … } → state to show. @param {Partial<Live>} live */
 export function shownAfterSnapshot(live) {
   const entries = KINDS.map((kind) => [kind, new Map((live[kind] ?? []).map((entry) => [entry.id, entry]))]);
   return /** @type {Shown} */ (Object.fromEntries(entries));

@@ -1,4 +1,4 @@
-/** What a page says that is told nothing any more. Values in, values out. */
+/** Notice on a page that no longer receives updates. Values in, values out. */
 
 import { t } from "../text.js";
 import { exactClockText } from "../units.js";

@@ -1,4 +1,4 @@
-/** Coordinates as people write them: decimal degrees, degrees and minutes, degrees, minutes and seconds. Values in, values out. */
+/** Parser of coordinates: decimal degrees, degrees and minutes, degrees, minutes and seconds. Values in, values out. */
 
 /** @typedef {{ letter: string, degrees: number }} Angle */
 
@@ -66,8 +66,8 @@ function angleOf([, before, degrees, minutes, seconds, after]) {
 }
 
 /**
- * { position: [lon, lat], order } or null where the text is no pair of coordinates. Without letters the latitude comes first; `order` says
- * what was taken for granted: "letters", "latitude first", or "longitude first" where the first figure can be no latitude.
+ * { position: [lon, lat], order }, or null where the text is no pair of coordinates. Without letters the latitude comes first; `order`
+ * states the order assumed: "letters", "latitude first", or "longitude first" where the first figure can be no latitude.
  *
  * @param {string} text
  */

@@ -1,4 +1,4 @@
-/** A line drawn by hand round what is meant: the ring in lon lat, or nothing where it encloses too little. */
+/** A freehand line round a selection: the ring in lon lat, or nothing where it encloses too little. */
 
 import { svg } from "../dom.js";
 import { swallowDrawnClick } from "./drawn_click.js";

@@ -1,4 +1,4 @@
-/** Where the map library is, said once. */
+/** Address of the map library, in one place. */
 
 import * as maplibre from "/static/lib/maplibre-gl/maplibre-gl.mjs";
 import { staticAddress } from "../static_address.js";

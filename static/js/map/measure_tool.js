@@ -49,7 +49,7 @@ export function measured(points, pointer = null) {
   return /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
 }
 
-/** The sentence of what has been measured. @param {Position[]} points @param {Position | null} [pointer] */
+/** The sentence on a measurement. @param {Position[]} points @param {Position | null} [pointer] */
 export function measureWords(points, pointer = null) {
   const all = pointer && points.length ? [...points, pointer] : points;
   if (all.length < 2)

@@ -1,4 +1,4 @@
-/** Which target pills and which UAVs share one place on the screen, and what a shared one says. Values in, values out. */
+/** Grouping of target pills and UAVs that share one place on the screen, and the labels of groups. Values in, values out. */
 
 import { countText } from "../units.js";
 

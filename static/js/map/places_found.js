@@ -16,7 +16,7 @@ const MAX_ZONES = 4;
 const MAX_NAMED = 4;
 
 /**
- * The place that coordinates name, as a list of one or none: [{ icon, label, detail, position, zoom }].
+ * The place of typed coordinates, as a list of one or none: [{ icon, label, detail, position, zoom }].
  *
  * @param {string} text
  * @returns {FoundPlace[]}

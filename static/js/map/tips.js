@@ -1,4 +1,4 @@
-/** What the tooltip of the map says of an asset or a zone. A zone's times and source are asked for when it is looked at. */
+/** Tooltip of the map for an asset or a zone. A zone's times and source are requested when it is shown. */
 
 import { h, icon } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
@@ -105,7 +105,7 @@ const limitOf = (value_m, reference) =>
     : { value_m, reference: /** @type {Limit["reference"]} */ (reference ?? "") };
 
 /**
- * Whether the zone applies now, in words; by the schedule in the tile.
+ * Whether the zone applies now, as text; by the schedule in the tile.
  *
  * @param {ThingProperties} properties
  * @param {Position} place

@@ -1,4 +1,4 @@
-/** A map on which nothing is picked: what the pointer is at is told beside it, and a click tells it to a finger. */
+/** A map on which nothing is picked: the thing at the pointer is shown in a tooltip, and after a tap on touch screens. */
 
 import { routeClicks } from "./click_router.js";
 import { tipOf } from "./tips.js";

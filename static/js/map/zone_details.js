@@ -1,4 +1,4 @@
-/** What is known of a zone beyond its tile: times in words, source. Asked for when somebody looks at it. */
+/** Details of a zone beyond its tile: times as text, source. Requested when they are shown. */
 
 import { get } from "../api.js";
 

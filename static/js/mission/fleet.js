@@ -75,7 +75,7 @@ export function choicesOf(fleet) {
 }
 
 /**
- * Whether a UAV is one of those that were asked for; an empty name asks for all.
+ * Whether a UAV matches the filters; an empty name matches all.
  *
  * @param {Pick<PickedUav, "base_name" | "sensors" | "type_name">} uav
  * @param {{ base?: string, sensor?: string, type?: string }} asked

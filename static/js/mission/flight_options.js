@@ -11,7 +11,7 @@ import { lostLinkOf } from "./lost_link.js";
 
 /** Any time, calm, no charging; without a link UAVs go on. @type {Readonly<FlightOptions>} */
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });
-export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
+export const MILD_C = 15; // ISA at sea level, the default
 export const MAX_LAYERS = 10; // missions/serializers/limits.py
 const COMPASS = [
   t("north"),
@@ -57,7 +57,7 @@ export const flightOptionsOf = ({ departs_at, conditions, charging_w, lost_link 
   lost_link: lostLinkOf(lost_link),
 });
 
-/** What of them is said, as the API takes it. @param {FlightOptions} selection @returns {Partial<FlightOptions>} */
+/** The stated options in the form of the API. @param {FlightOptions} selection @returns {Partial<FlightOptions>} */
 export function flightOptionsAsked(selection) {
   return Object.fromEntries(Object.entries(flightOptionsOf(selection)).filter(([, value]) => value !== null));
 }

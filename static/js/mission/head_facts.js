@@ -9,7 +9,10 @@ import { isPlanCurrent } from "./plan_view.js";
 /** @param {number} count */
 const targetsText = (count) => tn(count, "{count} target", "{count} targets");
 
-/** That none is open is said once all has arrived. @param {MissionPageState} state @param {boolean} canPlan */
+/**
+ * Facts of the mission for the header; "no mission is open" only once all data have arrived.
+ * @param {MissionPageState} state @param {boolean} canPlan
+ */
 export function factsOf(state, canPlan) {
   const { plan, mission, arrival } = state;
   if (arrival === "awaited") return [t("Loading …")];

@@ -59,7 +59,7 @@ function cellsOf(line, sign) {
 }
 
 /**
- * What the server says of each: [{ ref, match, count, assets }].
+ * The server's matches of each: [{ ref, match, count, assets }].
  *
  * @param {string[]} refs
  * @param {string[]} kinds

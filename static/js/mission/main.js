@@ -213,7 +213,7 @@ let plannedSeen = null;
 store.listen(["mission"], ({ mission }) => {
   scene.show(Boolean(mission?.plan));
   const isOther = plannedSeen !== null && (mission?.planned_at ?? null) !== plannedSeen;
-  if (isOther && mission?.plan && scene.stage()?.source.kind === "plan") void scene.open({ takesFocus: false }); // it was planned anew
+  if (isOther && mission?.plan && scene.stage()?.source.kind === "plan") void scene.open({ takesFocus: false }); // it was planned again
   plannedSeen = mission?.planned_at ?? null;
 });
 /** @type {MissionPageState["rehearsal"]["track"]} */
@@ -327,7 +327,7 @@ async function fleetOfOrganisation() {
 async function load() {
   try {
     const fleet = fleetOfOrganisation();
-    fleet.catch(() => {}); // told below, after the map has its ground
+    fleet.catch(() => {}); // shown below, after the map has its data
     store.update({ ground: /** @type {Answer<Ground>} */ (await get("/ground")).data });
     store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);

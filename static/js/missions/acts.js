@@ -9,7 +9,7 @@ import { t, tn } from "../text.js";
 /** @import { MissionList } from "./list.js" */
 
 /** @typedef {Pick<MissionSummary, "id" | "name">} Named */
-/** @typedef {{ one: (name: string) => string, many: (count: number) => string, failed: string }} Outcomes in words */
+/** @typedef {{ one: (name: string) => string, many: (count: number) => string, failed: string }} Outcomes texts of an act */
 
 /** @type {Outcomes} */
 const DELETED = {

@@ -7,7 +7,7 @@ import { t } from "../text.js";
  * @typedef {object} Step
  * @property {string} title
  * @property {string} text
- * @property {string[]} at selectors of what it speaks of; the first that is shown is marked
+ * @property {string[]} at selectors of the elements described; the first that is shown is marked
  */
 
 /** @type {Step[]} */

@@ -1,4 +1,4 @@
-/** Sound and the browser's notifications for alerts: only after somebody has asked for them, one sound for critical, another for warning. */
+/** Sound and browser notifications for alerts: only after the user has enabled them, one sound for critical, another for warning. */
 
 import { byId, h, icon } from "../dom.js";
 import { newAlerts } from "../domain/order.js";
@@ -133,7 +133,7 @@ function makeMenu(alarm, onChange) {
 export function mountAlarm(store) {
   const alarm = createAlarm();
   /** @type {Map<number, AlertLevel>} */
-  const reported = new Map(); // alert → level that was said
+  const reported = new Map(); // alert → level that was announced
   const button = byId("alert-sound");
 
   function drawButton() {

@@ -1,4 +1,4 @@
-/** What a page may say before all that it asked for has arrived: that it is loading, never that there is none. Values in, values out. */
+/** Text of a page before all requests have arrived: that it is loading, never that there is none. Values in, values out. */
 
 /** @import { MonitorState } from "./types.d.ts" */
 

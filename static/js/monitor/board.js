@@ -46,7 +46,7 @@ const REASONS = {
 };
 
 /**
- * Why a target was skipped or failed: a known code in words, anything else as it is.
+ * Why a target was skipped or failed: the text of a known code, any other as it is.
  *
  * @param {string | null | undefined} reason
  */
@@ -66,7 +66,7 @@ export function numbersOf(detail) {
 }
 
 /**
- * "C3", or the bare number of a target that nobody flies to.
+ * "C3", or the bare number of a target without a route.
  *
  * @param {Pick<LiveTarget, "place" | "uav">} target
  * @param {Map<number, number>} numbers

@@ -1,4 +1,7 @@
-/** What tells UAVs of several missions apart on one page: their letters begin at A in each mission, so the mission's number comes before. Values in, values out. */
+/**
+ * Call signs of UAVs of several missions on one page: letters begin at A in each mission, so the mission's number comes first. Values in,
+ * values out.
+ */
 
 import { routeLetter } from "../domain/palette.js";
 

@@ -46,8 +46,8 @@ export function batteryWords(uav) {
 }
 
 /**
- * Percent that its battery has when it is down: by its own drain as it flies now, else at the end of its route by what the plan takes for
- * the rest of it; null where neither is known.
+ * Battery percent at landing: from its present drain in flight, else from the plan's consumption on the rest of its route; null where
+ * neither is known.
  *
  * @param {LiveUav} uav
  * @param {Beside["route"]} route

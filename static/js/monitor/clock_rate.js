@@ -8,7 +8,7 @@ import { numberText } from "../units.js";
 const ALIKE = 0.1; // as much as what was learnt of a clock may be off
 
 /**
- * Its seconds a second: the whole number that is learnt more or less; 1 of what is no simulated UAV.
+ * Simulated seconds a second: a whole number if within 10 % of one, else with one decimal; 1 for a real UAV.
  *
  * @param {{ link?: Pick<LiveLink, "clock_rate"> | null, is_simulated: boolean }} uav
  */

@@ -1,4 +1,4 @@
-/** What has happened, in words: who did what, as the server keeps it. Values in, values out. */
+/** The event log as text: who did what, from the server's records. Values in, values out. */
 
 import { KINDS } from "../domain/flying.js";
 import { t } from "../text.js";
@@ -175,7 +175,7 @@ export function lineOf({ key, at, kind, mission, uav, who, level, is_simulated, 
 }
 
 /**
- * What is known, with a page that was read anew; the newest first.
+ * The known events merged with a page that was read again; the newest first.
  *
  * @param {MissionEvent[]} known
  * @param {MissionEvent[]} read

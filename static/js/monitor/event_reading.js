@@ -1,4 +1,4 @@
-/** Reads the event log while somebody looks at it: the newest page, what is new after a change that the feed tells, older pages on demand. */
+/** Reading of the event log while it is visible: the newest page, new events after a change in the feed, older pages on demand. */
 
 import { ApiError, get } from "../api.js";
 import { toast } from "../page/toast.js";
@@ -30,7 +30,7 @@ export function createEventReading(store, page) {
         olderEvents: isFirst || hasGap ? next : olderEvents,
       });
     } catch (error) {
-      if (!(error instanceof ApiError)) throw error; // the head of the page says that nothing comes in
+      if (!(error instanceof ApiError)) throw error; // the page's head reports the lost connection
     }
   }
 

@@ -61,8 +61,7 @@ export function grouped(fleet, filter) {
 export const isHead = (entry) => typeof entry.id === "string";
 
 /**
- * The list as it stands: of one mission its UAVs, on the live page those of all missions below their heads, as far as the filter lets
- * them through.
+ * The listed UAVs: those of one mission, or on the live page the filtered ones of all missions below their heads.
  *
  * @param {Fleet & { filter: FleetFilter }} fleet
  * @param {boolean} isOfOne

@@ -16,7 +16,7 @@ import { layOut, scaleOf } from "../mission/strips/span_strip.js";
  * @property {number} width_px
  * @property {string} label for screen readers
  * @property {Map<number, TargetState>} states of each target by its place
- * @property {Progress | null} progress as progressOf says it
+ * @property {Progress | null} progress result of progressOf
  * @property {Certainty | null} certainty
  */
 
@@ -26,7 +26,7 @@ const DART_PX = 9;
 const MIN_BRACKET_PX = 9;
 
 /**
- * How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows.
+ * Position of a UAV along its route [m] and its uncertainty [m]: { at_m, within_m }; null where unknown.
  *
  * @param {Pick<LiveUav, "estimated" | "measured"> & { link?: Pick<LiveUav["link"], "waypoint_sequence"> | null }} uav
  * @param {readonly number[]} places of its waypoints along the route [m]

@@ -1,4 +1,4 @@
-/** What the feed does not tell: plans of missions, and the line flown so far. Read once, and again when a mission changes. */
+/** Data that the feed does not have: plans of missions, and the line flown so far. Read once, and again when a mission changes. */
 
 import { ApiError, get } from "../api.js";
 import { inAir } from "../domain/in_air.js";
@@ -11,7 +11,7 @@ import { inAir } from "../domain/in_air.js";
 /** @typedef {{ geometry: { coordinates: number[] } | null, properties: { uav: number, measured_at: string, is_from_future?: boolean } }} Report */
 
 const MAX_RECORDS = 900;
-const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown
+const GAP_S = 45; // no line is drawn over a longer silence: the path is unknown
 
 /** The log as parts of a line by UAV: Map of uav → { parts: [[lon lat, …], …], last_ms }. @param {Report[]} features */
 export function flownParts(features) {

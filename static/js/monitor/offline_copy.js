@@ -1,4 +1,4 @@
-/** The live page of one mission as an offline copy: what was approved, and nothing of what flies. */
+/** The live page of one mission as an offline copy: the approved plan, without live data. */
 
 import { byId } from "../dom.js";
 import { nothingShown } from "../live/shown.js";
@@ -7,7 +7,7 @@ import { fencesOf, rallyPointsOf, readBriefing } from "../offline/briefing.js";
 /** @import { LiveMission, Mission } from "../api_types.d.ts" */
 /** @import { MonitorStore } from "./types.d.ts" */
 
-/** As the feed tells of a mission, without what only the feed knows. @param {Mission} mission @returns {LiveMission} */
+/** The mission in the form of the feed, without data that only the feed has. @param {Mission} mission @returns {LiveMission} */
 export function missionOfCopy({ id, name, state, revision, departs_at, colours, uavs, targets, plan }) {
   const routes = plan?.routes ?? [];
   const placed = new Map(routes.flatMap((route, place) => route.targets.map((target) => [target, place])));

@@ -27,7 +27,7 @@ export function placed(uavs, missions) {
 }
 
 /**
- * On the page of one mission: its UAVs, and those that fly no mission; one that flies another mission is no business of this page.
+ * UAVs of a page: on that of one mission its own, and those without a mission.
  *
  * @param {LiveUav[]} uavs
  * @param {string | null} mission the only one of the page; null: all

@@ -4,7 +4,7 @@
 
 const [MIN_ZOOM, MAX_ZOOM] = [7, 15]; // the nearest that the map asks for
 const MAX_TILES = 240;
-const AROUND_DEG = 0.01; // some 1 km of what lies beside a route
+const AROUND_DEG = 0.01; // some 1 km on each side of a route
 
 /** States in which a mission is approved and not over. @type {Set<MissionState>} */
 const KEPT_STATES = new Set(["approved", "dispatched", "active"]);

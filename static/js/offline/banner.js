@@ -1,4 +1,4 @@
-/** What an offline copy says of itself: of when it is, and that nothing can be sent. It ends by itself once the server answers. */
+/** The banner of an offline copy: its time, and that nothing can be sent. It disappears once the server answers. */
 
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";

@@ -15,7 +15,7 @@ const AFTER_LOAD_MS = 1_500; // the page itself comes first
 const MAX_MISSIONS = 10;
 const ALL_INTERVAL_MS = 600_000;
 
-/** On every page of somebody who has signed in. @param {KeptPage} page */
+/** Keep an offline copy; on every page of a signed-in user. @param {KeptPage} page */
 export function keepForOffline(page) {
   const workers = globalThis.navigator?.serviceWorker;
   if (!workers) return; // http to another host than this one, or a browser without it
@@ -24,7 +24,7 @@ export function keepForOffline(page) {
 
 /** @param {unknown} error */
 function forgive(error) {
-  if (error instanceof ApiError || error instanceof TypeError || error instanceof DOMException) return; // the server is away, storage closed
+  if (error instanceof ApiError || error instanceof TypeError || error instanceof DOMException) return; // server unavailable, storage closed
   throw error;
 }
 

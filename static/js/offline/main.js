@@ -1,4 +1,4 @@
-/** The page without a connection: names the missions that this browser has kept, and loads anew once the server answers. */
+/** The page without a connection: lists the missions that this browser has kept, and reloads once the server answers. */
 
 import { byId, h } from "../dom.js";
 import { COPY_HEADER } from "../offline_copy.js";

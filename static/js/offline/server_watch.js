@@ -1,4 +1,4 @@
-/** Asks for the server while it cannot be reached, and loads the page anew once it answers. */
+/** Poll the server while it is unavailable; reloads the page once it answers. */
 
 const ASK_INTERVAL_MS = 5_000;
 const ASK_TIMEOUT_MS = 4_000;

@@ -14,7 +14,7 @@ import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 /** @type {Record<string, string>} */
 const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
 
-/** In an offline copy nobody can act. */
+/** No rights in an offline copy. */
 const NO_RIGHTS = { canPlan: false, canFly: false, canCurate: false };
 
 /** @returns {any} what the server has written into the page for its script */

@@ -1,4 +1,4 @@
-/** A command to a UAV, sent once; a start that is refused for its slot is asked for once more. */
+/** One command to a UAV, sent once; a start that is refused for its slot is confirmed once more. */
 
 import { ApiError, freshKey, post } from "../api.js";
 import { outOfSlotQuestion } from "../domain/command_questions.js";
@@ -9,7 +9,7 @@ import { confirmAct } from "./confirm.js";
 const ANSWER_WITHIN_MS = 30_000; // of a connection that is frozen nothing comes
 
 /**
- * Whether it is being told; not where somebody rather waits. Rejects with ApiError.
+ * Send a command. Resolves to whether it was sent; false where the user prefers to wait. Rejects with ApiError.
  *
  * @param {number | null} uav
  * @param {string} name

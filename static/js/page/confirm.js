@@ -179,7 +179,7 @@ function growFrom(dialog, opener) {
   const box = opener.getBoundingClientRect();
   const middle = box.left + box.width / 2;
   const left = Math.min(Math.max(EDGE_PX, middle - dialog.offsetWidth / 2), innerWidth - dialog.offsetWidth - EDGE_PX);
-  // its lower edge stays where it is when more is known and said: the buttons never leave the window
+  // the lower edge is fixed when text is added: the buttons stay in the window
   const room = box.top - 2 * EDGE_PX;
   const isAbove = room >= dialog.offsetHeight || room >= innerHeight / 2;
   Object.assign(dialog.style, {

@@ -53,7 +53,7 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
     if (words) input.setAttribute("aria-invalid", "true");
     else input.removeAttribute("aria-invalid");
   };
-  // Said beside the field and in the page's language, not in a bubble of the browser's.
+  // Shown beside the field and in the page's language, instead of the browser's bubble.
   input.addEventListener("invalid", (event) => {
     event.preventDefault();
     notify(faultWords(input));

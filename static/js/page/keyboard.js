@@ -1,4 +1,4 @@
-/** Keys of the page, and the sheet that shows them. Single keys are off while somebody types. */
+/** Keys of the page, and the sheet that lists them. Single keys are off while the user types. */
 
 import { h } from "../dom.js";
 import { t } from "../text.js";
@@ -44,7 +44,7 @@ export function keyName(event) {
 }
 
 /**
- * Whether a single character, or several one after the other, is all it takes: what WCAG 2.1.4 wants to be switched off.
+ * Whether one or several plain characters suffice: WCAG 2.1.4 requires that these can be switched off.
  *
  * @param {string} keys
  */

@@ -1,4 +1,4 @@
-/** What pages keep of somebody in this browser, and how it goes when they sign out. Preferences of the browser itself stay. */
+/** A user's data in this browser, and their deletion at sign-out. Preferences of the browser itself stay. */
 
 const DRAFT = /^spanwise\.([a-z]+-)?draft\./;
 

@@ -1,10 +1,10 @@
-/** What went wrong with something that was asked of the server, in the page's place for it (#problem). */
+/** Report of a failed request, in the page's element for it (#problem). */
 
 import { ApiError, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
 
-/** How a part of a page reports what became of a request: tell(title, error) shows a fault, settle() takes it away. */
+/** How a part of a page reports the outcome of a request: notify(title, error) shows a fault, settle() removes it. */
 /** @typedef {{ notify: (title: string, error: unknown) => void, settle: () => void }} Reporter */
 
 /** Shows an error of the API; throws any other. @param {string} title @param {unknown} error */

@@ -1,11 +1,11 @@
-/** Signing out leaves nothing of somebody in this browser; what is not saved on the server is told first. */
+/** Signing out deletes a user's data in this browser; unsaved changes are reported first. */
 
 import { h } from "../dom.js";
 import { t, tn } from "../text.js";
 import { open } from "./keyboard.js";
 import { draftsOf, forget } from "./left_behind.js";
 
-/** What the page's window hears: keep what has just been changed; and keep nothing more. */
+/** Events of the window: keep what has just been changed; and keep nothing more. */
 export const KEEP_NOW = "spanwise-keep-now";
 export const KEEP_NO_MORE = "spanwise-keep-no-more";
 

@@ -1,4 +1,4 @@
-/** Light, dark or the system's: kept in the account of whoever is signed in, and in this browser for the pages before that. */
+/** Theme: light, dark or the system's. Stored in the account of a signed-in user, and in this browser for the pages before login. */
 
 import { patch } from "../api.js";
 
@@ -35,7 +35,7 @@ export function nextTheme() {
   chooseTheme(ORDER[(ORDER.indexOf(chosenTheme()) + 1) % ORDER.length]);
 }
 
-/** Tells of each change, the system's own included. Returns a function that ends it. @param {() => void} notify */
+/** Report each change of the theme, also of the system's. Returns a function that ends it. @param {() => void} notify */
 export function onTheme(notify) {
   listeners.add(notify);
   return () => listeners.delete(notify);

@@ -43,7 +43,7 @@ const TICK_PX = 84;
 const SAME_MS = 500; // an event that the cursor stands on
 
 /**
- * From the first take-off to the last landing; of all that was heard where nothing says that it flew. null where nothing was.
+ * From the first take-off to the last landing; of all reports where none states that it flew. null without reports.
  *
  * @param {Pick<Track, "flights" | "samples" | "estimated">[]} tracks
  * @returns {TimeSpan | null}
@@ -99,7 +99,7 @@ export function rulesOf(highest) {
 }
 
 /**
- * Whether a UAV's flight of this index has ended, as far as anybody heard.
+ * Whether a UAV's flight of this index has ended, by its reports.
  *
  * @param {Pick<Track, "flights" | "samples">} track
  * @param {number} index

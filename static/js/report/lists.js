@@ -67,7 +67,7 @@ const errors = (rms, max) =>
  * @param {string} name
  * @param {() => void} look
  * @param {() => void} leave
- * @param {{ button?: Properties, words?: string, isWithin?: boolean }} how isWithin: of a stage, folded away with it
+ * @param {{ button?: Properties, words?: string, isWithin?: boolean }} how isWithin: part of a stage, collapsed with it
  */
 function legRow(leg, name, look, leave, { button, words = "", isWithin = false }) {
   const small = [words, leg.reports === 0 && t("no telemetry")].filter(Boolean).join(", ");

@@ -1,4 +1,4 @@
-/** What was flown over what was planned: measured solid, estimated dotted, and the leg that is looked at under both. */
+/** Flown over planned: measured solid, estimated dotted, and the selected leg under both. */
 
 import { setPaint, sourceOf } from "../map/look/style.js";
 

@@ -191,12 +191,12 @@ const after = (seconds_s) =>
     : `+${Math.floor(seconds_s / 60)}:${String(Math.floor(Math.max(seconds_s, 0) % 60)).padStart(2, "0")}`;
 
 /**
- * In flown order. hasOwnClock: it was simulated faster than real time, and times are after take-off.
+ * Table of targets in flown order. hasOwnClock: simulated faster than real time, with times after take-off.
  *
  * @param {readonly RecordTarget[]} targets
  * @param {Labels} labels
  * @param {OnLook} onLook
- * @param {{ isClose: boolean, hasOwnClock: boolean }} how isClose: whether there is something to tell of how it was flown
+ * @param {{ isClose: boolean, hasOwnClock: boolean }} how isClose: whether there are details of the flight
  */
 function targetTable(targets, labels, onLook, { isClose, hasOwnClock: isOwn }) {
   const head = [t("Target"), t("Planned"), t("Reached"), t("Closest"), t("Held")];

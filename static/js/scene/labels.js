@@ -64,7 +64,7 @@ export function createLabels(container) {
      * @param {readonly SceneLabel[]} items
      * @param {(place: Vector) => Projected | null} project
      * @param {Size} size of the picture
-     * @param {readonly ScreenBox[]} [covered] boxes of what stands over it
+     * @param {readonly ScreenBox[]} [covered] boxes of elements over it
      */
     show(items, project, size, covered = []) {
       /** @type {PlacedItem[]} */
@@ -109,7 +109,7 @@ export function createLabels(container) {
   };
 }
 
-/** Two bridges of one road side by side have one name between them. */
+/** Whether it is the first label with this name: two bridges of one road side by side share one. */
 function isFirstOfItsName() {
   /** @type {Map<string, Vector[]>} places by kind and text */
   const kept = new Map();

@@ -6,7 +6,7 @@ import { CAMERAS } from "./cameras/rig.js";
 /** @import { SourceKind, Vector, WantedSource } from "./types.d.ts" */
 
 /**
- * A camera as a link says it: view: bearing, elevation [deg] and distance [m]; place: lon, lat, height above sea level of a free one.
+ * The camera of a link. view: bearing, elevation [deg] and distance [m]; place: lon, lat, height above sea level of a free camera.
  *
  * @typedef {{ mode: CameraMode, view: Vector | null, place: Vector | null, offset: Vector | null }} LinkedCamera
  */
@@ -46,7 +46,7 @@ const figures = (text) => {
 const round = (value, digits) => `${Number(value.toFixed(digits))}`;
 
 /**
- * at_ms of a moment in UTC, since_s after departure; each is null where the address does not say it.
+ * The state in a link. at_ms of a moment in UTC, since_s after departure; each is null where the address does not state it.
  *
  * @param {string} search
  */

@@ -88,7 +88,7 @@ async function openInside(root, { mission, wanted = null, record = null, player 
   const source = record ? recordSource(record) : (await readSource(detail, wanted)).source;
   if (!source.routes.length) throw new ApiError(t("There is nothing to see yet: plan the mission first."));
   /** @type {Stage | null} */
-  let stage = null; // while it is made its address is asked for already
+  let stage = null; // openAddress may be called before the stage is complete
   stage = await openStage(root, {
     mission: { id: mission, name: detail.name },
     source,

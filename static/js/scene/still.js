@@ -1,4 +1,4 @@
-/** A picture of the moment to keep: what is seen, its labels, and a line that says what it is. */
+/** A picture of the moment to save: the view, its labels, and a caption. */
 
 /** @import { CopiedPicture, ScenePalette } from "./types.d.ts" */
 

@@ -1,3 +1,3 @@
-/** Where the 3D library is, said once. */
+/** Address of the 3D library, in one place. */
 
 export * from "/static/lib/three/three.module.min.js";

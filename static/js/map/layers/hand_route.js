@@ -1,4 +1,4 @@
-/** A route that is changed by hand: its points as handles, middles of its legs, and how each changed leg stands. */
+/** A manually edited route: its points as handles, middles of its legs, and the state of each edited leg. */
 
 import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 
@@ -91,7 +91,7 @@ const feature = (role, type, coordinates, rest) => ({
 });
 
 /**
- * points, chosen: see hand_route.js; stateOf(leg): "stored", "clear", "bad" or "asked"; isFree(point). Null points take it away.
+ * points, chosen: see hand_route.js; stateOf(leg): "stored", "clear", "bad" or "asked"; isFree(point). Null points remove it.
  *
  * @param {MapLibreMap} map
  * @param {HandPoint[] | null} points

@@ -1,4 +1,4 @@
-/** What was flown in simulation over what was planned: dashed in ink, so that nobody takes it for a flight. */
+/** The simulated flight over the plan: dashed in ink, to distinguish it from a real flight. */
 
 import { addSources, setFeatures, setPaint } from "../look/style.js";
 

@@ -16,7 +16,7 @@ const LAYERS = [
 ];
 
 /**
- * routes: [{ sequence, geometry, colour }]; colour: of what flies
+ * routes: [{ sequence, geometry, colour }]; colour: of the UAV
  *
  * @param {MapLibreMap} map
  * @param {{ sequence: number, geometry: Geometry | null, colour?: number }[]} routes

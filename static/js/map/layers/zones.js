@@ -1,4 +1,4 @@
-/** Zones that something on the page speaks of: a ring round each. */
+/** Rings round zones that the page refers to. */
 
 import { TILES } from "../look/voltages.js";
 

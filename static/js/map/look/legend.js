@@ -1,4 +1,4 @@
-/** The legend: what is drawn how. On the map it says what is in view, in the layers menu all of it. */
+/** The legend of the map's symbols. On the map it lists those in view, in the layers menu all of them. */
 
 import { byId, h, svg } from "../../dom.js";
 import { t } from "../../text.js";
@@ -213,7 +213,7 @@ function kindOf({ layer, properties, state }) {
   return state.resting ? "resting" : "timed";
 }
 
-/** A legend of what is in view. @param {MapLibreMap} map */
+/** Show a legend of what is in view. @param {MapLibreMap} map */
 export function mountLegend(map) {
   const legend = byId("legend");
   let shown = "";

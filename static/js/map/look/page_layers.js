@@ -1,4 +1,4 @@
-/** Layers of what a page adds to the map: routes, targets, what is picked and what is measured. */
+/** Layers that a page adds to the map: routes, targets, picked and measured things. */
 
 /** @import { DataDrivenPropertyValueSpecification, LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Palette } from "../../domain/palette.js" */
@@ -202,7 +202,7 @@ export function measureLayers(palette) {
 }
 
 /**
- * The opacity of everything that belongs to a route, when one of them is looked at.
+ * The opacity of all parts of a route, when one route is selected.
  *
  * @param {Palette} palette
  * @param {number | null} lookedAt sequence of a route

@@ -36,7 +36,7 @@ const BAND_NAMES = {
 export const bandName = (key) => BAND_NAMES[key];
 
 /**
- * Filter of a layer with some voltages and some zones left out; `own` is what the style says. Without anything left out it is `own`.
+ * Filter of a layer without some voltages and some zones; `own` is the filter of the style. Without exclusions the result is `own`.
  *
  * @param {FilterSpecification | null} own
  * @param {{ group: string, bands: Set<string>, resting: number[] }} hidden
@@ -122,7 +122,7 @@ export function createShown(map, onChange = () => {}) {
 }
 
 /**
- * Marks zones whose schedule says that they do not apply now, of those that the map has loaded.
+ * Mark the loaded zones that do not apply now by their schedule.
  *
  * @param {MapLibreMap} map
  * @param {(resting: number[]) => void} onChange called with their ids

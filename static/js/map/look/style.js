@@ -1,4 +1,4 @@
-/** The map's look as data: sources and layers in the order from below, made from the palette. */
+/** The map's style as data: sources and layers from bottom to top, made from the palette. */
 
 import { infrastructureLayers, labelLayers } from "./ground_layers.js";
 import { measureLayers, routeLayers, selectionLayers } from "./page_layers.js";

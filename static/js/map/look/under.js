@@ -1,4 +1,4 @@
-/** What lies under the map: which raster maps are offered, and which one somebody chose last. */
+/** The base map: the raster maps offered, and the user's last choice. */
 
 import { t } from "../../text.js";
 

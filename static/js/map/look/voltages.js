@@ -1,4 +1,4 @@
-/** Voltage bands of lines and towers, and how they look; the names of the tiles and of the layers in them. */
+/** Voltage bands of lines and towers, and their style; the names of the tiles and of the layers in them. */
 
 /** @import { Palette } from "../../domain/palette.js" */
 

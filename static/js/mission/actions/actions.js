@@ -50,7 +50,7 @@ export function createActions(store, history, page, drafts) {
 }
 
 /**
- * What the actions share: the selection and its history, and how a problem is told.
+ * Create what the actions share: the selection and its history, and the report of problems.
  *
  * @param {MissionStore} store
  * @param {MissionContext["history"]} history
@@ -81,7 +81,7 @@ function createContext(store, history, page, drafts) {
   });
 
   /**
-   * What an error says, and what helps. `asked`: the selection that was refused.
+   * The text of an error, and what helps. `asked`: the selection that was refused.
    *
    * @param {unknown} error
    * @param {MissionSelection} [asked]

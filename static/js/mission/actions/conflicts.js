@@ -1,6 +1,5 @@
 /**
- * Somebody else has saved: what goes together comes together by itself, and where both changed the same the operator
- * decides.
+ * Conflicts with another user's save: compatible changes are merged automatically, and the operator decides where both changed the same.
  */
 
 import { get, post } from "../../api.js";
@@ -86,7 +85,7 @@ function createMeeting(context, saving) {
     store.update({ name: both.name });
     shownAs(theirs, stored, plan);
     const words = wordsOfChange(before ?? now, now);
-    if (isOwn || isFrozen(theirs) || (!words.length && !plan)) return; // of one that is approved only the stage can have changed: the page says it
+    if (isOwn || isFrozen(theirs) || (!words.length && !plan)) return; // approved: only the stage can have changed; the page shows it
     const { actor } = await lastSave(theirs, page.userName);
     const who = actor === page.userName ? t("You, in another window") : (actor ?? t("Another operator"));
     toast(t("{who}: {what}.", { who, what: words.join(", ") || t("planned") }));

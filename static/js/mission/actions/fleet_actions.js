@@ -13,8 +13,7 @@ import { openChanges, withFleetFigures, withPresentFigures } from "../uav_change
 /** context: see actions.js. @param {MissionContext} context */
 export function createFleetActions({ store, selection, change }) {
   /**
-   * Takes UAVs along, in one step of the history; says where one has another name in this mission. Returns how many
-   * were added.
+   * Add UAVs in one step of the history; announces where one has another name in this mission. Returns how many were added.
    *
    * @param {FleetUav[]} uavs
    */

@@ -9,7 +9,7 @@ import * as picks from "../selection.js";
 /** @import { BridgesOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
 /** @import { MissionContext, PickedTarget } from "../types.d.ts" */
 
-/** @typedef {(targets: PickedTarget[], words: (added: string) => string) => number} AddMany adds many at once and says so */
+/** @typedef {(targets: PickedTarget[], words: (added: string) => string) => number} AddMany adds many at once and announces it */
 
 /** @param {PickedAsset[]} rows */
 const rowsToTargets = (rows) => rows.map(picks.targetOfRow);
@@ -58,7 +58,7 @@ function createAreaPicking({ problem, failed }, addMany) {
 
 /** @param {MissionContext} context @param {AddMany} addMany */
 function createLinePicking({ failed }, addMany) {
-  /** What lies between two supports; null where that failed, which is said. @param {number} from @param {number} to */
+  /** What lies between two supports; null after a failure, which is shown. @param {number} from @param {number} to */
   async function stretchBetween(from, to) {
     try {
       return /** @type {Answer<SupportsOutput>} */ (await get(`/assets/stretch?from=${from}&to=${to}`)).data;

@@ -19,7 +19,7 @@ export function createPicking(context) {
     count ? tn(count, "{count} target added", "{count} targets added") : t("No target added");
 
   /**
-   * Adds what is not picked yet; says where a mission would not take as many. Returns how many were added.
+   * Add what is not picked yet; announces where a mission's limit is reached. Returns how many were added.
    *
    * @param {PickedTarget[]} targets
    * @param {{ announceWhat?: boolean }} [how]
@@ -47,7 +47,7 @@ export function createPicking(context) {
   }
 
   /**
-   * Adds many at once and tells it with a way back.
+   * Add many at once and announce it with an undo.
    *
    * @param {PickedTarget[]} targets
    * @param {(added: string) => string} words

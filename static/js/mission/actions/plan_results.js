@@ -4,7 +4,7 @@ import * as picks from "../selection.js";
 
 /** @import { MissionPageState, MissionSelection, PlanResult, ShownPlan } from "../types.d.ts" */
 
-const MAX_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
+const MAX_KEPT = 16; // plans that undo, redo and the choice of an objective show at once
 
 /**
  * The plan of a result, with the selection that it was made for: its indices point into that.
@@ -26,7 +26,7 @@ export function planOf(result, selection) {
 }
 
 /**
- * Results by what they were made for; the oldest go, and those of another ground: a zone may have come in since.
+ * Results by their input; the oldest are dropped, and those of other map data: a zone may have been added since.
  *
  * @param {MissionPageState["figures"]} figures
  * @param {string} basis

@@ -22,7 +22,7 @@ export function createRunningJob({ user, storage = () => globalThis.sessionStora
 
   return {
     /**
-     * { job, selection }: what was asked for; null where nothing runs.
+     * { job, selection } of the request; null where no job runs.
      *
      * @param {string | null} mission
      * @returns {RunningJob | null}

@@ -11,9 +11,9 @@ import { basisOf, requestOf } from "../selection.js";
 
 /**
  * @typedef {object} Attempt to save
- * @property {Version} asked what was on the page
+ * @property {Version} asked the version on the page
  * @property {Partial<MissionInputRequest>} body
- * @property {string} key by which the server knows the attempt again
+ * @property {string} key idempotency key of the attempt
  * @property {boolean} isNew
  * @property {boolean} asCopy
  */

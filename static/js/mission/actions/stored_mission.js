@@ -7,7 +7,7 @@ import { planOf, withResult } from "./plan_results.js";
 /** @import { MissionContext, MissionSelection, Problem, ShownPlan, Version } from "../types.d.ts" */
 
 /**
- * What is said of a plan stays over a save: it stands until something else is picked.
+ * The problem that stays shown after a save: one about a plan, until the selection changes; null for one of saving.
  *
  * @param {Problem | null} standing
  */

@@ -1,7 +1,4 @@
-/**
- * Who else has the mission open, what they save, and whether the server is there: asked every few seconds while the
- * page is looked at.
- */
+/** Who else has the mission open, their saves, and whether the server is available: polled every few seconds while the page is visible. */
 
 import { ApiError, get, post } from "../../api.js";
 
@@ -109,7 +106,7 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, s
   addEventListener("offline", () => store.update({ isAway: true }));
   addEventListener("online", () => (store.state.mission ? void ask() : connectedAgain()));
   addEventListener("pagehide", () => {
-    if (store.state.mission) presence(store.state.mission.id, false).catch(() => {}); // the page is gone; the others forget it by themselves too
+    if (store.state.mission) presence(store.state.mission.id, false).catch(() => {}); // the page is closed; others drop it by timeout too
   });
 }
 

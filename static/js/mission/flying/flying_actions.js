@@ -23,7 +23,7 @@ export function createFlying(store, { failed, page }) {
   const { readCommands, readReturns, watch } = createFlightReading(store, page);
   const acting = { store, failed, readCommands };
 
-  // What is approved is shown as to those who cannot change it, and the other way round: the page is made anew.
+  // Approved missions are read-only, others are not: the page is reloaded for either.
   store.listen(["mission"], ({ mission }) => {
     if (mission && isFrozen(mission) !== page.isFrozen) location.reload();
   });
@@ -54,7 +54,7 @@ function returnsOf(returns, flyers) {
 }
 
 /**
- * Tells what was refused, in the server's words.
+ * Run an act; reports a refusal with the server's text.
  *
  * @param {Acting} acting
  * @param {string} title

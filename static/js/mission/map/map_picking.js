@@ -89,7 +89,7 @@ export function toolWords({ tool, stretchFrom }) {
 }
 
 /**
- * A line can be flown end to end, looked at in one place, or be left to its towers: the operator says which.
+ * Ask on a click on a line: fly it end to end, inspect one place, or pick its towers.
  *
  * @param {MapThing} thing
  * @param {number[]} place
@@ -138,7 +138,7 @@ function pickRailwayPoint(thing, position, actions) {
 }
 
 /**
- * The first click says where a stretch begins, the second where it ends.
+ * Pick a stretch: the first click sets its begin, the second its end.
  *
  * @param {MissionStore} store
  * @param {Acts} actions

@@ -16,7 +16,7 @@ const pointAt = (coordinates) => ({ type: "Point", coordinates });
 
 /** @param {MapLibreMap} map @param {MissionStore} store */
 export function createPickedShapes(map, store) {
-  /** Asset id → geometry of what is picked whole; null while it is loaded. @type {Map<number, Geometry | null>} */
+  /** Asset id → geometry of assets that are picked whole; null while it is loaded. @type {Map<number, Geometry | null>} */
   const shapes = new Map();
   /** @type {MapThing | null} what the pointer is at on the map */
   let pointed = null;

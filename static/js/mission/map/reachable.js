@@ -43,7 +43,7 @@ export function reachabilityOf({ assets, reasons }, id) {
 }
 
 /**
- * What is said of one asset; empty where the answer does not speak of it. uavs: as they were asked about.
+ * The text on one asset; empty where the answer does not contain it. uavs: as in the request.
  *
  * @param {Reachability} answer
  * @param {number} id

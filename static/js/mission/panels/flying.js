@@ -1,4 +1,4 @@
-/** A mission that is approved: its stage, what each UAV has on board and was told, and the way to the page on which it is flown. */
+/** An approved mission: its stage, the onboard list and commands of each UAV, and the link to the page on which it is flown. */
 
 import { byId, h, icon } from "../../dom.js";
 import {

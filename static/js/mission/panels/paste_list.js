@@ -1,4 +1,4 @@
-/** A dialog that takes a list of references, says which assets they mean, and adds those. */
+/** A dialog that takes a list of references, shows the assets found, and adds those. */
 
 import { ApiError } from "../../api.js";
 import { find, h, icon } from "../../dom.js";

@@ -13,7 +13,7 @@ import { EMPTY, requestOf, storedTarget } from "../selection.js";
 
 /**
  * @typedef {object} RowActs
- * @property {(row: SelectionSummary, instead: boolean) => unknown} load `instead` of what is picked
+ * @property {(row: SelectionSummary, instead: boolean) => unknown} load `instead` of the present selection
  * @property {(row: SelectionSummary) => unknown} rename
  * @property {(row: SelectionSummary) => unknown} bringUpToDate
  * @property {(row: SelectionSummary) => unknown} drop
@@ -205,7 +205,7 @@ class SelectionsDialog {
     } catch (error) {
       const status = error instanceof ApiError ? error.status : 0;
       this.#wrong.textContent = error instanceof ApiError ? error.message : t("That did not work. Try again.");
-      if (status === 412 || status === 404) await this.#refresh().catch(() => {}); // what went wrong is said already
+      if (status === 412 || status === 404) await this.#refresh().catch(() => {}); // the error is shown already
     }
   }
 

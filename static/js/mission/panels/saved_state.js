@@ -10,7 +10,7 @@ import { isUnsaved } from "../plan_view.js";
 
 /** @typedef {{ words: string, image: string, isBad?: boolean, at?: string }} SavedWords `at`: when it was saved */
 
-/** Whether it is saved, in words. @param {MissionPageState} state @returns {SavedWords | null} */
+/** Text on whether the selection is saved. @param {MissionPageState} state @returns {SavedWords | null} */
 export function savedWords(state) {
   const { mission, saving, problem, conflict, isAway } = state;
   if (!mission && !isUnsaved(state)) return null;

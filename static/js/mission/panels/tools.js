@@ -1,4 +1,4 @@
-/** The tools for picking on the map, and the doors to what needs no map: a pasted list, a saved selection. */
+/** The tools for picking on the map, and the buttons for other sources: a pasted list, a saved selection. */
 
 import { byId } from "../../dom.js";
 

@@ -1,4 +1,4 @@
-/** A rehearsal in words and lines: what the panel, the charts and the map show of it. */
+/** A rehearsal as text and lines for the panel, the charts and the map. */
 
 import { t, tn } from "../../text.js";
 import { durationText, energyText, heightText, percentText } from "../../units.js";
@@ -129,9 +129,8 @@ export function nearestOther(assessment, uav) {
 }
 
 /**
- * Of one route of a track, by seconds after departure: { flown: { height, battery }, planned: { height, battery } },
- * lists of lines of
- * { at_s, value }. Heights are above the first take-off, as the plan's are.
+ * Curves of one route of a track, by seconds after departure: { flown: { height, battery }, planned: { height, battery } }, lists of
+ * lines of { at_s, value }. Heights are above the first take-off, as the plan's are.
  *
  * @param {RouteTrack} route
  */

@@ -1,4 +1,4 @@
-/** Height and battery of one rehearsed route over time: what was planned dashed, what was flown in simulation solid. */
+/** Height and battery of one rehearsed route over time: planned dashed, flown in simulation solid. */
 
 import { h, svg } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";

@@ -273,7 +273,7 @@ export function spanStrip({
       for (const { element: pill, targets } of pills)
         pill.classList.toggle("lit", target !== null && targets.includes(target));
     },
-    /** Before which of the other targets somebody points. @param {number} clientX @param {string[]} without */
+    /** Index of the pointer among the other targets. @param {number} clientX @param {string[]} without */
     indexAt(clientX, without) {
       const at = clientX - element.getBoundingClientRect().left;
       return others(without).filter((place) => place < at).length;

@@ -92,7 +92,7 @@ export function createPillDrag(rows, { strips, drop }) {
     if (drag || event.button !== 0) return;
     const pill = /** @type {Element} */ (event.currentTarget);
     const colour = [...(pill.closest(".route")?.classList ?? [])].find((name) => /^route-\d/.test(name)) ?? "";
-    if (pill.hasPointerCapture?.(event.pointerId)) pill.releasePointerCapture(event.pointerId); // the row may be drawn anew meanwhile
+    if (pill.hasPointerCapture?.(event.pointerId)) pill.releasePointerCapture(event.pointerId); // the row may be redrawn meanwhile
     event.preventDefault();
     drag = {
       pointerId: event.pointerId,

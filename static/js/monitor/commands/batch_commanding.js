@@ -70,7 +70,7 @@ export async function commandBatch(store, kind, scopes, ways = null) {
  * @returns {Commanding["askAll"]}
  */
 export function createBatch(store, page) {
-  /** Whom it may be for: on the page of one mission its UAVs and no others. */
+  /** Recipients to choose from: on the page of one mission only its UAVs. */
   function scopesNow() {
     const { uavs, missions } = store.state;
     return batchScopes(uavs, page.mission === null ? missions : missions.filter(({ id }) => id === page.mission));

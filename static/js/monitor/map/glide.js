@@ -3,7 +3,7 @@
 export const GLIDE_MS = 300;
 
 /**
- * Where a marker stands `since_ms` after it was told to go from one place to another, lon lat.
+ * Position [lon, lat] of a marker `since_ms` after it began to move from one place to another.
  *
  * @param {readonly number[]} from
  * @param {readonly number[]} to

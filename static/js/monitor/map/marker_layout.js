@@ -8,8 +8,8 @@ import { placeLabels } from "../../scene/label_places.js";
 /** A label's top left corner from the centre of its mark, and where its leader line ends; null: it stands beside its mark. @typedef {{ left: number, top: number, leader: { x: number, y: number } | null }} LabelSpot */
 
 const CLOSE_PX = 16; // marks of 26 px cover most of each other
-const MIN_MEMBERS = 3; // two that overlap are still told apart
-const MARK_PX = 14; // half of what no label may cover
+const MIN_MEMBERS = 3; // two that overlap can still be distinguished
+const MARK_PX = 14; // half the size that no label may cover
 export const ALONE = 3; // a weight from which on a UAV never stands for in a count
 
 /** As in label_places.js: beside the mark, then farther off, where a leader line is drawn. */

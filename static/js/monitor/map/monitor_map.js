@@ -204,7 +204,7 @@ class MonitorMap {
     });
   }
 
-  /** Rally points and fences of what was approved. @param {{ rally: number[][], fences: number[][][] }} approved */
+  /** Show rally points and fences of the approved plan. @param {{ rally: number[][], fences: number[][][] }} approved */
   showApproved({ rally, fences }) {
     const { map } = this.#view;
     createRallyPoints(map, { onMove: () => {} }).update(
@@ -244,7 +244,7 @@ class MonitorMap {
     if (!this.#parts) return;
     const { map } = this.#view;
     const shown = drawnUavs(state);
-    const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
+    const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the page's head reports it once
     this.#parts.markers.update(
       shown.map((uav) => ({
         ...uav,

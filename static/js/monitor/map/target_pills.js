@@ -1,4 +1,4 @@
-/** Targets of what flies, by their state: complete filled, failed red, skipped dashed, the rest open. */
+/** Targets of UAVs in flight by state: complete filled, failed red, skipped dashed, the rest open. */
 
 import { h } from "../../dom.js";
 import { colourClass } from "../../domain/palette.js";

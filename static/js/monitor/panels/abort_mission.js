@@ -46,7 +46,7 @@ async function abort(mission, opener, store) {
     return;
   }
   try {
-    // what stops UAVs is not held up by what somebody else has changed meanwhile
+    // another user's change in the meantime does not delay a stop
     const headers = { "If-Match": "*", "Idempotency-Key": freshKey() };
     await post(`/missions/${id}/abort`, { why: asked.why }, { headers });
   } catch (error) {

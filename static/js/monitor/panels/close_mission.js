@@ -31,7 +31,7 @@ export function mountCloseMission(store, page) {
         ended = /** @type {Answer<Mission>} */ (answer).data;
         draw(button, ended, uavs);
       },
-      () => {}, // the rest of the page says that the server is away
+      () => {}, // the rest of the page reports that the server is unavailable
     );
   });
 }

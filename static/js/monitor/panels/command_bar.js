@@ -27,7 +27,7 @@ const BUTTONS = [
 /** @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
 const chosenUav = (state) => state.uavs.find(({ id }) => id === state.chosen) ?? null;
 
-/** That can be told something now. @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
+/** The chosen UAV if it can receive a command now. @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
 function chosenFlyer(state) {
   const uav = chosenUav(state);
   return uav && !whyNot(uav) ? uav : null;
@@ -51,7 +51,7 @@ function makeButtons(store, commanding) {
   });
 }
 
-/** What is seldom asked, in a menu that is read when it is opened. @param {MonitorStore} store @param {Commanding} commanding */
+/** The menu of rare commands, read when it is opened. @param {MonitorStore} store @param {Commanding} commanding */
 function makeMore(store, commanding) {
   const more = h(
     "button",

@@ -1,4 +1,4 @@
-/** Above the fleet of the live page: a search and a choice of what is listed, with the count of what is hidden. */
+/** Filter above the fleet of the live page: a search and a choice of groups, with the count of hidden UAVs. */
 
 import { byId, h } from "../../dom.js";
 import { t } from "../../text.js";

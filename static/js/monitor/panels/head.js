@@ -1,4 +1,4 @@
-/** The head of the page: which mission, its state, the facts of now; and what is said when nothing comes in any more. */
+/** The head of the page: the mission, its state, present facts; and a notice when updates stop. */
 
 import { signInAddress } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";

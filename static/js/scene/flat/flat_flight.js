@@ -14,7 +14,7 @@ const DART = [
   [0, 6],
   [-9, 11],
 ];
-const REST = 0.35; // of what is not looked at
+const REST = 0.35; // of routes that are not selected
 const MIN_RING_PX = 14;
 
 /** @param {ScenePalette} palette @param {number} place */

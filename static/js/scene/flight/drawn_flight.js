@@ -11,10 +11,10 @@ import { aboveGround, altitudeOf, trustIn, trustInPlan } from "../sources/height
 /** @typedef {{ place: number, positions: number[] }} PlannedLine */
 /** @typedef {{ place: number, pieces: FlownLine[] }} FlownRoute */
 
-const CAMERA_DOWN_DEG = -25; // where it looks that looks at nothing: ahead and down
+const CAMERA_DOWN_DEG = -25; // direction of a camera without a target: ahead and down
 const SEES_TARGET_M = 160; // from there on its camera is on its target
 const TARGET_SHARE = 0.7; // of a target's height: where the arms of a tower are
-const PLAIN_TARGET_M = 6; // height of one that is no tower
+const PLAIN_TARGET_M = 6; // height of a target that is no tower
 
 /**
  * Height above sea level of the ground where a route takes off.

@@ -58,7 +58,7 @@ export function merged(parts) {
   return whole;
 }
 
-/** Body, arms, motors, legs, the camera under the nose, and a light stripe that says which end is the front. */
+/** Body, arms, motors, legs, the camera under the nose, and a light stripe that marks the front. */
 export function bodyShape() {
   const arms = ROTORS.flatMap(([x, , z]) => {
     const length = Math.hypot(x, z);

@@ -1,4 +1,4 @@
-/** Bridges: a slab with its deck at the height that the scene tells, and piers down to the ground. Values in, arrays out. */
+/** Bridges: a slab with its deck at the scene's height, and piers down to the ground. Values in, arrays out. */
 
 import { triangulate } from "./triangulate.js";
 

@@ -1,4 +1,6 @@
-/** What planners count above what is drawn: over supports whose height nobody has stated, and from top to top between them. Values in, arrays out. */
+/**
+ * Heights that planners use above the drawing: over supports of unknown height, and from top to top between them. Values in, arrays out.
+ */
 
 const MIN_M = 0.5; // less is not shown
 const CAP_M = 1.6; // half of the cross on top of a mark

@@ -88,7 +88,7 @@ function meeting({ west, north, stepX, stepZ }, [ax, az], [bx, bz]) {
  * Blocks of the grid's cells, each of four smaller ones, with how far [m] the ground strays in each from two triangles over its corners, and
  * its highest post. Gives
  * pieces(parts, within_m, isFlat): convex polygons that do not overlap, cut into those over which the ground is a plane within so much; where
- * isFlat(highest) says of a block's highest post that the ground below it does not matter, they stay as they are;
+ * isFlat(highest) returns for a block's highest post whether the ground below it can be ignored, they stay as they are;
  * count(box, within_m): how many blocks lie in [least x, least z, most x, most z], about half as many as pieces;
  * meeting([x, z], [x, z]): the shares of the way at which a fold is crossed, in order.
  *

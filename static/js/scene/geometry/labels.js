@@ -6,7 +6,7 @@ import { uncounted_m } from "./counted.js";
 /** @import { Frame, Vector } from "../types.d.ts" */
 
 /**
- * What may be named. counted_m: the height that planners count, of what is drawn lower.
+ * A thing with a label. counted_m: the height that planners use, where it is drawn lower.
  *
  * @typedef {object} GroundLabel
  * @property {"zone" | "tower" | "bridge"} kind
@@ -17,7 +17,7 @@ import { uncounted_m } from "./counted.js";
  * @property {number | null} [counted_m]
  */
 
-const TOP_M = 4; // over the top of what is named
+const TOP_M = 4; // over the top of the thing
 
 /**
  * Heavier first.

@@ -11,7 +11,7 @@ import { memberList } from "./struts.js";
 const STEP_M = 20;
 const GAUGE_M = 1.435;
 const TRACK_M = 4.2; // from track to track
-const BED_M = 4.4; // across, of one track
+const BED_M = 4.4; // of one track, across
 const BED_LIFT_M = 0.35;
 const RAIL_LIFT_M = 0.25; // above the bed
 const STEEPEST = 0.03; // of a ramp

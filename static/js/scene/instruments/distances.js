@@ -86,7 +86,7 @@ function boxesOf({ points, first }) {
 const beyond = (value, least, most) => (value < least ? least - value : value > most ? value - most : 0);
 
 /**
- * The nearest point of the wires; nothing farther than reach_m is looked for.
+ * The nearest point of the wires within reach_m.
  *
  * @param {Pick<Surroundings, "hung">} surroundings
  * @param {Vector} place

@@ -1,4 +1,4 @@
-/** The instruments of one UAV in words and figures: [{ name, words, value, note }]. */
+/** The instruments of one UAV as text and figures: [{ name, words, value, note }]. */
 
 import { t } from "../../text.js";
 import { exactClockText, exactHeightText, heightText, lengthText, percentText, speedText } from "../../units.js";

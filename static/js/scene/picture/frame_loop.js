@@ -1,4 +1,4 @@
-/** Frames that are wanted: each is drawn once, and the next one is asked for as long as something moves. */
+/** Requested frames: each is drawn once, and the next one is requested as long as something moves. */
 
 /** @import { FrameTime } from "../types.d.ts" */
 

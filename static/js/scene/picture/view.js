@@ -99,7 +99,7 @@ function watchContext(canvas, onLost, onFound) {
 }
 
 /**
- * The camera as the rig wants it, and what it sees where.
+ * Create the camera for the rig's pose, with the projection to the screen.
  *
  * @param {PerspectiveCamera} camera
  * @param {Size} size of the picture

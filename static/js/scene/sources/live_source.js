@@ -154,7 +154,7 @@ export function liveSource({ detail, features = [] }) {
     colours: detail.colours,
     targets: targetsOf(routes, detail.targets),
     events: [],
-    /** of what was flown: a ribbon that has grown */
+    /** Revision of the flown path's ribbon; increases when the path grows. */
     revision: 0,
     windAt: () => wind,
     /** Returns whether anything is another than before. @param {{ uavs: readonly LiveUav[], now_ms: number }} received */

@@ -7,7 +7,7 @@ import { turn_deg } from "../cameras/vectors.js";
 export const MEASURED = "measured";
 export const ESTIMATED = "estimated";
 export const PLANNED = "planned";
-export const LOST = "lost"; // nobody knows where it is by now: where it was last
+export const LOST = "lost"; // the position by now is unknown: use the last one
 
 /** @type {("altitude_amsl_m" | "altitude_relative_m" | "speed_mps" | "climb_mps" | "battery_percent" | "roll_deg" | "pitch_deg")[]} */
 const NUMBERS = [
@@ -122,7 +122,7 @@ export function stepOf([lon, lat], [toLon, toLat]) {
 }
 
 /**
- * Samples that lack a heading, a speed or a climb get those of their way to the next; one that stands keeps its heading.
+ * Complete samples without a heading, a speed or a climb by those of the leg to the next; one that stands keeps its heading.
  *
  * @param {readonly FlightSample[]} samples
  * @returns {FlightSample[]}

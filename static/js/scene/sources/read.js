@@ -17,7 +17,7 @@ const MAX_RECORDS = 3_000; // of the line flown so far
 const ORDER = ["fail", "warnings", "pass"];
 
 /**
- * What a mission is looked at by where nothing else is said.
+ * The default source of a mission.
  *
  * @param {Pick<Mission, "state">} mission
  * @param {readonly Pick<Rehearsal, "level">[]} rehearsals newest first
@@ -97,7 +97,7 @@ export async function readSource(mission, wanted = null) {
 }
 
 /**
- * What can be looked at besides.
+ * The other sources to choose from.
  *
  * @param {Mission} mission
  * @param {readonly Rehearsal[]} rehearsals

@@ -80,7 +80,7 @@ export function recordSource(loaded) {
 }
 
 /**
- * The newest wind that a UAV told before a moment; null where none did.
+ * The newest wind that a UAV reported before a moment; null without one.
  *
  * @param {readonly Pick<RecordedRoute, "track">[]} routes
  * @param {number} at_ms

@@ -10,7 +10,7 @@ import { NO_DATE_MS, spanOf, targetsOf, windAtHeight } from "./plan_source.js";
 const ON_GROUND_M = 0.3; // above take-off: lower, it stands
 
 /**
- * Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way.
+ * Samples of one simulated flight: columns → rows. Older tracks have no attitude: it is level, its nose along its path.
  *
  * @param {TrackFlight} flight
  * @param {number} departs_ms
@@ -35,7 +35,7 @@ export function samplesOf(flight, departs_ms) {
 }
 
 /**
- * @param {{ detail: RehearsalDetail, track: RehearsalTrack, mission: Mission }} rehearsal track: of one of its runs
+ * @param {{ detail: RehearsalDetail, track: RehearsalTrack, mission: Mission }} rehearsal track: track of one of its runs
  * @returns {FlightSource}
  */
 export function rehearsalSource({ detail, track, mission }) {

@@ -11,7 +11,7 @@ import { Color, DirectionalLight, Group, HemisphereLight, Vector3 } from "../thr
 
 const RADIANS = Math.PI / 180;
 const SHADOW_PX = 2_048;
-const SIZES_M = [90, 160, 280, 500, 900]; // half the side of what has shadows
+const SIZES_M = [90, 160, 280, 500, 900]; // half the side of the area with shadows
 const AWAY_M = 2_500;
 const NIGHT = { light: "#2b3a4a", dark: "#070b0f" };
 const DUSK = { light: "#f2cdaa", dark: "#2b2a32" };
@@ -129,7 +129,7 @@ export function makeLights({ shadows }) {
       size_m = 0;
     },
     /**
-     * The shadows' box goes where the camera looks; it moves by whole pixels of the shadow map, so that edges stand still.
+     * Move the shadows' box to the camera's target, by whole pixels of the shadow map, so that edges stand still.
      *
      * @param {PerspectiveCamera} camera
      * @param {HeightAt} heightAt

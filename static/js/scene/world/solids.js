@@ -25,7 +25,7 @@ export function merged(pieces) {
   return { vertices, uv, index };
 }
 
-/** A geometry of arrays; faces are flat unless normals are told. @param {Surface} surface */
+/** Create a geometry of arrays; faces are flat unless normals are given. @param {Surface} surface */
 export function geometryOf({ vertices, uv, index }) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(vertices, 3));

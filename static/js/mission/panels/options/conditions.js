@@ -25,7 +25,7 @@ const [MAX_HEIGHT_M, MAX_WIND_MPS] = [1000, 60]; // missions/serializers/limits.
 const [MIN_TEMPERATURE_C, HOTTEST_C] = [-60, 60];
 
 /**
- * Typed in the reader's unit, read in SI; one that nobody touched is what it was.
+ * A field typed in the reader's unit, read in SI; one that was not touched keeps its value.
  *
  * @param {number} value
  * @param {FigureHow} how

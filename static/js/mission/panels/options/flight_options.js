@@ -22,7 +22,7 @@ export function mountFlightOptions(store, actions) {
   );
 }
 
-/** What a departure means for zones; one that lies behind is told. @param {MissionSelection} selection */
+/** The effect of a departure on zones; one in the past is reported. @param {MissionSelection} selection */
 function departureWords({ departs_at }) {
   if (!departs_at) return t("No departure time: all zones count as active.");
   const where = zoneText(departs_at);

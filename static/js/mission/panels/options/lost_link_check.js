@@ -1,4 +1,4 @@
-/** The check of what UAVs do without a link: each group of waypoints that fails is a row that shows itself on the map. */
+/** The check of lost-link actions: each group of waypoints that fails is a row that can be shown on the map. */
 
 import { h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";

@@ -1,4 +1,4 @@
-/** The options of a mission in words, for those who may not change them. */
+/** The options of a mission as text, for users who may not change them. */
 
 import { byId } from "../../../dom.js";
 import { t } from "../../../text.js";

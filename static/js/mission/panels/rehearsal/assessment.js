@@ -1,4 +1,4 @@
-/** What a rehearsal says: the sentence, its runs, then each route with its figures, curves and targets. */
+/** The assessment of a rehearsal: the sentence, its runs, then each route with its figures, curves and targets. */
 
 import { byId, h, icon, refill } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";

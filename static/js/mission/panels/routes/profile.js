@@ -1,4 +1,4 @@
-/** Under the strips: the flight of the route that is looked at from the side, with the figures at the pointer. */
+/** The profile of the selected route under the strips, with the figures at the pointer. */
 
 import { byId, h, setChildren } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
@@ -48,7 +48,7 @@ export function mountProfile(store, { grounds }) {
 
   /** @param {MissionPageState} state */
   async function draw(state) {
-    if (state.hand?.dragged) return; // the ground is asked about once it is dropped
+    if (state.hand?.dragged) return; // terrain is requested once the point is dropped
     const { plan } = state;
     const route = plan ? shownRoute(state) : null;
     place.hidden = !route;

@@ -1,4 +1,4 @@
-/** Says which UAV of the mission is no longer as it was planned with, and takes its present figures. */
+/** Notice on UAVs of the mission that have changed since it was planned, with a button that takes their present figures. */
 
 import { h, icon } from "../../../dom.js";
 import { t, tn } from "../../../text.js";

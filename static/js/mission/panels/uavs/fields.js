@@ -94,7 +94,7 @@ function own(name, value, unit = 1) {
 }
 
 /**
- * What a field says in SI units. One that nobody touched is what it was: typed units are rounded.
+ * The value of a field in SI units. One that was not touched keeps its value: typed units are rounded.
  *
  * @param {HTMLInputElement} input
  * @param {number | null | undefined} before

@@ -11,7 +11,7 @@ import { refreshRow, uavRow } from "./row.js";
 /** @import { FleetUav, MissionActions, MissionPageState, MissionStore, StandingUav } from "../../types.d.ts" */
 /** @import { ShownUav } from "./row.js" */
 
-/** @typedef {{ base: string, sensor: string, type: string }} Asked what the list is narrowed to */
+/** @typedef {{ base: string, sensor: string, type: string }} Asked filters of the list */
 
 const MIN_UAVS_TO_FILTER = 4; // a fleet of fewer is seen at a glance
 const SHOWN_FIRST = 30;
@@ -128,7 +128,7 @@ function countText({ fleet, selection }, uavs, canPlan) {
   return uavs.length ? `${uavs.length}` : "";
 }
 
-/** One list for each thing by which this fleet can be told apart. @param {() => void} onChange */
+/** One choice for each property by which this fleet can be filtered. @param {() => void} onChange */
 function createFilters(onChange) {
   /** @type {Asked} */
   const nothing = { base: "", sensor: "", type: "" };

@@ -1,4 +1,4 @@
-/** The small panel beside the strips while a route is changed by hand: the chosen waypoint, what is wrong, undo, keep. */
+/** The small panel beside the strips during manual editing: the chosen waypoint, faults, undo, save. */
 
 import { h, icon } from "../../../dom.js";
 import { t, tn } from "../../../text.js";

@@ -1,4 +1,4 @@
-/** The fields of a waypoint that is changed by hand: height, speed on the way to it, place. */
+/** The fields of a manually edited waypoint: height, speed on the leg to it, place. */
 
 import { h } from "../../../dom.js";
 import { t } from "../../../text.js";
@@ -63,7 +63,7 @@ export function createHandFields(actions, chosen) {
   /** @type {number | null} */
   let shownPoint = null;
   /**
-   * What somebody is typing stays, whatever the server answers meanwhile.
+   * Write a value; a field with the focus is kept as long as its point is shown.
    *
    * @param {HTMLInputElement} input
    * @param {number | ""} value

@@ -69,7 +69,10 @@ function sharedWords(explanation, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {TargetExplanation} explanation @param {Unassigned} entry */
+/**
+ * Whether the plan states whose range is too short, by how much, and what excludes the others.
+ * @param {TargetExplanation} explanation @param {Unassigned} entry
+ */
 const isRangeOfPlan = ({ reason }, entry) => reason === "beyond_range" && entry.reason === reason;
 
 /** @param {TargetExplanation} explanation @param {Reach[]} [full] see fullUavs */
@@ -108,7 +111,7 @@ export function reasonWords(explanation, full = []) {
 /** @param {TargetExplanation} explanation */
 function facts(explanation) {
   const needs = explanation.uavs.filter(({ is_in_mission }) => is_in_mission);
-  if (!needs.length || ["beyond_energy", "wind"].includes(explanation.reason)) return null; // ranges say nothing of them
+  if (!needs.length || ["beyond_energy", "wind"].includes(explanation.reason)) return null; // ranges do not apply to them
   /** @param {Reach} reach */
   const row = ({ name, needed_m, max_range_m, most_targets, is_grounded }) => {
     const limit = most_targets ? tn(most_targets, "at most {count} target", "at most {count} targets") : "";
