@@ -1,4 +1,4 @@
-/** What a page knows, who listens, and a history for the part that an operator can take back. */
+/** State of a page, its listeners, and a history for the part that an operator can undo. */
 
 /**
  * @template {object} State
@@ -92,7 +92,7 @@ export function createHistory(store, name) {
       show(value);
     },
     /**
-     * Applies what another user has changed to each step: undo takes back one's own steps alone.
+     * Apply another user's changes to each step: undo concerns only one's own steps.
      *
      * @param {(value: Value) => Value} change
      */
@@ -101,7 +101,7 @@ export function createHistory(store, name) {
       future = future.map(change);
       show(change(store.state[name]));
     },
-    /** A new beginning: what is loaded from the server cannot be undone. @param {Value} value */
+    /** Start a new history: data loaded from the server cannot be undone. @param {Value} value */
     startFrom(value) {
       past = [];
       future = [];

@@ -31,7 +31,7 @@ export const usualOf = (type) => ({
 });
 
 /**
- * The bounds in another unit, of so many of the stored ones, to a tenth inwards.
+ * The bounds in another unit, of `unit` stored ones, rounded inwards to a tenth.
  *
  * @param {keyof typeof BOUNDS} name
  * @param {number} unit

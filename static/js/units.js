@@ -1,6 +1,6 @@
 /** SI and ISO times become text here and nowhere else, in the reader's units, time zone and language.
  *
- * A no-break space stands before each unit, minus is −. What is stored and sent stays metric and UTC.
+ * A no-break space stands before each unit, minus is −. Stored and sent values stay metric and UTC.
  */
 
 import { language, localeOf, t, tn } from "./text.js";
@@ -83,7 +83,7 @@ export function durationText(duration_s) {
   return `${withUnit(grouped(Math.floor(minutes / 60)), "h")}${rest ? ` ${withUnit(`${rest}`, "min")}` : ""}`;
 }
 
-/** What is left until then: "0:07". @param {number} ms */
+/** The remaining time: "0:07". @param {number} ms */
 export function countdownText(ms) {
   const seconds = Math.max(0, Math.ceil(ms / 1000));
   return `${Math.floor(seconds / 60)}:${`${seconds % 60}`.padStart(2, "0")}`;
@@ -96,7 +96,7 @@ export function heightText(height_m) {
     : withUnit(grouped(Math.round(height_m)), "m");
 }
 
-/** To a tenth where there is one: for what was measured or typed. @param {number} height_m */
+/** To a tenth where there is one: for measured or typed values. @param {number} height_m */
 export function exactHeightText(height_m) {
   const figure = Math.round((height_m / SHORT_UNIT.metres) * 10) / 10;
   return withUnit(grouped(figure, Number.isInteger(figure) ? 0 : 1), SHORT_UNIT.unit);

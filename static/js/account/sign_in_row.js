@@ -35,7 +35,7 @@ const SYSTEMS = [
 /** @param {[RegExp, string][]} names @param {string} agent */
 const firstOf = (names, agent) => names.find(([sign]) => sign.test(agent))?.[1];
 
-/** "Firefox, Windows"; what is none of the usual is shown as it calls itself. @param {string} agent */
+/** "Firefox, Windows"; an unusual browser's user agent is shown as it is. @param {string} agent */
 export function browserName(agent) {
   const names = [firstOf(BROWSERS, agent), firstOf(SYSTEMS, agent)].filter(Boolean);
   return names.length ? names.join(", ") : agent.slice(0, 40) || "—";

@@ -1,4 +1,4 @@
-/** Invitations: a link for a new account, shown once, by mail where mail leaves here; taken back. */
+/** Invitations: a link for a new account, shown once, sent by mail where mail is configured; can be revoked. */
 
 import { ApiError, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";

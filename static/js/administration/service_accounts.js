@@ -44,7 +44,7 @@ export function mountServiceAccounts(reporter) {
   return list;
 }
 
-/** Rows of service accounts, and what can be done with each. */
+/** Rows of service accounts with their acts. */
 class ServiceAccounts {
   #notify;
   #settle;

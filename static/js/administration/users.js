@@ -46,7 +46,7 @@ export function mountUsers(reporter) {
   });
 }
 
-/** Rows of users, and what can be done with each. */
+/** Rows of users with their acts. */
 class Users {
   #notify;
   #settle;
@@ -148,7 +148,7 @@ class Users {
    * @param {User} user
    * @param {UserChange} values
    * @param {string} words what was done
-   * @param {UserChange | null} back values that take it back
+   * @param {UserChange | null} back values that undo it
    * @param {string} [focus]
    */
   async #change(user, values, words, back, focus = ".icon-button") {

@@ -76,7 +76,7 @@ const ORDERED = [
 ];
 
 /**
- * The upper ones of pairs that stand the wrong way round: [[its name, the lower one's name]]. What is not stated is as usual.
+ * Pairs of limits in the wrong order: [[name of the upper, name of the lower]]. Unset limits have the usual values.
  *
  * @param {Figures} stated
  * @param {Figures} usual
@@ -98,7 +98,7 @@ export const boundsIn = ([least, most], factor) =>
     ? { min: least, max: most }
     : { min: Math.ceil((least / factor) * 10) / 10, max: Math.floor((most / factor) * 10) / 10 };
 
-/** What is stated, in a few words each: [[label, figure]]. @param {Figures} stated */
+/** The set limits as short texts: [[label, figure]]. @param {Figures} stated */
 export const statedLines = (stated) =>
   GROUPS.flatMap(({ title, limits }) =>
     limits

@@ -56,7 +56,7 @@ const numberOrNull = (input) => (input.value === "" ? null : Number(input.value)
 /**
  * @param {AssetDetailFeature | null} feature null for a new one
  * @param {string} kind
- * @param {Facts | null} kept of an edit that goes on
+ * @param {Facts | null} kept values of an edit that is resumed
  * @returns {RecordForm}
  */
 export function assetForm(feature, kind, kept) {

@@ -1,4 +1,4 @@
-/** The dock: the chosen issue in one sentence, its facts, and what can be done about it. */
+/** The dock: the chosen issue in one sentence, its facts, and its acts. */
 
 import { byId, h, icon, setChildren } from "../dom.js";
 import { t, tn } from "../text.js";
@@ -71,7 +71,7 @@ class DataIssuePanel {
     );
   }
 
-  /** The same issue again: leaves alone what is being done in the panel. @param {DataIssue} issue */
+  /** Update the same issue without interrupting an act in the panel. @param {DataIssue} issue */
   refresh(issue) {
     if (JSON.stringify(issue) === this.#drawn) return;
     const { activeElement } = document;

@@ -1,4 +1,4 @@
-/** The page "Data quality": composes list, map and panel, and keeps them at what the ground is now. */
+/** The page "Data quality": composes list, map and panel, and keeps them in step with the map data. */
 
 import { get, post } from "../api.js";
 import { byId } from "../dom.js";
@@ -20,7 +20,7 @@ import { mountIssuePanel } from "./issue_panel.js";
 const PAGE = "100";
 const SEARCHING_MS = 2_000; // between polls while the map data are searched
 const RESTING_MS = 15_000;
-const ROUND_DEG = 0.0015; // what is shown around an issue at least, some 150 m
+const ROUND_DEG = 0.0015; // minimum margin shown around an issue, some 150 m
 
 /** @type {DataIssue[]} */
 let issues = [];
@@ -193,7 +193,7 @@ function chooseNone() {
   if (hadFocus) row?.focus();
 }
 
-/** What has become of the chosen issue; nothing where another has been chosen, or places are being clicked, before the answer comes. */
+/** Read the chosen issue again; without effect where another has been chosen, or places are being clicked, before the answer arrives. */
 async function refreshChosen() {
   if (!chosen) return;
   refreshes += 1;

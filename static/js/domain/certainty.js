@@ -4,7 +4,7 @@ import { inAir } from "./in_air.js";
 
 /** @import { EstimateShape, LiveUav } from "../api_types.d.ts" */
 
-export const FRESH_S = 3; // a report that is no older is shown as it is: one a second may well be two seconds on its way
+export const FRESH_S = 3; // a newer report is shown as it is: two seconds of delay are normal at one report a second
 const RENEWED_S = 10; // an estimate that is older is of a watch that is gone
 
 /** @typedef {"measured" | "estimated" | "lost"} Certainty */
@@ -32,7 +32,7 @@ export function reportAge_s({ measured }, now_ms) {
 export const isLate = (uav, now_ms) =>
   inAir(uav) !== false && (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
 
-/** Whether so many have not come that it counts as silent. @param {LiveUav} uav @param {number} now_ms */
+/** Whether enough reports are missing that it counts as silent. @param {LiveUav} uav @param {number} now_ms */
 export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) >= uav.rhythm.silent_after_s;
 
 /** @param {EstimateShape | null} estimated @param {number} now_ms @returns {estimated is EstimateShape} */
@@ -40,7 +40,7 @@ const isRenewed = (estimated, now_ms) => estimated !== null && now_ms - Date.par
 
 const FIX_IN_SPACE = 3; // of MAVLink's GPS_FIX_TYPE
 
-/** Whether it knows where it is, as far as it reports. @param {Pick<LiveUav, "measured">} uav */
+/** Whether it has a position fix by its reports. @param {Pick<LiveUav, "measured">} uav */
 export const hasFix = ({ measured }) => typeof measured?.gps_fix !== "number" || measured.gps_fix >= FIX_IN_SPACE;
 
 /**
@@ -56,7 +56,7 @@ export function certaintyOf(uav, now_ms) {
   if (measured?.position && inAir(uav) === false) return MEASURED; // at the place of its last report, possibly switched off
   const age_s = reportAge_s(uav, now_ms);
   const isFresh = !isSilent(uav, now_ms);
-  if (!hasFix(uav) && isFresh) return ESTIMATED; // what it reports of its place is dead reckoning
+  if (!hasFix(uav) && isFresh) return ESTIMATED; // its reported position is dead reckoning
   if (isRenewed(estimated, now_ms)) {
     if (estimated.is_lost) return LOST;
     if (age_s !== null && age_s < FRESH_S && measured?.position) return MEASURED;

@@ -36,7 +36,7 @@ import {
  * @property {{ value: string, words: string, detail?: string }[]} of
  */
 /**
- * What is done instead, as it meets less; it is the primary button then.
+ * A safer alternative with fewer obstructions; it is then the primary button.
  *
  * @typedef {{ words: string, kind: CommandKind, parameters: Record<string, any> }} Safer
  */
@@ -193,7 +193,7 @@ export const outOfSlotQuestion = (name, why) => ({
 });
 
 /**
- * Before a mission is aborted: what each aircraft does, and what is in its way home.
+ * The question before a mission is aborted: the effect on each aircraft, and obstructions of its RTL path.
  *
  * @param {{ name: string, isActive: boolean, uavs: { name: string, check: PresentReturn | null | undefined }[] }} mission
  * @returns {Omit<Question, "opener">}

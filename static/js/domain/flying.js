@@ -42,7 +42,7 @@ const ON_ITS_WAY = ["dispatched", "active"];
 export const isFrozen = (mission) => !["draft", "planned"].includes(mission.state);
 /** @param {{ state: MissionState }} mission */
 export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
-/** What is approved and not over. @param {{ state: MissionState }} mission */
+/** Whether a mission is approved and not over. @param {{ state: MissionState }} mission */
 export const isFlown = ({ state }) => state === "approved" || ON_ITS_WAY.includes(state);
 /** @param {{ state: CommandState }} command */
 export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
@@ -96,7 +96,7 @@ const DOUBTS = {
 };
 
 /**
- * Whether what was brought by this upload is what was read back from the UAV last; `connection` is null while that is not known here.
+ * Whether the last readback equals the upload; `connection` is null while that is unknown here.
  *
  * @param {Command} command
  * @param {UavConnection | null} connection

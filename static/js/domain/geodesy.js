@@ -6,7 +6,7 @@ const CIRCLE_CORNERS = 96;
 
 /** @typedef {{ type: "LineString", coordinates: number[][] } | { type: "MultiLineString", coordinates: number[][][] }} Line in GeoJSON */
 /**
- * What can be drawn: polygons of open rings. A line is the only ring of the only part; a point and the centre of a circle are the first
+ * A drawn shape: polygons of open rings. A line is the only ring of the only part; a point and the centre of a circle are the first
  * position of such a ring.
  *
  * @typedef {{ kind: "point" | "line" | "area" | "circle", parts: number[][][][], radius_m: number | null }} Shape

@@ -1,4 +1,4 @@
-/** What stands above what: UAVs and alerts. Values in, values out. */
+/** Order of UAVs and alerts. Values in, values out. */
 
 /** @import { Alert, AlertLevel, LiveMission, LiveUav } from "../api_types.d.ts" */
 

@@ -64,7 +64,7 @@ function landingText({ landing_percent, reserve_percent, unknown }) {
 }
 
 /**
- * Sentences for a question before a landing where the UAV is: never none.
+ * Sentences for a question before a landing where the UAV is; at least one.
  *
  * @param {LandingHere | null | undefined} landing
  * @returns {string[]}

@@ -44,9 +44,8 @@ export const newPeriod = () => ({ startDateTime: null, endDateTime: null, schedu
 const hour = (time) => Number(time.slice(0, 2)) + Number(time.slice(3, 5)) / 60;
 
 /**
- * Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two. ahead_h:
- * offset of the drawn clock from UTC
- * .
+ * Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two.
+ * ahead_h: offset of the drawn clock from UTC.
  *
  * @param {SchedulePeriod} period
  * @param {number} [ahead_h]

@@ -78,7 +78,7 @@ function timeText(minutes) {
 }
 
 /**
- * Days of the week, moved by so many where the reader's clock is on another day then.
+ * Days of the week, moved by `moved` days where the reader's clock is on another day then.
  *
  * @param {string[]} days
  * @param {number} moved

@@ -27,7 +27,7 @@ export function limitText(limit, side) {
   return `${heightText(limit.value_m)} ${WORDS[limit.reference] ?? ""}`.trim();
 }
 
-/** What is known of both limits, in one sentence. @param {Limits} zone */
+/** Both limits in one sentence. @param {Limits} zone */
 export function heightsText({ lower_limit: lower, upper_limit: upper }) {
   if (lower && upper)
     return t("From {low} to {high}", { low: limitText(lower, "lower"), high: limitText(upper, "upper") });
@@ -35,7 +35,7 @@ export function heightsText({ lower_limit: lower, upper_limit: upper }) {
   return lower ? t("From {low}, upper limit not stated", { low: limitText(lower, "lower") }) : t("Heights not stated");
 }
 
-/** A column of air with the band in it; what is not stated is open, drawn as a dashed end. @param {Limits} zone */
+/** A column of air with the band in it; an unstated limit is open, drawn as a dashed end. @param {Limits} zone */
 export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
   const [width, height, ground] = [34, 64, 58];
   const top = upper ? 16 : 4;

@@ -1,4 +1,4 @@
-/** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table. */
+/** The panel of a drawing: tools, length or area, faults, and its vertices as a table. */
 
 import { h, icon } from "../dom.js";
 import { measure } from "../domain/geodesy.js";
@@ -90,7 +90,7 @@ class DrawPanel {
     this.#draw();
   }
 
-  /** Shows figures of what the shape would be with the pointer where it is. @param {Shape} shape */
+  /** Show figures of the shape with a vertex at the pointer. @param {Shape} shape */
   preview(shape) {
     this.#coming.textContent = figuresOf(shape);
     this.#coming.hidden = false;

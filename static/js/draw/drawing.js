@@ -52,7 +52,7 @@ export function placed(state, position, near = null) {
 }
 
 /**
- * The growing ring is whole; a hole or part of too few vertices is dropped, and a shape of too few goes on.
+ * Finish the growing ring; a hole or part with too few vertices is dropped, and a shape with too few stays unfinished.
  *
  * @param {Drawing} state
  * @returns {Drawing}
@@ -86,7 +86,7 @@ export const withHole = ({ shape }, part = 0) => ({
 export const withPart = ({ shape }) => ({ shape: addPart(shape), growing: [shape.parts.length, 0] });
 
 /**
- * What it would be if the pointer were clicked: for measures and for a circle that is being drawn out.
+ * The shape after a click at the position: for measures and for a circle that is being drawn.
  *
  * @param {Drawing} state
  * @param {number[] | null} position

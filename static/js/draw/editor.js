@@ -81,7 +81,7 @@ export class Editor {
   }
 
   /**
-   * An empty shape is drawn from its first click, one that was left in the middle goes on there, a whole one is edited.
+   * Start: an empty shape is drawn from its first click, an unfinished one is continued, a complete one is edited.
    *
    * @param {Shape} first
    * @param {{ without?: number | null }} [options]
@@ -214,7 +214,7 @@ export class Editor {
     return true;
   }
 
-  /** One step back: the last vertex while drawing, then what is chosen; false where there is nothing to step back from. */
+  /** Undo one step: the last vertex while drawing, then the selection; false where there is none. */
   back = () => {
     if (!this.#steps) return false;
     if (this.growing) return this.take(drawings.stepBack(this.drawing));

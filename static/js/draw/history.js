@@ -37,7 +37,7 @@ export function createSteps(first) {
       now = value;
       return true;
     },
-    /** Another value for the step that is under way, such as a drag that goes on. @param {Value} value */
+    /** Replace the value of the present step, such as during a drag. @param {Value} value */
     amend(value) {
       now = value;
     },

@@ -1,4 +1,4 @@
-/** What is being drawn, on the map: fill, sides, vertices and middles as handles, and what is wrong in red. */
+/** A drawing on the map: fill, sides, vertices and middles as handles, and faults in red. */
 
 import { circleRing, continuous } from "../domain/geodesy.js";
 import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
@@ -182,7 +182,7 @@ function shapeFeatures(shape, growing) {
 }
 
 /**
- * What can be taken hold of: { role, at, position }; `at` of a middle is the vertex before it.
+ * The handles of a shape: { role, at, position }; `at` of a middle is the vertex before it.
  *
  * @param {Shape} shape
  * @returns {Handle[]}

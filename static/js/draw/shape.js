@@ -223,7 +223,7 @@ export const radiusTo = (shape, position) =>
 /** @param {number} longitude */
 const wrap = (longitude) => (Math.abs(longitude) <= 180 ? longitude : longitude - 360 * Math.round(longitude / 360));
 /**
- * Seven decimals, about a centimetre: what is stored; longitudes of a map that goes on round the earth come back to ±180.
+ * Rounded to seven decimals, about a centimetre, as stored; longitudes beyond ±180 are wrapped.
  *
  * @param {number} degrees
  */

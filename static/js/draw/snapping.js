@@ -1,4 +1,4 @@
-/** Where a vertex is meant to be when it comes near to what is there already: vertices first, then the sides of lines. */
+/** Snapping of a vertex to nearby features: vertices first, then the sides of lines. */
 
 import { get } from "../api.js";
 import { distance_m, nearestOnLine } from "../domain/geodesy.js";

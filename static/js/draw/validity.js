@@ -21,7 +21,7 @@ const WORDS = {
   circle: t("Click the centre, then how far it reaches."),
 };
 /** @type {WeakMap<Shape, Fault[]>} */
-const reported = new WeakMap(); // shapes are values: what was found once holds
+const reported = new WeakMap(); // shapes are immutable: results are cached
 
 /**
  * [{ message, position, sides: [[from, to], …] }]; an empty list where nothing is wrong. Of a ring that is `growing` the side that closes it is not there yet.

@@ -1,4 +1,4 @@
-/** What can be written of a UAV, a type or a base, as the API takes it. */
+/** Request bodies of a UAV, a type or a base. */
 
 import { USUAL_RESERVE_PERCENT } from "../uav_figures.js";
 
@@ -7,7 +7,7 @@ import { USUAL_RESERVE_PERCENT } from "../uav_figures.js";
 /** @param {UavBody & Pick<Uav, "from_type">} uav @returns {UavBody} */
 function bodyOfUav(uav) {
   /**
-   * What is its type's is not its own.
+   * Values inherited from the type are omitted.
    *
    * @param {"max_range_m" | "cruise_speed_mps" | "battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps"} name
    */
@@ -51,7 +51,7 @@ const bodyOfType = (type) => ({
 /** @param {BaseBody} base @returns {BaseBody} */
 const bodyOfBase = ({ name, position, note }) => ({ name, position, note });
 
-/** What can be changed of a row. @param {Tab} tab @param {Row} row @returns {Body} */
+/** The editable values of a row. @param {Tab} tab @param {Row} row @returns {Body} */
 export function bodyOf(tab, row) {
   if (tab === "uavs") return bodyOfUav(/** @type {Uav} */ (row));
   return tab === "types" ? bodyOfType(/** @type {FleetType} */ (row)) : bodyOfBase(/** @type {FleetBase} */ (row));

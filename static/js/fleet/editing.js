@@ -1,4 +1,4 @@
-/** Adding and editing one row of the fleet: the form, the pin on the map, what was not saved, and who was faster. */
+/** Adding and editing one row of the fleet: the form, the pin on the map, unsaved input, and conflicts with other users. */
 
 import { ApiError, patch, post } from "../api.js";
 import { toast } from "../page/toast.js";
@@ -72,7 +72,7 @@ export class Editing {
     this.#edit?.form.element.requestSubmit();
   }
 
-  /** @param {Row | null} row null: a new one @param {KeptEdit | null} [kept] what was typed before */
+  /** @param {Row | null} row null: a new one @param {KeptEdit | null} [kept] input from before */
   async start(row, kept = null) {
     const context = this.#context;
     const { tab, types, bases } = context.store.state;
@@ -104,7 +104,7 @@ export class Editing {
     form.first.focus({ preventScroll: context.isWide() });
   }
 
-  /** Ends the edit, with a way back where something was changed. What is just being stored is stored all the same. */
+  /** End the edit, with an undo where something was changed. A save in progress is completed. */
   leave() {
     const left = this.#edit;
     if (!left) return;

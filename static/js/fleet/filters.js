@@ -14,7 +14,7 @@ export const IN_USE = ""; // all but the retired ones
 const SELECTS = ["state", "type", "base"];
 
 /**
- * Calls onTab(tab) and onChange() after the store has what was chosen.
+ * Mount the filters. Calls onTab(tab) and onChange() after the store has the choice.
  *
  * @param {Store<FleetState>} store
  * @param {{ onTab: (tab: Tab) => unknown, onChange: () => unknown }} acts

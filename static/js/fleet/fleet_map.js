@@ -12,7 +12,7 @@ import { t } from "../text.js";
 /** @import { Box, MapLibreMap } from "../map/types.d.ts" */
 /** @import { Chosen, FleetBase, FleetMap, FleetPage, Ground, Places, Position, Tab, Uav } from "./types.d.ts" */
 
-const ROUND_DEG = 0.02; // what is seen round a lone place
+const ROUND_DEG = 0.02; // margin round a single place
 const NEAR_ZOOM = 13;
 const ROW_PX = 22;
 const SQUARE_PX = 26;

@@ -106,12 +106,12 @@ function fieldsOf(tab, body, context) {
 /**
  * @param {object} options
  * @param {Tab} options.tab
- * @param {Body} options.body what it begins with
+ * @param {Body} options.body initial values
  * @param {FleetType[]} options.types
  * @param {FleetBase[]} options.bases
  * @param {boolean} options.isNew
  * @param {boolean} options.isAdministrator
- * @param {(position: Position) => void} options.onMove the place was typed
+ * @param {(position: Position) => void} options.onMove called when the place was typed
  * @param {() => unknown} options.onSave
  * @param {() => unknown} options.onCancel
  * @returns {Form}

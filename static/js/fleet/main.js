@@ -41,7 +41,7 @@ const initial = {
   problem: null,
 };
 const store = createStore(initial);
-let choosing = 0; // counts what was begun: an answer that comes after something else was begun is not shown
+let choosing = 0; // counts requests: an answer to an earlier one is not shown
 /** @type {FleetMap | null} */
 let map = null;
 /** @type {Ground | null} */
@@ -118,7 +118,7 @@ store.listen(["problem"], ({ problem }) =>
   byId("fleet-problem").replaceChildren(...(problem ? [problemNotice(problem)] : [])),
 );
 
-// what is there
+// load
 
 function uavsAddress() {
   const { text, state, type, base, tab } = store.state;
@@ -320,7 +320,7 @@ function lookAgain() {
   return chosen && choose(chosen.tab, chosen.id);
 }
 
-/** The list and what is chosen, as they are now. @param {number} id */
+/** Reload the list and the chosen row. @param {number} id */
 async function refresh(id) {
   const moment = choosing;
   await load();

@@ -1,4 +1,4 @@
-/** What is chosen, in full: its facts, what can be done with it, a UAV's credentials and missions. */
+/** The chosen row in full: its facts and acts, a UAV's credentials and missions. */
 
 import { get } from "../api.js";
 import { byId, h, icon, setChildren } from "../dom.js";

@@ -1,4 +1,4 @@
-/** The table of UAVs, types or bases, and what stands there when there is nothing. */
+/** The table of UAVs, types or bases, and the notice when it is empty. */
 
 import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";

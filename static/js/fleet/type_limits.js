@@ -1,4 +1,4 @@
-/** Where alerts of a type's UAVs begin: what differs from the usual, and the way to change it. */
+/** Limits of alerts of a type's UAVs: differences from the default, and the button to change them. */
 
 import { openAlertLimits } from "../alert_limits/dialog.js";
 import { statedLines } from "../alert_limits/words.js";

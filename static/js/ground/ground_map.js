@@ -77,7 +77,7 @@ export function mountGroundMap(page, on = {}) {
   const extent = () => /** @type {Box | null} */ (ground?.extent ?? page.extent);
   /** @param {Box | null} box @param {{ animate?: boolean }} [options] */
   function fit(box, options) {
-    map.resize(); // the dock may just have come: fit into what is left
+    map.resize(); // the dock may just have appeared: fit into the remaining space
     view.fit(box, options);
   }
   /** Rings geometries: what a list row is at. @param {Geometry[]} geometries */
@@ -99,14 +99,14 @@ export function mountGroundMap(page, on = {}) {
     box: () => map.getBounds().toArray().flat(),
     centre: () => map.getCenter().toArray(),
     ring,
-    /** Brings a position [lon, lat] or a box [W, S, E, N] into view, near enough to see what stands there. @param {number[]} place */
+    /** Bring a position [lon, lat] or a box [W, S, E, N] into view, near enough to see the assets. @param {number[]} place */
     show(place) {
       if (place.length === 4) fit(/** @type {Box} */ (place));
       else easeTo(map, place);
     },
     /** `act(palette)` paints a page's own layers again after a change of theme. */
     onRecolour: (/** @type {(palette: Palette) => void} */ act) => repainted.add(act),
-    /** New tiles, after the ground has changed. */
+    /** Reload tiles after a change of the map data. */
     refreshTiles() {
       refreshTiles(map);
     },
@@ -118,7 +118,7 @@ export function mountGroundMap(page, on = {}) {
   };
 }
 
-/** Moves to a position, near enough to see what stands there. @param {MapLibreMap} map @param {number[]} position */
+/** Move to a position, near enough to see the assets. @param {MapLibreMap} map @param {number[]} position */
 function easeTo(map, [longitude, latitude]) {
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
   const zoom = Math.max(map.getZoom(), NEAR_ZOOM);

@@ -1,4 +1,4 @@
-/** What every page about the ground has: its map, the sheet and folds, the keys, and the ground's own facts. */
+/** Common parts of pages on map data: the map, the sheet and folds, the keys, and the facts of the map data. */
 
 import { get } from "../api.js";
 import { byId } from "../dom.js";
@@ -13,8 +13,8 @@ import { mountGroundMap } from "./ground_map.js";
 /** @import { GroundHandlers, GroundPage } from "./types.d.ts" */
 
 /**
- * Mounts the page. `open` starts the keys, loads the ground and what the page loads besides, and marks the document as loaded (for tests,
- * `html[data-loaded]`).
+ * Mount the page. `open` starts the keys, loads the state of the map data and the page's own data, and marks the document as loaded (for
+ * tests, `html[data-loaded]`).
  *
  * @param {GroundHandlers} [on]
  */

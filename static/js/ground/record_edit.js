@@ -29,7 +29,7 @@ const CHECK_AFTER_MS = 700;
  * @property {(position: number[]) => void} showPlace
  * @property {(id: number, how?: { stay?: boolean }) => Promise<void>} choose
  * @property {() => { feature: Feature, etag: string | null } | null} chosen
- * @property {() => void} forget what is chosen
+ * @property {() => void} forget clears the selection
  * @property {() => void} cancelled called when an edit without a chosen record is left
  * @property {() => void} back to the list
  * @property {() => Promise<void>} reload the list and the map
@@ -88,7 +88,7 @@ export class RecordEdit {
 
   /**
    * @param {Feature | null} feature null for a new one
-   * @param {{ choice?: string, shape?: Shape | null, facts?: Facts | null }} [kept] of an edit that goes on
+   * @param {{ choice?: string, shape?: Shape | null, facts?: Facts | null }} [kept] values of an edit that is resumed
    */
   start(feature, { choice = feature ? this.#kind.choiceOf(feature) : "", shape = null, facts = null } = {}) {
     const { form: makeForm, newTitle, shapeKind, title } = this.#kind;
@@ -159,7 +159,7 @@ export class RecordEdit {
     }
   }
 
-  /** Offers to go on with what was not saved last time. */
+  /** Offer to resume an unsaved edit of last time. */
   offerDraft() {
     const kept = /** @type {KeptEdit | null} */ (this.#draft.read());
     if (!kept?.shape) return;
@@ -206,7 +206,7 @@ export class RecordEdit {
     return shape !== null && textOf(shape) !== this.#edit?.began.shape;
   }
 
-  /** Only what was changed is sent: what others change besides stays theirs. @param {Edit<Feature>} edit @returns {Facts} */
+  /** Only the changed facts are sent, so that other users' changes are kept. @param {Edit<Feature>} edit @returns {Facts} */
   #changedFacts({ form, began }) {
     const isChanged = (/** @type {string} */ name, /** @type {unknown} */ value) =>
       JSON.stringify(value) !== JSON.stringify(began.facts[name]);
@@ -334,6 +334,6 @@ export class RecordEdit {
     const chosen = this.#on.chosen();
     if (chosen?.feature.id !== id) return;
     this.start(chosen.feature, { shape, facts });
-    if (this.#edit) this.#edit.etag = etag; // what was seen then: a change since comes to light when it is saved
+    if (this.#edit) this.#edit.etag = etag; // the version seen then: a later change is detected when it is saved
   }
 }

@@ -95,7 +95,7 @@ export class RecordList {
     this.#list.querySelector("button")?.focus({ preventScroll: true });
   }
 
-  /** Moves the focus by so many rows; false where there are none. @param {number} by */
+  /** Move the focus by a number of rows; false where there are none. @param {number} by */
   step(by) {
     const rows = [...this.#list.querySelectorAll("button")];
     if (!rows.length) return false;

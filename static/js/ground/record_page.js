@@ -1,4 +1,4 @@
-/** A page of records, assets or zones: search, view, draw, edit, history, undo. What differs between the two is its RecordKind. */
+/** A page of records, assets or zones: search, view, draw, edit, history, undo. RecordKind holds the differences between the two. */
 
 import { ApiError } from "../api.js";
 import { byId } from "../dom.js";
@@ -137,7 +137,7 @@ class RecordPage {
     await this.load();
   }
 
-  /** What is chosen stays ringed beside what the pointer or a row is at. @param {Geometry[]} [geometries] */
+  /** Keep the ring of the selection beside that of the pointer or a row. @param {Geometry[]} [geometries] */
   #ring(geometries = []) {
     const { chosen } = this.#view;
     const own = chosen && !this.#edit.isOpen() ? [chosen.feature.geometry] : [];

@@ -34,7 +34,7 @@ export const ifMatch = (etag) => ({ headers: { "If-Match": etag ?? "" } });
  * @typedef {object} ViewHandlers
  * @property {boolean} canCurate
  * @property {(view: "find" | "show") => void} go
- * @property {() => void} ring rings what is chosen
+ * @property {() => void} ring rings the selection
  * @property {(geometries?: Geometry[]) => void} ringAlso
  * @property {(box: Box) => void} fit
  * @property {() => Promise<void>} reload the list and the map

@@ -188,7 +188,7 @@ class Uploads {
     return /** @type {Answer<Proposal>} */ (answer).data;
   }
 
-  /** What has arrived stays there for a day, so that the user can go on after a stop. @param {UploadItem} item */
+  /** Stop the upload. Received parts are kept for a day, so that it can be resumed. @param {UploadItem} item */
   #stop(item) {
     item.controller?.abort();
     item.phase = "chosen";

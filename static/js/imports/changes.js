@@ -1,4 +1,4 @@
-/** The lines of a difference: counts as filters, what was and what would be, linked with the map. */
+/** The lines of a difference: counts as filters, old and new values, linked with the map. */
 
 import { byId, find, h, keyedList, setChildren } from "../dom.js";
 import { t, tn } from "../text.js";

@@ -74,7 +74,7 @@ export function mappingOf(meanings, kind, kindValues) {
 }
 
 /**
- * Each role once: what another column had of it is taken from that one.
+ * Assign a meaning. Each is used once: a column that had it loses it.
  *
  * @param {Meanings} meanings
  * @param {string} name
@@ -112,7 +112,10 @@ const field = (words, control, hint) =>
     hint && h("span", { class: "caption" }, hint),
   );
 
-/** A row: a name with a caption, and what is chosen for it. @param {string} name @param {HTMLElement} caption @param {HTMLElement} choice */
+/**
+ * A row: a name with a caption, and the control of its choice.
+ * @param {string} name @param {HTMLElement} caption @param {HTMLElement} choice
+ */
 const columnRow = (name, caption, choice) =>
   h(
     "div",

@@ -1,4 +1,4 @@
-/** One chosen file: what it is, where it comes from, and how far it is on its way. */
+/** One chosen file: its kind, source and upload progress. */
 
 import { h, icon, setChildren } from "../dom.js";
 import { t } from "../text.js";
@@ -151,7 +151,7 @@ class FileCard {
   }
 }
 
-/** What stands below the card in each phase. @param {UploadItem} item @param {UploadActs} acts @param {string} formId */
+/** The elements below the card in each phase. @param {UploadItem} item @param {UploadActs} acts @param {string} formId */
 function statusOf(item, acts, formId) {
   const share = h("span", { dataset: { share: "" } });
   switch (item.phase) {

@@ -113,7 +113,7 @@ function showFacts(proposals) {
     .join(" · ");
 }
 
-/** Puts what is known of a proposal now into the list, and shows it if it is open. @param {Proposal} proposal */
+/** Store the present state of a proposal in the list, and show it if it is open. @param {Proposal} proposal */
 function put(proposal) {
   const proposals = store.state.proposals ?? [];
   const isKnown = proposals.some(({ id }) => id === proposal.id);
@@ -178,7 +178,7 @@ async function loadChanges({ fit = false } = {}) {
 }
 
 /**
- * A file whose columns are not explained yet has no changes, but shapes; terrain has what it covers.
+ * A file whose columns have no meanings yet has no changes, but shapes; terrain has its coverage.
  *
  * @param {Proposal | null} proposal
  * @returns {Change[]}

@@ -1,4 +1,4 @@
-/** One import: the sentence first, then why it was refused or what it would change, and the decision. */
+/** One import: the sentence first, then why it was refused or its changes, and the decision. */
 
 import { byId, h, icon, setChildren } from "../dom.js";
 import { open as openDialog } from "../page/keyboard.js";

@@ -1,4 +1,4 @@
-/** Sends a file part by part; a cut connection goes on where it was. */
+/** Upload of a file in parts; it resumes after an interrupted connection. */
 
 import { ApiError, get, post, putBytes } from "../api.js";
 

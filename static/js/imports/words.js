@@ -77,7 +77,7 @@ export function terrainSentence({ lowest_m, highest_m, vertical_datum }, differe
 }
 
 /**
- * How many rows of the ground an application touches.
+ * How many stored rows an application changes.
  *
  * @param {Record<string, number>} difference
  * @param {{ overwrites?: boolean }} [how]
@@ -118,7 +118,7 @@ export function factName(name) {
   return { words: parts.join(" "), unit };
 }
 
-/** A value as text; what has a shape is on the map. @param {string} name @param {unknown} value @returns {string} */
+/** A value as text; geometries are on the map. @param {string} name @param {unknown} value @returns {string} */
 export function factText(name, value) {
   if (value === null || value === undefined || value === "") return t("nothing");
   if (value === true) return t("yes");

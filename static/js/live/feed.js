@@ -18,9 +18,9 @@ export const SIGNED_OUT = "signed-out"; // for good
 export const GONE = "gone"; // the mission is deleted: for good
 
 export const FEED_LOST_MS = 5_000; // the server sends a heartbeat every 2 s: after that the page has no data
-const AHEAD_MS = 2_500; // what is shown is never older than it was at the last message by more than this
+const AHEAD_MS = 2_500; // the time shown is at most this far ahead of the last message
 const CONNECT_WITHIN_MS = 15_000; // until the first message of a websocket
-const FIRST_MESSAGE_MS = 3_000; // after which the page asks, while it goes on waiting
+const FIRST_MESSAGE_MS = 3_000; // after this the page polls, while it waits for the socket
 const ASK_EVERY_MS = 2_000;
 const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
@@ -124,7 +124,7 @@ class Feed {
     return this.received_ms === null ? 0 : Math.max(0, this.#clock.now_ms() - this.received_ms);
   }
 
-  /** The time that what is shown is of: once the page is blind, that of the last message. */
+  /** The time of the data shown: without a connection, that of the last message. */
   shown_ms() {
     const now_ms = this.#clock.now_ms();
     if (this.received_ms === null) return now_ms;

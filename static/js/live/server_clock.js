@@ -2,7 +2,10 @@
 
 const WINDOW_MS = 60_000;
 
-/** clock.heard("2026-…") with each word of the server; clock.now_ms() is its time by now, in milliseconds since 1970. */
+/**
+ * Create a clock of the server: `heard("2026-…")` takes the time in each message; `now_ms()` is the server's time now, in milliseconds
+ * since 1970.
+ */
 export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {
   const guess_ms = first_ms - ticks_ms();
   /** @type {{ at_ms: number, ahead_ms: number }[]} */

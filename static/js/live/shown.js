@@ -19,7 +19,10 @@ export function shownAfterSnapshot(live) {
   return /** @type {Shown} */ (Object.fromEntries(entries));
 }
 
-/** Puts changes into what is shown. Returns the ids that came, changed or went, by kind. @param {Shown} shown @param {Changes} changes */
+/**
+ * Apply changes to the state shown. Returns the ids that were added, changed or removed, by kind.
+ * @param {Shown} shown @param {Changes} changes
+ */
 export function applyChanges(shown, changes) {
   const all = /** @type {AnyShown} */ (/** @type {unknown} */ (shown));
   /** @type {Touched} */

@@ -1,4 +1,4 @@
-/** What stands around the map: scale, coordinates, attribution, tooltip. */
+/** Elements around the map: scale, coordinates, attribution, tooltip. */
 
 import { byId, find } from "../dom.js";
 import { coordinateText, lengthText } from "../units.js";

@@ -28,7 +28,7 @@ export function drawLassos(map, canvas, on) {
     return [event.clientX - box.left, event.clientY - box.top];
   };
 
-  /** Ends the drawing; what was drawn, or null. */
+  /** End the drawing; returns the line, or null. */
   function stop() {
     if (!points) return null;
     const drawn = points;

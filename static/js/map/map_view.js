@@ -11,7 +11,7 @@ import { maplibre } from "./maplibre.js";
 /** @import { Box, MapFault, MapLibreMap, MapOptions, MapView } from "./types.d.ts" */
 
 /** @type {Box} */
-const WORLD = [-12, 25, 40, 62]; // where nothing is known of the ground
+const WORLD = [-12, 25, 40, 62]; // where there are no map data
 
 const NEAREST_FIT = 15;
 const CONTROLS_PX = 68; // they stand at the right edge
@@ -84,7 +84,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     show(layers, visible) {
       for (const id of layers) map.setLayoutProperty(id, "visibility", visible ? "visible" : "none");
     },
-    /** Fits [west, south, east, north] into what is visible of the map. */
+    /** Fit [west, south, east, north] into the visible part of the map. */
     fit(box, { animate = true } = {}) {
       keepsAddress = true; // from here on the user may return to the view
       if (!box) return;
@@ -95,8 +95,8 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
 }
 
 /**
- * Fits boxes into what is visible of the map. What was fitted stays in view when legend and dock grow, until the map is moved. A legend
- * that shrinks is let be: its rows go by the zoom, and following it both ways could go on for ever.
+ * Fit boxes into the visible part of the map. They stay in view when legend and dock grow, until the map is moved. A legend that shrinks
+ * is ignored: its rows depend on the zoom, and following it both ways could oscillate.
  *
  * @param {MapLibreMap} map
  * @param {HTMLElement} container

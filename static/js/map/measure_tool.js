@@ -29,7 +29,7 @@ export function bearing_deg([lon1, lat1], [lon2, lat2]) {
 }
 
 /**
- * What is drawn: the path, what the pointer would add, and points with the length as far as them.
+ * The features to draw: the path, the part to the pointer, and points with the length up to them.
  *
  * @param {Position[]} points
  * @param {Position | null} [pointer]

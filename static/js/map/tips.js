@@ -153,7 +153,7 @@ function zoneContent({ properties, place }, details, problem = "") {
   ].filter((part) => part instanceof Node);
 }
 
-/** Where the zone is from, and how old what is known of it is. @param {ZoneDetailProperties} details */
+/** The source of the zone, and the age of its data. @param {ZoneDetailProperties} details */
 function sourceWords({ zone_set, source, is_edited, updated_at }) {
   if (!source) return t("Drawn in Spanwise, changed {when}", { when: whenText(updated_at) });
   const name = zone_set ?? source.file_name;

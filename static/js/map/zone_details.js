@@ -9,7 +9,7 @@ const KEPT_MS = 60_000;
 /** @type {Map<number, { at: number, properties: ZoneDetailProperties }>} */
 const known = new Map(); // zone → { at, properties }
 
-/** What was read of it last, however old; null where nothing was. @param {number} id */
+/** The details read last, however old; null without any. @param {number} id */
 export const zoneDetailsKept = (id) => known.get(id)?.properties ?? null;
 
 /** @param {number} id */

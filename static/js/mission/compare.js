@@ -53,7 +53,7 @@ const pickOf = ({ asset, position, stretch, label }) => ({
 const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id === b.uav_id : a.uav === b.uav);
 
 /**
- * Whether two plans fly the same: planning again what has not changed is not another plan.
+ * Whether two plans fly the same: planning an unchanged selection again is not another plan.
  *
  * @param {ShortPlan} a
  * @param {ShortPlan} b
@@ -170,9 +170,8 @@ export function counterpart(route, plan) {
 }
 
 /**
- * What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from
- * and to are
- * { end_action, base }, null where they are the same. Of plans that are remembered without these, nothing differs.
+ * Differences in the start and end of a route from the same UAV's in another plan: { moved_m, from, to }; from and to are { end_action,
+ * base }, null where they are equal. There are none where the stored plan does not contain them.
  *
  * @param {ShortRoute | null | undefined} old
  * @param {ShortRoute} now

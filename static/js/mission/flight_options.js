@@ -1,7 +1,4 @@
-/**
- * When and in what air a mission is flown, what its UAVs may charge with and what they do without a link. Values in,
- * values out.
- */
+/** Options of a flight: departure and conditions, charging, and lost-link action. Values in, values out. */
 
 import { t } from "../text.js";
 import { clockText, dayText, heightText, sinceText, speedText, temperatureText } from "../units.js";

@@ -1,4 +1,4 @@
-/** A pasted list of references: what is one of them, and what the server found for each. */
+/** A pasted list of references: their parsing, and the server's matches for each. */
 
 import { post } from "../api.js";
 
@@ -78,7 +78,7 @@ export async function lookUp(refs, kinds, signal) {
 }
 
 /**
- * The rows to add: every reference with one meaning, and of the others what was chosen: ref → "all", an id, or nothing.
+ * The rows to add: every reference with one match, and the choice for the others: ref → "all", an id, or nothing.
  * Each with the external id that the list has for its reference.
  *
  * @param {LookupResult[]} results

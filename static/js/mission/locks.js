@@ -54,8 +54,7 @@ export function ordersOf(plan) {
 export const lockOf = (selection, key) => locksOf(selection).find(({ targets }) => targets.includes(key)) ?? null;
 
 /**
- * What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the
- * route.
+ * The rest of a lock. A single target whose neighbours were removed is no longer locked, unless the run stands at an end of the route.
  *
  * @param {Lock} lock
  * @param {string[]} targets
@@ -106,9 +105,8 @@ export function settled(selection) {
 }
 
 /**
- * The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
- *
- * One for each of `orders`, at its place, then those of UAVs to which something is locked and which fly nothing yet.
+ * The orders with the locks applied: locked targets stand at their wished place, the rest as planned. One for each of `orders`, at its
+ * place, then those of UAVs with locked targets and without a route.
  *
  * @param {FlownOrder[]} orders
  * @param {Lock[]} locks
@@ -284,7 +282,7 @@ export function lockedHere(selection, orders, key) {
 }
 
 /**
- * A target that may be flown by anybody at any place again; what was locked before and after it stays locked.
+ * Free a target for any UAV and place; the locks before and after it stay.
  *
  * @param {MissionSelection} selection
  * @param {string} key
@@ -302,7 +300,7 @@ export function unlocked(selection, key) {
 }
 
 /**
- * Targets that only one UAV may fly; null frees them. What was locked to another UAV is locked no more.
+ * Tie targets to one UAV; null frees them. Locks to another UAV are removed.
  *
  * @param {MissionSelection} selection
  * @param {string[]} keys

@@ -194,7 +194,7 @@ export function placesText(waypoints) {
 /** @param {number} return_point */
 export const returnPointText = (return_point) => (return_point === 0 ? t("its start") : rallyName(return_point - 1));
 
-/** Wh to a tenth: what is missing may be little. @param {number} missing_wh */
+/** Wh to a tenth: the shortfall may be small. @param {number} missing_wh */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
 
 /**
@@ -257,7 +257,7 @@ export function checkText(state, plan) {
     : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
 }
 
-/** Nothing that is not known is taken for safe: who has no battery stated is named. @param {ShownPlan} plan */
+/** The text that names UAVs without a stated battery: unknown returns do not count as safe. @param {ShownPlan} plan */
 export function uncountedText(plan) {
   const names = uncountedOf(plan);
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";

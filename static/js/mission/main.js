@@ -1,4 +1,4 @@
-/** The operator's map: composes the page and loads what it shows. */
+/** The operator's map: composes the page and loads its data. */
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
@@ -197,7 +197,7 @@ watchMission(store, {
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 
 /**
- * What is stored of the mission: the run of a rehearsal that is shown, else the plan.
+ * The scene of the mission: the run of a rehearsal that is shown, else the stored plan.
  *
  * @returns {ReturnType<Parameters<typeof mountSceneOpener>[0]>}
  */

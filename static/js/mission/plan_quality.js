@@ -136,7 +136,7 @@ export function wishWordsOf({ objective, wish }) {
 }
 
 /**
- * The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)".
+ * The best plan of a search so far: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)".
  *
  * @param {BestSoFar | null} best
  */

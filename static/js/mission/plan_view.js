@@ -13,7 +13,7 @@ import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
 
-/** What a plan warns of where a UAV stays on the ground. @type {string[]} */
+/** Warnings of a plan that keep a UAV from flying. @type {string[]} */
 export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
 
 /** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
@@ -64,7 +64,7 @@ export function routesOf(plan) {
 }
 
 /**
- * Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }.
+ * The place of each target in the plan, or with the locks: key → { sequence, letter, number }.
  *
  * @param {ShownPlan | null} plan
  * @param {Lock[]} [locks]
@@ -168,7 +168,7 @@ export function endingOf({ end_action, base, letter, targets }) {
 }
 
 /**
- * The same for what is picked, before it is planned.
+ * The same for the selection, before it is planned.
  *
  * @param {Pick<MissionSelection, "return_to_start" | "uavs">} selection
  */

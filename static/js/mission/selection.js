@@ -1,4 +1,4 @@
-/** What is to be flown, as plain values: targets, UAVs, options; and its shape on the wire. */
+/** The selection as plain values: targets, UAVs, options; and its form in requests. */
 
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
@@ -257,7 +257,7 @@ function locksAsked({ targets, locks }) {
 export const withoutLocks = (selection) => ({ ...selection, locks: [] });
 
 /**
- * The same without what is locked and what targets wish: what leaves a plan's targets and UAVs as they are.
+ * The selection without locks and wishes of targets: changes of these keep a plan's targets and UAVs.
  *
  * @param {MissionSelection} selection
  * @returns {MissionSelection}
@@ -327,7 +327,7 @@ export function requestOf(selection) {
 }
 
 /**
- * Equal selections ask for equal routes: what is done without a link does not change them, nor whose figures a UAV has.
+ * Key of a selection: equal keys give equal routes. Lost-link actions do not count, nor the source of a UAV's figures.
  *
  * @param {MissionSelection} selection
  */

@@ -1,7 +1,4 @@
-/**
- * What is done at targets, how urgent they are, and who flies them: words, and the menu that sets it for one, several
- * or all.
- */
+/** Tasks, priority and UAV of targets: texts, and the menu that sets them for one, several or all. */
 
 import { h, icon } from "../dom.js";
 import { closeMenu } from "../page/chrome.js";
@@ -94,7 +91,7 @@ function choiceOf(label, values, choices, set) {
 }
 
 /**
- * How urgent, by whom, with what.
+ * Choices of priority, UAV and sensor.
  *
  * @param {PickedTarget[]} targets
  * @param {MissionActions} actions

@@ -1,7 +1,4 @@
-/**
- * What has become of UAVs since a mission took their figures over, and which figures are the mission's own. Values in,
- * values out.
- */
+/** Changes of UAVs since a mission took over their figures, and figures that are the mission's own. Values in, values out. */
 
 import { t } from "../text.js";
 import { OWN_FIGURES } from "../uav_figures.js";
@@ -94,8 +91,8 @@ export function withFleetFigures(selection, changes) {
 const isOwn = (name) => OWN_FIGURES.some((own) => own === name);
 
 /**
- * Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed
- * otherwise is the mission's own.
+ * Figures typed for a UAV in a mission. `known` is the UAV of the fleet: an empty field has its value, another value is the mission's
+ * own.
  *
  * @param {PickedUav} uav
  * @param {Partial<PickedUav>} values

@@ -15,9 +15,9 @@ const STEP_MS = 60_000;
 const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };
 
 /**
- * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known
- * counts as met.
- * route: of a plan; places: where its waypoints stand [m]; departs_at: of the plan, null for at any time.
+ * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". Unknown counts as met.
+ * 
+ * route: of a plan; places: of its waypoints along the route [m]; departs_at: of the plan, null for at any time.
  *
  * @param {{ zones: ZoneAlong[], zone_margins?: ZoneMargins }} ground
  * @param {Pick<Route, "arrival_s" | "waypoints">} route

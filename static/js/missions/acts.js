@@ -1,4 +1,4 @@
-/** What can be done to missions of the list: rename, duplicate, delete and bring back. */
+/** Acts on missions of the list: rename, duplicate, delete and restore. */
 
 import { ApiError, patch, post } from "../api.js";
 import { toast } from "../page/toast.js";

@@ -14,7 +14,7 @@ const CHECK_MS = 5000;
 
 /**
  * @param {{ reload: () => unknown, showProblem: (error: unknown, title: string) => unknown, canChange: boolean }} page
- * @returns what is known, and what can be done about it
+ * @returns state of the demo, and its acts
  */
 export function createDemo({ reload, showProblem, canChange }) {
   /** @type {DemoData | null} */
@@ -31,7 +31,7 @@ export function createDemo({ reload, showProblem, canChange }) {
     if (known.job) follow(known.job);
   }
 
-  /** Missions appear one by one while the job goes on. @param {string} job */
+  /** Follow the job; missions appear one by one. @param {string} job */
   async function follow(job) {
     if (followed === job) return;
     followed = job;

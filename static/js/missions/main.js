@@ -138,7 +138,7 @@ function drawRows({ missions, chosen }) {
   );
 }
 
-/** What is ticked, without a new drawing of the rows: the tick keeps its focus. @param {ListState} state */
+/** Show the chosen missions without redrawing the rows: the check box keeps its focus. @param {ListState} state */
 function drawChosen({ missions, chosen, asked }) {
   for (const row of /** @type {HTMLCollectionOf<HTMLElement>} */ (byId("rows").children)) {
     const isChosen = chosen.has(row.dataset.id ?? "");
@@ -237,7 +237,7 @@ function drawRest({ missions, next, total, pages, asked, filters, deletedCount, 
   find(document, ".pager-buttons", HTMLElement).hidden = !pages.length && next === null;
 }
 
-/** Of an installation without missions: what can be done first. */
+/** The first steps of an installation without missions. */
 function drawFirst() {
   drawEmpty(
     h("strong", {}, t("No missions yet")),

@@ -1,4 +1,4 @@
-/** One row of the list: drawing, name to be changed in its place, figures, and what can be done. */
+/** One row of the list: drawing, name that can be edited in place, figures, and acts. */
 
 import { find, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";

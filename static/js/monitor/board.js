@@ -76,7 +76,7 @@ export const pillOf = (target, numbers, prefix = "") =>
   target.uav === null ? `${target.place + 1}` : `${prefix}${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
 
 /**
- * Rows: [{ key, mission, place, colour, pill, label, state, at, isExpected, reason }], what goes on first, what is done last.
+ * Rows: [{ key, mission, place, colour, pill, label, state, at, isExpected, reason }], targets in progress first, finished ones last.
  *
  * @param {LiveMission[]} missions
  * @param {LiveUav[]} uavs
@@ -101,7 +101,7 @@ export function boardRows(missions, uavs, details, order = new Map()) {
   );
 }
 
-/** What is to come by its time, what is over the newest first. @param {BoardRow} a @param {BoardRow} b */
+/** Open targets by time, then finished ones, newest first. @param {BoardRow} a @param {BoardRow} b */
 function later(a, b) {
   const [one, other] = [a, b].map(({ at }) => (at ? Date.parse(at) : Infinity));
   if (one === other) return 0;

@@ -11,9 +11,9 @@ import { ageWords, isHeld } from "./text/uav_text.js";
 /** @import { LiveUav, Route } from "../api_types.d.ts" */
 /** @import { Certainty } from "../domain/certainty.js" */
 
-/** `title` is the tooltip: what it means, or why it is not known. @typedef {{ figure: string, unit: string, words: string, level: string, title: string }} Figure */
+/** `title` is the tooltip: its meaning, or why it is unknown. @typedef {{ figure: string, unit: string, words: string, level: string, title: string }} Figure */
 /**
- * What is known beside the UAV itself: where it took off, its planned route, and how its next target is called.
+ * Facts beside the UAV itself: take-off place, planned route, and the name of its next target.
  *
  * @typedef {object} Beside
  * @property {number} now_ms
@@ -35,7 +35,7 @@ function known(text, words, more = {}) {
   return { figure, unit, words, level: "", title: "", ...more };
 }
 
-/** "12 min to the reserve, 4 min home"; empty where that is not known, and on the ground. @param {LiveUav} uav */
+/** "12 min to the reserve, 4 min home"; empty where unknown, and on the ground. @param {LiveUav} uav */
 export function batteryWords(uav) {
   const battery = uav.estimated?.battery;
   if (!battery || inAir(uav) === false) return "";
@@ -157,7 +157,7 @@ function ageFigure(uav, now_ms) {
 }
 
 /**
- * Battery, height, speed, distance home, what is next, age of the report; "~" before what is not measured.
+ * Battery, height, speed, distance home, next target, age of the report; "~" before values that are not measured.
  *
  * @param {LiveUav} uav
  * @param {Certainty | null} certainty

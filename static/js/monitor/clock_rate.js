@@ -5,7 +5,7 @@ import { numberText } from "../units.js";
 
 /** @import { LiveLink } from "../api_types.d.ts" */
 
-const ALIKE = 0.1; // as much as what was learnt of a clock may be off
+const ALIKE = 0.1; // error of a learnt clock rate
 
 /**
  * Simulated seconds a second: a whole number if within 10 % of one, else with one decimal; 1 for a real UAV.

@@ -23,7 +23,7 @@ export function createEventReading(store, page) {
       const { results, next } = /** @type {Answer<MissionEventPage>} */ (await get(newest)).data;
       const { events, olderEvents } = store.state;
       const isFirst = events === null;
-      // Where more has come than one page holds, what lies between is read with the older ones.
+      // Where more events arrived than fit on one page, those in between are read with the older ones.
       const hasGap = !isFirst && next !== null && !results.some(({ key }) => events.some((event) => event.key === key));
       store.update({
         events: merged(hasGap ? [] : (events ?? []), results),
@@ -34,7 +34,7 @@ export function createEventReading(store, page) {
     }
   }
 
-  /** What has changed is read within five seconds. */
+  /** Read changes within five seconds. */
   function refresh() {
     if (!store.state.showsLog || isWaiting) return;
     isWaiting = true;

@@ -1,4 +1,4 @@
-/** The fleet of the live page by missions, as far as the filter lets it through. Values in, values out. */
+/** The fleet of the live page by missions, filtered. Values in, values out. */
 
 import { isSilent } from "../domain/certainty.js";
 import { inAir } from "../domain/in_air.js";

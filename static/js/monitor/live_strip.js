@@ -1,4 +1,4 @@
-/** The span strip of a flight: what is flown thick, the rest pale, the UAV on it with the bracket in which it is 95 of 100 times. */
+/** The span strip of a flight: the flown part thick, the rest pale, the UAV on it with its 95 % bracket. */
 
 import { svg } from "../dom.js";
 import { MEASURED } from "../domain/certainty.js";

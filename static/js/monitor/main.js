@@ -1,4 +1,4 @@
-/** What flies now: composes the page, listens to the feed, keeps the time. */
+/** The live page: composes the page, listens to the feed, keeps the time. */
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
@@ -231,7 +231,7 @@ const feed =
         onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
       })
     : silentFeed(copiedAt);
-/** What is shown is of `now_ms`: it stands still while the device has no data. */
+/** The data shown are of `now_ms`: it stops while the device receives none. */
 const timesOf = () => ({ now_ms: feed.shown_ms(), received_ms: feed.received_ms, silent_ms: feed.silent_ms() });
 setInterval(() => store.update(timesOf()), TICK_MS);
 addEventListener("pagehide", () => feed.close());

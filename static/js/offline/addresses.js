@@ -27,7 +27,7 @@ export const wholeOf = (mission, fleet) => [
   ...fleet,
 ];
 
-/** Where addresses of a mission begin: what is dropped with it. @param {string} mission id */
+/** Prefixes of a mission's addresses, which are dropped with it. @param {string} mission id */
 export const startsOf = (mission) => [`/missions/${mission}`, `/api/v1/missions/${mission}`];
 
 /** Every place that the mission's map has to show, lon lat. @param {Mission} mission @returns {number[][]} */

@@ -16,7 +16,7 @@ const worker = /** @type {any} */ (globalThis);
 /** @type {string} */
 const version = worker.VERSION ?? "";
 
-const [COPIES, SHELLS] = ["spanwise-copy-", "spanwise-shell-"]; // what is a user's; what is everybody's: static files, and the page without data
+const [COPIES, SHELLS] = ["spanwise-copy-", "spanwise-shell-"]; // copies of a user; shells for all: static files, the page without data
 const [COPY, SHELL] = [COPIES + version, SHELLS + version];
 const OWNER = "/.offline/owner";
 const NO_CONNECTION = "/offline";
@@ -179,7 +179,7 @@ async function marked(answer) {
   return new Response(html.replace("<html ", `<html data-offline-copy="${keptAt}" `), { headers: answer.headers });
 }
 
-/** What is kept of a page, as far as it is not too old; null. @param {Request} request */
+/** The stored copy of a page, unless it is too old; else null. @param {Request} request */
 async function keptPage(request) {
   const answer = await find(new URL(request.url).pathname);
   return answer && age_ms(answer) <= MAX_AGE_MS ? answer : null;

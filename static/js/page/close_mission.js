@@ -21,7 +21,10 @@ const isOpen = ({ state }) => state === "pending" || state === "in-progress";
 export const canBeClosed = ({ mission, targets }) =>
   ON_ITS_WAY.includes(mission.state) || (OVER.includes(mission.state) && targets.some(isOpen));
 
-/** Asks, closes, and goes on to the report or the follow-up. @param {{ mission: string, opener: HTMLElement }} options */
+/**
+ * Ask for confirmation, close the mission, and open the report or the follow-up.
+ * @param {{ mission: string, opener: HTMLElement }} options
+ */
 export async function askToClose({ mission, opener }) {
   opener.setAttribute("aria-busy", "true");
   try {

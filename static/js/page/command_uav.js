@@ -15,7 +15,7 @@ const ANSWER_WITHIN_MS = 30_000; // of a connection that is frozen nothing comes
  * @param {string} name
  * @param {CommandKind} kind
  * @param {Record<string, any>} filled what was filled in
- * @param {{ key?: string, within_ms?: number }} [how] key: of the command, so that it is not given twice; within_ms: an answer has to come
+ * @param {{ key?: string, within_ms?: number }} [how] key: idempotency key of the command; within_ms: timeout of the answer
  */
 export async function commandUav(
   uav,

@@ -9,7 +9,7 @@ import { open } from "./keyboard.js";
 const EDGE_PX = 12;
 
 /**
- * Asks, and resolves to what was filled in; null where the act is not to be done. `safer` of the answer is what is done instead.
+ * Ask for confirmation. Resolves to the values filled in; null where the user cancels. `safer` of the answer is the alternative act.
  *
  * @param {Question} question
  * @returns {Promise<Record<string, any> | null>}
@@ -75,7 +75,7 @@ export function confirmAct(question) {
 }
 
 /**
- * The buttons: out of it, the act, and what is safer than that, which may be known later only.
+ * The buttons: cancel, the act, and a safer alternative, which may arrive later.
  *
  * @param {Question} question
  * @param {(value: string) => void} close

@@ -1,4 +1,4 @@
-/** Fields of the fleet's forms. Each has a label, a value as the API takes it, and a place for what is wrong with it. */
+/** Fields of the fleet's forms. Each has a label, a value in the form of the API, and an element for its fault. */
 
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
@@ -16,7 +16,7 @@ import { numberText } from "../units.js";
  * @property {HTMLElement} element
  * @property {Control} input
  * @property {() => Value} read its value as the API takes it
- * @property {(fault: string) => void} notify shows what is wrong with it; "" clears it
+ * @property {(fault: string) => void} notify shows its fault; "" clears it
  */
 /** @typedef {{ unit?: string, hint?: string }} How */
 
@@ -139,7 +139,7 @@ export function numberField(
   });
   const read = () => {
     if (!Number.isFinite(input.valueAsNumber)) return null;
-    return `${input.valueAsNumber}` === shown ? (value ?? null) : input.valueAsNumber * factor; // what was not touched stays to the last digit
+    return `${input.valueAsNumber}` === shown ? (value ?? null) : input.valueAsNumber * factor; // an untouched value keeps all its digits
   };
   return {
     ...fieldOf(name, label, input, read, how),
@@ -177,7 +177,7 @@ export function choiceField(name, label, value, choices, { isNumber = false, ...
 }
 
 /**
- * On or off, with what it means beside it.
+ * A switch with its explanation.
  *
  * @param {string} name
  * @param {string} label

@@ -48,7 +48,7 @@ export async function returnsNow(uavs) {
   return new Map((found?.results ?? []).map((one) => [one.uav ?? 0, one]));
 }
 
-/** What lies below it. @param {number} uav @returns {Promise<LandingHere | null>} */
+/** The check of a landing below the UAV. @param {number} uav @returns {Promise<LandingHere | null>} */
 export const landingNow = (uav) => askedInTime(`/uavs/${uav}/landing`);
 
 /**

@@ -11,7 +11,7 @@ import { clockText } from "../units.js";
 /** @typedef {{ ends_at_ms?: number, isOver?: boolean }} Ending */
 
 export const WARNS_S = 300;
-const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: the user may be active in another window
+const ASKS_AGAIN_S = 30; // while it is about to end, or the server is unavailable: the user may be active in another window
 const MAX_TIMER_S = 86_400;
 
 /**

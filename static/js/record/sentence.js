@@ -159,7 +159,7 @@ export function figuresOf(record) {
 const metres = (value) => (value === null ? "—" : exactHeightText(value));
 
 /**
- * Rows of "Quality of data": how well tracks kept to their routes, and estimates to what was measured.
+ * Rows of "Quality of data": deviations of tracks from their routes, and of estimates from measurements.
  *
  * @param {Pick<MissionRecord, "summary">} record
  */

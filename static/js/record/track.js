@@ -162,8 +162,8 @@ export function flightsOf(samples) {
 }
 
 /**
- * A UAV's record as it is drawn: what was measured in runs, and in the silence between and after them what was estimated.
- * A stretch of estimates begins and ends with the reports around it.
+ * A UAV's record as drawn: measured runs, and estimates in the silence between and after them. A stretch of estimates begins and ends
+ * with the reports around it.
  *
  * @param {Sample[]} samples
  * @param {Estimate[]} estimates
@@ -184,7 +184,7 @@ export const ESTIMATED = "estimated";
 export const SILENT = "silent"; // no report, and no estimate either
 
 /**
- * What is known of a moment; null before the first report and after the last word of it.
+ * The state at a moment; null before the first report and after the last record.
  *
  * @param {Pick<Track, "samples" | "estimates" | "measured" | "silence_ms">} track
  * @param {number} at_ms

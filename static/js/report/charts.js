@@ -1,4 +1,4 @@
-/** One value of all UAVs over the time of a replay: what was flown, what was planned, and a dot at the cursor. */
+/** One value of all UAVs over the time of a replay: flown, planned, and a dot at the cursor. */
 
 import { svg } from "../dom.js";
 import { colourClass } from "../domain/palette.js";

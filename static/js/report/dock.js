@@ -254,7 +254,7 @@ export function createDock({ onChoose }) {
 }
 
 /**
- * What was measured then, by the UAV's place; nothing in a silence.
+ * The measurements at a moment, by the UAV's place; none in a silence.
  *
  * @param {Chart} chart
  * @param {Map<number, Moment>} moments

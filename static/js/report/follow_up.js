@@ -1,4 +1,4 @@
-/** What is done with a report: close the mission, plan a follow-up with the targets that were missed, download. */
+/** Acts on a report: close the mission, plan a follow-up with the missed targets, download. */
 
 import { post } from "../api.js";
 import { byId } from "../dom.js";

@@ -1,4 +1,4 @@
-/** The record of a mission: what was planned, what was flown, what came of it, and the flight once more. */
+/** The record of a mission: planned and flown routes, results, and the replay of the flight. */
 
 import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
@@ -163,7 +163,7 @@ function take(answer) {
 }
 
 /**
- * The 3D view goes with the record; where it showed the plan it shows what is flown from now on.
+ * Update the 3D view with the record; where it showed the plan it shows the flight from now on.
  *
  * @param {LoadedMission} answer
  */
@@ -221,7 +221,7 @@ function wordsOf(event) {
   }
 }
 
-/** What has just happened at a moment. @param {number} at_ms */
+/** The latest event at a moment. @param {number} at_ms */
 function eventWords(at_ms) {
   const event = events.findLast((one) => one.at_ms <= at_ms && at_ms - one.at_ms < NEAR_EVENT_MS);
   return event ? wordsOf(event) : "";

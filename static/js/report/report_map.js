@@ -144,7 +144,7 @@ const openMap = (container, page) =>
     extent: page.extent,
   });
 
-/** Where the ground's data are from; the map stands without it, too. @param {MapControls} controls */
+/** Read the sources of the map data; the map works without them, too. @param {MapControls} controls */
 async function readGround(controls) {
   const answer = /** @type {Answer<Ground> | null} */ (await get("/ground").catch(() => null));
   if (answer) controls.setGround(answer.data);

@@ -41,7 +41,7 @@ function whenWords({ started_at, ended_at, departs_at }) {
 }
 
 /**
- * Name, state, when, by whom, the plan's hash; the sentence with its reasons, and the figures once something was flown.
+ * The head: name, state, time, user, the plan's hash; the sentence with its reasons, and the figures once something was flown.
  *
  * @param {MissionRecord} record
  * @param {OnLook} onLook

@@ -1,4 +1,4 @@
-/** Each picture of the view: where everything is at the moment, where the camera stands, what is written beside it. */
+/** Each picture of the view: positions at the moment, the camera, and the labels. */
 
 import { routeLetter } from "../domain/palette.js";
 import { isInForce } from "../domain/zones_in_force.js";
@@ -35,7 +35,7 @@ const TOGETHER_SHARE = 0.4;
 
 /** @typedef {ReturnType<typeof createFrames>} Frames */
 /**
- * What frames are made of.
+ * Context of frames.
  *
  * @typedef {object} FramesContext
  * @property {StageState} stage
@@ -53,7 +53,7 @@ const TOGETHER_SHARE = 0.4;
  * @property {() => number} atNow
  * @property {() => boolean} isCalm
  * @property {Surroundings} surroundings
- * @property {() => Element[]} overlays what stands over the picture
+ * @property {() => Element[]} overlays elements over the picture
  * @property {(place: number) => boolean} choose a UAV
  * @property {(place: number) => boolean} seeTarget
  */
@@ -224,7 +224,7 @@ function targetLabel({ place, label, name, route, place3d }, eye) {
 }
 
 /**
- * What is orbited: the target, with the UAV in the picture while it is at it.
+ * The point to orbit: the target, with the UAV in the picture while it is there.
  *
  * @param {Vector} place
  * @param {DrawnUav | null} subject

@@ -21,7 +21,7 @@ const TRIES = [
  * @param {readonly PlacedItem[]} items
  * @param {{ width: number, height: number }} size of the picture
  * @param {LabelPlaces} [before] the last answer: a label stays where it stood, if it can
- * @param {readonly ScreenBox[]} [covered] what stands over the picture
+ * @param {readonly ScreenBox[]} [covered] elements over the picture
  * @param {readonly number[][]} [tries] places round a point, the best first
  */
 export function placeLabels(items, { width, height }, before = new Map(), covered = [], tries = TRIES) {

@@ -1,4 +1,4 @@
-/** Names in the picture: UAVs, targets, and what stands on the ground, as text of the page that never covers another one. */
+/** Names in the picture: UAVs, targets, and things on the ground, as text of the page without overlaps. */
 
 import { h } from "../dom.js";
 import { t } from "../text.js";
@@ -10,7 +10,7 @@ import { placeLabels } from "./label_places.js";
 /** @import { Projected, Size, Vector } from "./types.d.ts" */
 
 /**
- * What may be written at a place. parts: its name, then facts.
+ * A label at a place. parts: its name, then facts.
  *
  * @typedef {{ key: string, place: Vector, parts: string[], className: string, weight: number }} SceneLabel
  */
@@ -99,7 +99,7 @@ export function createLabels(container) {
         elements.delete(key);
       }
     },
-    /** What stands where, for a still picture. */
+    /** The labels shown and their places, for a still picture. */
     shown: () =>
       [...placed].flatMap(([key, { left, top }]) => {
         const known = elements.get(key);

@@ -17,7 +17,7 @@ const SOURCES = ["record", "live", "rehearsal", "plan"];
 const KEY = /^[0-9a-f-]{1,36}$/i;
 
 /**
- * "rehearsal:{id}:{run}" → { kind, rehearsal, run }; what is missing is null: the newest one, the worst of its runs.
+ * "rehearsal:{id}:{run}" → { kind, rehearsal, run }; a missing part is null: the newest rehearsal, the worst of its runs.
  *
  * @param {string | null} text
  * @returns {WantedSource | null}

@@ -90,7 +90,7 @@ export function mountSceneOpener(options) {
     open,
     close,
     isOpen: () => panel !== null,
-    /** What is seen, or null while nothing is. */
+    /** The open stage, or null. */
     stage: () => stage,
     /** @param {boolean} isThere */
     show(isThere) {

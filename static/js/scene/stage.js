@@ -150,7 +150,7 @@ const chipsOf = (source, scene) =>
   );
 
 /**
- * Places of the targets, as high as what they are.
+ * Places of the targets, at the height of their assets.
  *
  * @param {FlightSource} source
  * @param {Scene} scene

@@ -8,7 +8,7 @@ import { countText, heightText, lengthText, numberText } from "../units.js";
 
 export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
 /**
- * A tower at a vertex of the profile's line; what is not known of it is null.
+ * A tower at a vertex of the profile's line; unknown values are null.
  *
  * @typedef {object} TowerAlong
  * @property {number} index of the sample

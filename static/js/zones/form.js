@@ -15,7 +15,7 @@ const field = (id, words, input) => h("div", { class: "field" }, h("label", { fo
 /**
  * @param {ZoneDetailFeature | null} feature null for a new one
  * @param {string} _choice
- * @param {Facts | null} kept of an edit that goes on
+ * @param {Facts | null} kept values of an edit that is resumed
  * @returns {RecordForm}
  */
 export function zoneForm(feature, _choice, kept) {

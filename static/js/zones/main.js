@@ -1,4 +1,4 @@
-/** The page "No-fly zones": find, look, draw, correct; sets and their sources. */
+/** The page "No-fly zones": search, view, draw, correct; sets and their sources. */
 
 import { byId, find, h, icon, segments, setChildren, term } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
@@ -38,7 +38,7 @@ const limitFacts = (side, limit) => ({
   [`${side}_reference`]: limit?.reference ?? "",
 });
 
-/** What is sent, under the names that facts have. @param {Facts} body @returns {Facts} */
+/** Values of a request, under the names of facts. @param {Facts} body @returns {Facts} */
 function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
   return {
     ...rest,

@@ -103,7 +103,7 @@ class ScheduleEditor {
     this.element.dispatchEvent(new Event("input", { bubbles: true }));
   }
 
-  /** A listener after which everything is drawn anew; focus stays at the control that has the same place. @param {() => unknown} act */
+  /** A listener that redraws everything after the act; focus stays at the control in the same place. @param {() => unknown} act */
   #change(act) {
     return () => {
       /** @returns {HTMLElement[]} */

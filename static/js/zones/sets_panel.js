@@ -1,4 +1,4 @@
-/** Sets and sources: where zones come from, how old they are, earlier states, and what is fetched by itself. */
+/** Sets and sources: the origin of zones, their age, earlier states, and automatic fetching. */
 
 import { ApiError, follow, get, post } from "../api.js";
 import { byId, h, icon, setChildren, term } from "../dom.js";
@@ -202,7 +202,7 @@ function factsOf({ source, subscription, source_format, edited_count }) {
   );
 }
 
-/** What is wrong with the source, and what of it waits. @param {ZoneSet} set */
+/** Faults of the source, and its waiting changes. @param {ZoneSet} set */
 function noticesOf({ subscription }) {
   const proposal = subscription?.proposal;
   return [

@@ -1,4 +1,4 @@
-/** Quiet lines of longitude and latitude: the ground where there is no base map. */
+/** Faint lines of longitude and latitude, where there is no base map. */
 
 import { sourceOf } from "../look/style.js";
 

@@ -1,4 +1,4 @@
-/** Which assets can be inspected, over their own drawing: filled where they can, hollow where not. Only what is loaded gets a state. */
+/** Which assets can be inspected, over their own drawing: filled where they can, hollow where not. Only loaded features get a state. */
 
 import { readToken, setPaint } from "../look/style.js";
 import { TILES } from "../look/voltages.js";
@@ -64,7 +64,7 @@ function layers() {
 const stated = new WeakMap(); // map → Set of "layer id" that have a state
 
 /**
- * reachabilityOf(id): "yes", "partly", "no" or "". Called again for what is loaded later.
+ * reachabilityOf(id): "yes", "partly", "no" or "". Called again for features loaded later.
  *
  * @param {MapLibreMap} map
  * @param {(id: number) => string} reachabilityOf

@@ -58,7 +58,7 @@ export function showStops(map, stops) {
 }
 
 /**
- * The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan.
+ * The best routes of a running search: lines with the number of their UAV; null once there is a plan.
  *
  * @param {MapLibreMap} map
  * @param {{ features: { geometry: Geometry, properties: { uav: number } }[] } | null} lines

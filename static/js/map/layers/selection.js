@@ -1,4 +1,4 @@
-/** What is picked as a whole (lines), and what the pointer or a list row is at. */
+/** Lines that are picked as a whole, and the feature at the pointer or of a list row. */
 
 import { setFeatures } from "../look/style.js";
 import { TILES } from "../look/voltages.js";

@@ -123,7 +123,7 @@ function lineLayers(palette) {
 /** Towers and poles. @param {Palette} palette */
 function towerLayers(palette) {
   const towerDot = { "circle-color": palette.tower, "circle-radius": 1.2 };
-  const isTower = ["!", isPole]; // a pole would be too small to see, and what is not drawn cannot be clicked
+  const isTower = ["!", isPole]; // a pole would be too small to see, and hidden features cannot be clicked
   return [
     tiles("towers-high", "circle", "towers", {
       minzoom: 10,
@@ -154,7 +154,7 @@ function towerLayers(palette) {
   ];
 }
 
-/** Outlines of zones, and the rings round what is picked. @param {Palette} palette */
+/** Outlines of zones, and the rings round picked features. @param {Palette} palette */
 function outlineLayers(palette) {
   return [
     tiles("zones-outline", "line", "zones", {

@@ -1,4 +1,4 @@
-/** The layers menu: what lies under the map, what is shown of the ground, and the legend where the map has no room for it. */
+/** The layers menu: the base map, the map data shown, and the legend where the map has no room for it. */
 
 import { find, h, refill } from "../../dom.js";
 import { t } from "../../text.js";

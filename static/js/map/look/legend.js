@@ -213,7 +213,7 @@ function kindOf({ layer, properties, state }) {
   return state.resting ? "resting" : "timed";
 }
 
-/** Show a legend of what is in view. @param {MapLibreMap} map */
+/** Show a legend of the symbols in view. @param {MapLibreMap} map */
 export function mountLegend(map) {
   const legend = byId("legend");
   let shown = "";

@@ -1,4 +1,4 @@
-/** What of the ground the map shows: kinds, voltages, zones out of force. Zones that rest are drawn as such. */
+/** Map data shown: kinds, voltages, zones out of force. Zones out of force are drawn as such. */
 
 import { isInForce } from "../../domain/zones_in_force.js";
 import { t } from "../../text.js";
@@ -52,7 +52,7 @@ export function filterOf(own, { group, bands, resting }) {
   return /** @type {FilterSpecification} */ (/** @type {unknown} */ (["all", ...(own ? [own] : []), ...more]));
 }
 
-/** onChange() is called when what is hidden changes. @param {MapLibreMap} map @param {() => void} [onChange] */
+/** onChange() is called when the hidden features change. @param {MapLibreMap} map @param {() => void} [onChange] */
 export function createShown(map, onChange = () => {}) {
   /** @type {Set<string>} */
   const groups = new Set(); // hidden ones

@@ -54,7 +54,7 @@ export function createConflicts(context, saving, showBoth) {
 const mineOf = ({ store, selection }) => ({ name: store.state.name, selection: selection() });
 
 /**
- * A revision of another user comes in: put together with what is changed here, or a conflict.
+ * Handle a revision of another user: merged with the changes here, or a conflict.
  *
  * @param {MissionContext} context
  * @param {Saving} saving

@@ -70,7 +70,7 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
     const [own, old] = [m.get(key), b.get(key)];
     if (!own && old && isSame(their, old)) continue; // I took it away
     if (!own) {
-      isClash ||= Boolean(old); // I took away what they changed: it stays
+      isClash ||= Boolean(old); // removed here and changed by the other user: it stays
       list.push(their);
     } else if (isSame(own, their) || (old && isSame(own, old))) list.push(their);
     else {

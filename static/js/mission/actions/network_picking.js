@@ -1,4 +1,4 @@
-/** Picking what stands in an area or along a line, as the server finds it. */
+/** Picking of assets in an area or along a line, as the server finds them. */
 
 import { get, post } from "../../api.js";
 import { toast } from "../../page/toast.js";
@@ -21,7 +21,7 @@ export function createNetworkPicking(context, addMany) {
 
 /** @param {MissionContext} context @param {AddMany} addMany */
 function createAreaPicking({ problem, failed }, addMany) {
-  /** What stands inside a ring. @param {number[][]} ring @param {{ from?: string }} [how] */
+  /** Add the assets inside a ring. @param {number[][]} ring @param {{ from?: string }} [how] */
   async function addArea(ring, { from = t("the area") } = {}) {
     try {
       const { data } = /** @type {Answer<WithinOutput>} */ (
@@ -58,7 +58,7 @@ function createAreaPicking({ problem, failed }, addMany) {
 
 /** @param {MissionContext} context @param {AddMany} addMany */
 function createLinePicking({ failed }, addMany) {
-  /** What lies between two supports; null after a failure, which is shown. @param {number} from @param {number} to */
+  /** The stretch between two supports; null after a failure, which is shown. @param {number} from @param {number} to */
   async function stretchBetween(from, to) {
     try {
       return /** @type {Answer<SupportsOutput>} */ (await get(`/assets/stretch?from=${from}&to=${to}`)).data;

@@ -14,8 +14,7 @@ import { createStoredMission } from "./stored_mission.js";
 /** @import { MissionContext, Version } from "../types.d.ts" */
 
 /**
- * Keeps what is unsaved, and drops this page's draft where there is nothing left to keep. Returns whether it could be
- * kept.
+ * Keep unsaved changes in a draft, and drop this page's draft where there are none. Returns whether they could be kept.
  *
  * @param {Pick<MissionContext, "store" | "selection" | "drafts">} context
  * @returns {boolean}

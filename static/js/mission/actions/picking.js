@@ -19,7 +19,7 @@ export function createPicking(context) {
     count ? tn(count, "{count} target added", "{count} targets added") : t("No target added");
 
   /**
-   * Add what is not picked yet; announces where a mission's limit is reached. Returns how many were added.
+   * Add targets that are not picked yet; announces where a mission's limit is reached. Returns how many were added.
    *
    * @param {PickedTarget[]} targets
    * @param {{ announceWhat?: boolean }} [how]
@@ -90,7 +90,7 @@ export function createPicking(context) {
   };
 }
 
-/** Targets taken out, and what is done at them. @param {MissionContext} context */
+/** Removal of targets, and changes of their tasks. @param {MissionContext} context */
 function createTargetChanges(context) {
   const { store, history, selection, change } = context;
   const undo = undoIn(context);

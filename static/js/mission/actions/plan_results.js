@@ -1,4 +1,4 @@
-/** Plans as they are kept on the page: with what they were made for, and by it. Values in, values out. */
+/** Plans kept on the page, by the selection that they were made for. Values in, values out. */
 
 import * as picks from "../selection.js";
 

@@ -1,7 +1,4 @@
-/**
- * Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and
- * stopping it.
- */
+/** Planning of the selection: by the chosen objective, then by the other for comparison; following a large job, and stopping it. */
 
 import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
@@ -64,7 +61,7 @@ export function createPlanning(context) {
 const BEGINNING = { what: "", share: null, job: null, best: null, isStopping: false };
 
 /**
- * Follows a job, its progress on the page.
+ * Follow a job, with its progress on the page.
  *
  * @param {MissionContext} context
  * @returns {(job: string, what: string) => Promise<unknown>} what it has made
@@ -211,7 +208,7 @@ function createShowing({ store, selection, problem }, aside, planAgain) {
 }
 
 /**
- * What is missing for a plan, and what helps; null where nothing is.
+ * What a plan still needs, and what helps; null where it needs nothing.
  *
  * @param {MissionSelection} selection
  * @returns {[string, string] | null}
@@ -244,7 +241,7 @@ function createStopping({ store, failed, running }) {
     if (planning) store.update({ planning: { ...planning, isStopping } });
   };
   return {
-    /** Drops the search with what it has found. */
+    /** Cancel the search; its best plan is dropped. */
     cancel() {
       cancelJob(store.state.planning?.job);
       running.stopping?.abort();

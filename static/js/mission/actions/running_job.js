@@ -44,7 +44,7 @@ export function createRunningJob({ user, storage = () => globalThis.sessionStora
       try {
         storage().setItem(keyOf(user, mission), JSON.stringify(running));
       } catch {
-        /* after a reload the progress does not come back; the plan is made all the same */
+        /* after a reload the progress is not shown; the plan is made anyway */
       }
     },
     /** @param {string | null} mission */

@@ -28,7 +28,7 @@ const PARTS = /** @type {(keyof PlanInputRequest)[]} */ ([
 ]);
 
 /**
- * The parts of a selection that differ from what is stored, as the API takes them.
+ * The parts of a selection that differ from the stored one, in the form of the API.
  *
  * @param {MissionSelection} selection
  * @param {MissionSelection | null | undefined} stored

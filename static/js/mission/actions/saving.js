@@ -45,7 +45,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
   /** @type {SaveOptions | null} */
   let wanted = null; // a save that the user requested while another was running
   /** @type {string | null} */
-  let refused = null; // what was not saved: it is tried again once it is another
+  let refused = null; // the version whose save failed: it is retried once it has changed
   /** @type {Timer} */
   let rest;
   const later = createRetry(context, conflicts, save, () => {
@@ -93,7 +93,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
     }
   }
 
-  // What was refused may go on top of another revision.
+  // A refused save may succeed on another revision.
   store.listen(["stored"], () => {
     refused = null;
   });
@@ -127,7 +127,7 @@ export function createSaving(context, { waitForJob, makeRoom }, conflicts) {
 }
 
 /**
- * Sends what is to be saved and shows what the server has stored, also where its plan was not made.
+ * Send the changes and show the server's stored version, also where its plan was not made.
  *
  * @param {MissionContext} context
  * @param {Planner["waitForJob"]} waitForJob

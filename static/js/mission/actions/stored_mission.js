@@ -1,4 +1,4 @@
-/** The stored mission on the page: what the server has of it, under what has been changed here since. */
+/** The stored mission on the page: the server's version, below the changes made here since. */
 
 import * as picks from "../selection.js";
 import { planOf, withResult } from "./plan_results.js";
@@ -47,7 +47,7 @@ export function createStoredMission({ store, history, selection }) {
       shownAs(mission, stored, plan);
     },
     /**
-     * The mission as it has just been stored. The history stays, and what was changed meanwhile stays as well.
+     * Take over the mission as just stored. The history is kept, and so are changes made during the save.
      *
      * @param {Mission} mission
      * @param {Version} asked

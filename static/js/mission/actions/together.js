@@ -9,7 +9,7 @@ import { ApiError, get, post } from "../../api.js";
 /**
  * @typedef {object} Watching
  * @property {string} editor the name of this page
- * @property {() => Promise<FleetUav[]>} readFleet what flies, as it is now
+ * @property {() => Promise<FleetUav[]>} readFleet reads the present fleet
  * @property {(theirs: Mission) => Promise<void>} take a younger revision: see conflicts.js
  * @property {(hasWaited?: boolean) => void} connectedAgain
  * @property {() => void} showDeleted

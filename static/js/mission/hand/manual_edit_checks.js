@@ -28,7 +28,7 @@ export function createManualEditChecks({ store, wordsOf }) {
   };
 
   /**
-   * What is known of these points, exactly or from a moment ago.
+   * The check of these points, exactly or from a moment ago.
    *
    * @param {HandEdit} edit
    * @param {HandPoint[]} points
@@ -46,7 +46,7 @@ export function createManualEditChecks({ store, wordsOf }) {
     return { look: exact ?? last, isCheckOld: exact === null, faults, legs, unknown: "" };
   }
 
-  /** Asks about what is shown on the map at this moment, dragged or not. */
+  /** Request the check of the points on the map at this moment, dragged or not. */
   async function ask() {
     const { hand: asked, mission } = store.state;
     if (isAsking || !asked || !mission) return;

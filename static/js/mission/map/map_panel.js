@@ -120,7 +120,7 @@ function createViewing({ map, fit }, shapes) {
       const [longitude, latitude] = positions[0];
       return easeTo(map, [longitude, latitude], 13);
     },
-    /** Near enough to see what stands there. @param {PickedTarget} target */
+    /** Move near enough to a target to see the assets. @param {PickedTarget} target */
     show(target) {
       const shape = isWhole(target) ? shapes.shapeOf(target) : null;
       if (shape) fit(boxAround(positionsOf(shape)));
@@ -156,7 +156,7 @@ function createFitting({ map, fit }, store, extent) {
     /** @param {{ animate?: boolean }} [how] */
     fit(how) {
       wasFitted = true;
-      map.resize(); // the dock may just have come: fit into what is left
+      map.resize(); // the dock may just have appeared: fit into the remaining space
       const positions = positionsOfMission(store.state);
       const ground = /** @type {Box | null} */ (store.state.ground?.extent ?? extent);
       fit(positions.length > 1 ? boxAround(positions) : (ground ?? boxAround(positions)), how);
@@ -165,7 +165,7 @@ function createFitting({ map, fit }, store, extent) {
 }
 
 /**
- * What stands on the map: targets, UAVs, routes, zones, and what is drawn once the map has its style.
+ * Create the layers: targets, UAVs, routes, zones, and those added once the map has its style.
  *
  * @param {MapView} view
  * @param {HTMLElement} frame

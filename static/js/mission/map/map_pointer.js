@@ -35,7 +35,7 @@ export function mountMapPointer(context) {
   map.on("movestart", () => {
     picking.close();
     tip(null);
-    shapes.point(null); // what was under the pointer moves away from it
+    shapes.point(null); // the feature under the pointer moves away from it
   });
   /** @param {MapThing} thing */
   const keyOf = (thing) => `${thing.kind} ${thing.id}`;

@@ -1,4 +1,4 @@
-/** Lines that are picked as a whole, drawn once their shape is loaded, and the ring round what is pointed at. */
+/** Lines that are picked as a whole, drawn once their shape is loaded, and the ring round the thing at the pointer. */
 
 import { get } from "../../api.js";
 import { piecesOf } from "../../map/click_router.js";

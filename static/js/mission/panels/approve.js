@@ -1,4 +1,4 @@
-/** Beside Plan and Save: what is planned and saved can be approved. */
+/** The button beside Plan and Save that approves a planned and saved mission. */
 
 import { byId } from "../../dom.js";
 import { t } from "../../text.js";

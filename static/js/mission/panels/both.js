@@ -82,7 +82,7 @@ function lockWords({ targets, locks = [] }) {
 }
 
 /**
- * What is compared: its name, and its lines in a version.
+ * The compared parts: the name of each, and its lines in a version.
  *
  * @param {MissionSelection | null} before both versions
  * @returns {[string, (version: Version) => string[]][]}

@@ -11,11 +11,11 @@ import { detailOf, MAX_TARGETS } from "../selection.js";
 /** @import { Box, FoundPlace } from "../../map/types.d.ts" */
 
 /**
- * What the page around the search does for it.
+ * Functions that the page offers to the search.
  *
  * @typedef {object} FinderHow
  * @property {boolean} canPlan
- * @property {() => Box} box what is in view
+ * @property {() => Box} box box of the view
  * @property {(feature: AssetFeature) => void} show
  * @property {(feature: AssetFeature) => void} add
  * @property {(features: AssetFeature[]) => void} addAll
@@ -54,7 +54,7 @@ async function countFlyable(asked, found, signal) {
   return data.total ?? 0;
 }
 
-/** The list of what was found, one of it active. @param {HTMLInputElement} input */
+/** The list of results, one of them active. @param {HTMLInputElement} input */
 function createFoundList(input) {
   const list = byId("found");
   const head = byId("found-head");
@@ -110,7 +110,7 @@ function createFoundList(input) {
   };
 }
 
-/** To what the search is narrowed: what is in view, kinds of assets. @param {() => void} onChange */
+/** Mount the filters of the search: the view, kinds of assets. @param {() => void} onChange */
 function mountFilters(onChange) {
   let inView = false;
   /** @type {Set<string>} */

@@ -278,7 +278,8 @@ function folded(notices) {
 }
 
 /**
- * What of the ground changed since the plan was made, what of the mission that touches, and the way out. UAVs have a notice of their own.
+ * The notice on changes of the map data since the plan was made, their effect on the mission, and the way to resolve them. UAVs have a
+ * notice of their own.
  *
  * @param {Mission} mission
  * @param {MissionActions} actions

@@ -112,7 +112,7 @@ export function wordsOfEntry(entry) {
 }
 
 /**
- * What was done to the mission itself; null for the rest.
+ * The text of a change of the mission itself; null for other entries.
  *
  * @param {Pick<Entry, "action" | "before" | "after">} entry
  * @returns {EntryWords | null}
@@ -154,7 +154,7 @@ function wordsOfMaking({ action, before, after }) {
 }
 
 /**
- * What was done to fly it; null for the rest.
+ * The text of an act of flying; null for other entries.
  *
  * @param {Pick<Entry, "action" | "after">} entry
  * @returns {EntryWords | null}

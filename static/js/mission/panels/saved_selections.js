@@ -145,7 +145,7 @@ class SelectionsDialog {
     void this.#attempt(() => this.#refresh());
   }
 
-  /** The form that keeps what is picked; null where nothing is. */
+  /** The form that stores the present selection; null where it is empty. */
   #keepForm() {
     const count = this.#picked().length;
     if (!count) return null;
@@ -183,7 +183,7 @@ class SelectionsDialog {
   }
 
   /**
-   * Shown in the dialog: what lies behind it cannot be reached.
+   * Show a notice in the dialog: elements behind it cannot be reached.
    *
    * @param {string} words
    * @param {(() => unknown) | null} [undo]

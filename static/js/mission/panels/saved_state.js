@@ -1,4 +1,4 @@
-/** Always in sight: whether what is on the page is saved, and who else has it open. */
+/** Indicator of whether the page is saved, and of other users who have it open; always visible. */
 
 import { byId, h, icon } from "../../dom.js";
 import { t, tn } from "../../text.js";

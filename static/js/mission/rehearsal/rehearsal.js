@@ -58,7 +58,7 @@ export function sentenceOf(detail) {
 const apart = (metres) => (metres === null || metres === undefined ? "–" : heightText(metres));
 
 /**
- * Figures of a route beside what is planned or allowed: [{ words, flown, beside }].
+ * Figures of a route beside the planned or permitted ones: [{ words, flown, beside }].
  *
  * @param {RehearsedRoute} route
  * @param {RehearsalLimit[]} limits
@@ -165,7 +165,7 @@ export function rulesUpTo(top) {
 }
 
 /**
- * Own figures of the form, as the request has them; what is empty is as planned.
+ * The form's own conditions for the request; empty fields are as planned.
  *
  * @param {{ wind_mps: number, from_deg: number, gusts_mps: number, battery_percent: number }} typed
  */

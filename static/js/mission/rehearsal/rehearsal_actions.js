@@ -58,7 +58,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
     });
   const follow = createFollowing(store, read);
 
-  // Another mission, or another revision of it: what was flown may be of another plan by now.
+  // Another mission, or another revision of it: rehearsals may belong to another plan.
   let known = "";
   store.listen(["mission"], ({ mission }) => {
     const now = mission ? `${mission.id} ${mission.revision}` : "";
@@ -71,7 +71,7 @@ export function createRehearsing(store, { isStage = false } = {}) {
     show,
     chooseRun,
     /**
-     * afresh: also what was flown alike lately.
+     * afresh: start even if an equal rehearsal was flown lately.
      *
      * @param {RehearsalInputRequest["conditions"]} conditions
      * @param {{ afresh?: boolean }} [how]

@@ -127,8 +127,7 @@ export function flightOf(route, ground, battery_wh = null, departs_at = null) {
 }
 
 /**
- * The same place when it goes on from there: later, and with a battery that is full after a base and fuller after
- * charging.
+ * The same place after a stay: later, and with a battery that is full after a base and fuller after charging.
  *
  * @param {PathPoint} point
  * @param {Pick<Stay, "stay_s"> & Partial<Stay>} stay
@@ -199,8 +198,7 @@ export function spanOf({ path, under }) {
 }
 
 /**
- * From where to where a zone reaches at a place, in the heights of the drawing. What it does not state goes to the
- * edge.
+ * The vertical extent of a zone at a place, in the heights of the drawing. An open limit extends to the edge.
  *
  * @param {Pick<PassedZone, "from_m" | "to_m" | "lower_limit" | "upper_limit">} zone
  * @param {Pick<Flight, "under" | "isFlat">} flight

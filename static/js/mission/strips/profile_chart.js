@@ -180,7 +180,7 @@ function cursorOn(flight, x, y, bottom_px) {
 }
 
 /**
- * What is left of the battery, from full to empty, with the reserve that no plan uses.
+ * The battery level, from full to empty, with the reserve that no plan uses.
  *
  * @param {PathPoint[]} path
  * @param {{ x: Axis, width_px: number, reserve_percent: number | null }} options

@@ -341,7 +341,7 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
 }
 
 /**
- * A block on what is in the way, a bracket under what is passed by or lies at another height; what is not in force is
+ * The mark of a zone: a block if it obstructs the route, a bracket if it is passed by or lies at another height. Zones out of force are
  * left out.
  *
  * @param {PassedZone} zone

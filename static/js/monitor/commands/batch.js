@@ -46,7 +46,7 @@ export function batchScopes(uavs, missions) {
 const names = (uavs) => uavs.map(({ name }) => name).join(", ");
 
 /**
- * What stands beside each choice of a scope: { value, words, detail }. Every choice names its mission and its UAVs.
+ * The choices of a scope: { value, words, detail }. Every choice names its mission and its UAVs.
  *
  * @param {BatchScope[]} scopes
  */

@@ -82,7 +82,7 @@ export function createBatch(store, page) {
     const { title, lines, act } = ALL[kind];
     const uavs = scopes.flatMap((scope) => scope.uavs);
     const silent = uavs.filter((uav) => certaintyOf(uav, store.state.now_ms) !== MEASURED);
-    /** @param {string[]} seen of what is looked at only now @param {Question["safer"]} safer */
+    /** @param {string[]} seen facts read at this moment @param {Question["safer"]} safer */
     const asking = (seen, safer = null) => ({
       lines: [
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,

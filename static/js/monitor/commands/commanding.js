@@ -19,7 +19,7 @@ import { unreachableLines } from "./unreachable.js";
 /** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "../types.d.ts" */
 
 /**
- * Figures of now in a question: the battery, what is left, the targets that stay open.
+ * Present figures in a question: the battery, the distance left, the open targets.
  *
  * @param {Pick<LiveUav, "measured" | "estimated" | "place">} uav
  * @param {LiveMission | undefined} mission
@@ -89,12 +89,12 @@ export function createCommanding(store, page) {
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
   /**
-   * What could not leave this device stays on the UAV's card until it is sent or given up.
+   * Send a command. One that could not be sent stays on the UAV's card until it is sent or dropped.
    *
    * @param {LiveUav} uav
    * @param {CommandKind} kind
    * @param {Record<string, any>} [filled] what was filled in
-   * @param {string} [key] of the command: tried again it is the same
+   * @param {string} [key] idempotency key of the command, the same in a retry
    */
   async function order(uav, kind, filled = {}, key = freshKey()) {
     markSending(store, [uav.id], kind);

@@ -6,7 +6,7 @@
 const CLOCKS_APART_MS = 3000;
 const MAX_SENDING_MS = 12_000; // after this time the other parts of the card show it
 
-/** @param {MonitorStore} store @param {number[]} ids of UAVs @param {CommandKind | null} kind null: nothing is on its way */
+/** @param {MonitorStore} store @param {number[]} ids of UAVs @param {CommandKind | null} kind null: no command is being sent */
 export function markSending(store, ids, kind) {
   const sending = new Map(store.state.sending);
   for (const id of ids) {

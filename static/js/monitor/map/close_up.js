@@ -16,7 +16,7 @@ import { createUavMarkers } from "./uav_markers.js";
 /** @import { Bound, DrawnUav, FlownLine, MonitorPage } from "../types.d.ts" */
 
 /** @typedef {DrawnUav & { bound: Bound }} EstimatedUav */
-/** @typedef {{ uav: EstimatedUav, routes: FeatureCollection, flown: FlownLine[] }} Latest what is to be seen */
+/** @typedef {{ uav: EstimatedUav, routes: FeatureCollection, flown: FlownLine[] }} Latest the newest content */
 /** @typedef {{ map: MapLibreMap, redrawImages: () => void, markers: ReturnType<typeof createUavMarkers> | null }} SmallMap */
 
 const READABLE_PX = 24;
@@ -80,7 +80,7 @@ class CloseUp {
   }
 
   /**
-   * Shows what is round the chosen UAV while its ring is too small on the large map.
+   * Show the surroundings of the chosen UAV while its ring is too small on the large map.
    *
    * @param {DrawnUav | null} uav the chosen one
    * @param {FeatureCollection} routes

@@ -1,4 +1,4 @@
-/** What is flown, where the last report was, and the ellipse of an estimate: layers between routes and labels. */
+/** The flown path, the place of the last report, and the ellipse of an estimate: layers between routes and labels. */
 
 import { addSources, setPaint, sourceOf } from "../../map/look/style.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
@@ -111,10 +111,10 @@ const feature = (uav, geometry, more = {}) => ({
   properties: { route: uav.colour ?? 0, isLost: uav.certainty === "lost", ...more },
   geometry,
 });
-const shown = new WeakMap(); // source → what it shows, in one text
+const shown = new WeakMap(); // source → key of its content
 
 /**
- * Only what is another is drawn: each time costs the whole map a frame, and the clock ticks without anything having moved.
+ * Draw only changes: each update costs a frame of the whole map, and the clock ticks even if nothing has moved.
  *
  * @param {MapLibreMap} map
  * @param {string} name of the source

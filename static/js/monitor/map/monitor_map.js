@@ -34,7 +34,7 @@ const FOLLOW_MS = 300;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
 /**
- * What is drawn of a UAV; null while it was never seen.
+ * The drawing of a UAV; null before it was first seen.
  *
  * @param {LiveUav} uav
  * @param {number} now_ms
@@ -187,7 +187,7 @@ class MonitorMap {
     this.#view.fit(places.length > 1 ? box : (this.#page.extent ?? box), how);
   }
 
-  /** Brings a UAV into view, near enough to see what it does. @param {number | null} id */
+  /** Bring a UAV into view, near enough to see its manoeuvres. @param {number | null} id */
   jumpTo(id) {
     const uav = drawnUavs(this.#store.state).find((entry) => entry.id === id);
     if (uav) this.showPlace(uav.position);

@@ -14,7 +14,10 @@ import { createSpread } from "./spread_markers.js";
 /** @import { MarkedUav } from "../types.d.ts" */
 
 /** @template {number | string} Id @typedef {MarkedUav & { id: Id }} MarkedBy */
-/** A marker on its way from one place to another. @typedef {{ marker: Marker, parts: Parts, from: number[], to: number[], began_ms: number }} Flyer */
+/**
+ * A marker that moves from one place to another.
+ * @typedef {{ marker: Marker, parts: Parts, from: number[], to: number[], began_ms: number }} Flyer
+ */
 /** @typedef {ReturnType<typeof drawMarker>} Parts */
 
 /** @type {Record<Certainty, string>} */

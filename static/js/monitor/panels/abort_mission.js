@@ -1,4 +1,4 @@
-/** "Abort the mission" on the page of a mission that is on its way. */
+/** "Abort the mission" on the page of a mission in progress. */
 
 import { ApiError, freshKey, post } from "../../api.js";
 import { abortQuestion } from "../../domain/command_questions.js";

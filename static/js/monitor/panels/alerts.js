@@ -1,4 +1,4 @@
-/** Alerts: the worst on top, each with one act and Acknowledge; filters, and what is over. */
+/** Alerts: the worst on top, each with one act and Acknowledge; filters, and closed ones. */
 
 import { get } from "../../api.js";
 import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
@@ -48,7 +48,7 @@ const closeButton = (alert) =>
     t("Close"),
   );
 
-/** What has become of an alert. @param {Alert} alert */
+/** The history of an alert. @param {Alert} alert */
 function historyWords(alert) {
   const summary = [
     alert.closed_at && t("Ended {time}.", { time: exactClockText(alert.closed_at) }),

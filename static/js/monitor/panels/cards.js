@@ -36,7 +36,7 @@ import { makeHead, refreshHead, UavRow } from "./list_rows.js";
  * @property {(shown: number, all: number) => void} showShown how many the filter lets through
  * @property {Commanding | null} commanding null for who cannot fly
  */
-/** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
+/** Facts on a card's UAV from other sources. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
 
 const SHOWN_FOR_MS = 60_000; // a command that is over stays on the card
 const STRIP_MARGIN_PX = 32;
@@ -61,7 +61,7 @@ const rateMark = (rate) =>
   );
 
 /**
- * What is under way for a UAV, or was until a moment ago; null.
+ * The running command of a UAV, or one that ended a moment ago; null without one.
  *
  * @param {Pick<LiveUav, "id">} uav
  * @param {Command[]} commands
@@ -249,7 +249,7 @@ class Card {
     this.#chip.className = `chip ${level === "warning" ? "aborted" : level === "active" ? "draft" : ""}`;
   }
 
-  /** Whether it is simulated, and in which mission it flies. @param {LiveUav} uav @param {LiveMission | null} mission */
+  /** Show whether it is simulated, and its mission. @param {LiveUav} uav @param {LiveMission | null} mission */
   #drawAbout(uav, mission) {
     const rate = rateOf(uav);
     const name = mission && h("a", { href: `/missions/${mission.id}/fly` }, mission.name);
@@ -357,7 +357,10 @@ class Card {
     refill(this.#wind, words, () => [words]);
   }
 
-  /** One line: what is on its way to the server, else the last command, its times in the tooltip. @param {Command | null} command @param {SendingCommand | null} sending */
+  /**
+   * One line: the command that is being sent, else the last command, its times in the tooltip.
+   * @param {Command | null} command @param {SendingCommand | null} sending
+   */
   #drawCommand(command, sending) {
     this.#command.hidden = command === null && sending === null;
     if (sending) {

@@ -1,4 +1,7 @@
-/** Rows of the list: the head of a mission's UAVs, and a UAV in one row of 56 px: call sign, state, battery, height, age, what is next and when. */
+/**
+ * Rows of the list: the head of a mission's UAVs, and a UAV in one row of 56 px: call sign, state, battery, height, age, next target and
+ * its time.
+ */
 
 import { h, icon, refill } from "../../dom.js";
 import { alarmOf } from "../../domain/order.js";

@@ -41,7 +41,10 @@ async function decide(offer, act, words) {
   }
 }
 
-/** While the question stands the UAVs fly on: what has expired meanwhile is not sent. @param {MonitorStore} store @param {LiveOffer} offer @param {HTMLElement} opener */
+/**
+ * Accept an offer after confirmation. The UAVs fly on while the question is open: an offer that has expired meanwhile is not sent.
+ * @param {MonitorStore} store @param {LiveOffer} offer @param {HTMLElement} opener
+ */
 async function accept(store, offer, opener) {
   const { uavs = [] } = differenceOf(offer);
   const held = uavs.flatMap(({ change, name }) => (change === "changed" ? name : [])).join(", ");
@@ -143,7 +146,7 @@ function count(now_ms) {
 }
 
 /**
- * What became of an offer, and where the flight goes on.
+ * The outcome of an offer, and where the flight continues.
  *
  * @param {LiveOffer} offer
  * @param {{ goesOn: string | null, open: string[], canFly: boolean, onPutAway: () => void }} more `goesOn` is an address, `open` are

@@ -19,7 +19,7 @@ import { flyCopy } from "./simulation.js";
 /** @import { NextStep, Stand } from "../../domain/preflight_step.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
-const SEEN_AFTER_MS = 1_000; // what appears under the pointer is not sent by the press that was on its way
+const SEEN_AFTER_MS = 1_000; // a press that began before an element appeared under the pointer does not trigger it
 const POLL_MS = 2500;
 const UPLOADS_NEXT = "spanwise-uploads-next"; // the mission whose simulated UAVs this window has started
 const BEFORE_FLIGHT = new Set(["approved", "dispatched", "active"]);
@@ -69,7 +69,7 @@ async function setHeight(uav, name, height_m) {
   }
 }
 
-/** One click to a height at which nothing is in the way home. @param {UavPreflight} row @param {PreflightCheck} check */
+/** A button that sets a height without obstructions of the RTL path. @param {UavPreflight} row @param {PreflightCheck} check */
 function heightButton({ uav, name }, { safe_height_m }) {
   if (safe_height_m === null) return null;
   /** @param {Event} event */
@@ -114,7 +114,7 @@ function createPanel(place, on) {
   place.append(h("h2", {}, t("Before start")), list, acts);
 
   return {
-    /** What is to be set with the upload. */
+    /** The values to set with the upload. */
     heights: () =>
       [...heights.querySelectorAll("input:checked")].flatMap((input) => {
         const { value, dataset } = /** @type {HTMLInputElement} */ (input);
@@ -141,7 +141,7 @@ function createPanel(place, on) {
         ...rows,
       );
     },
-    /** @param {NextStep} step @param {string} busy what is being done; empty: nothing */
+    /** @param {NextStep} step @param {string} busy the running act; empty: none */
     drawStep({ act, words, image, why: reason, left }, busy) {
       button.disabled = busy !== "" || act === "connect" || act === "wait" || reason !== "";
       button.setAttribute("aria-busy", `${busy !== ""}`);
@@ -272,7 +272,7 @@ class BeforeStart {
     if (!this.#standIns) return null;
     if (this.#uploadsNext) return "starting";
     if (this.#standIns.areThere()) return "running";
-    return this.#state === "active" ? null : "off"; // what flies already is flown by others
+    return this.#state === "active" ? null : "off"; // a flight in progress is flown by other UAVs
   }
 
   #step() {

@@ -255,9 +255,9 @@ class ChangesInFlight {
   #wished = ""; // who was chosen in the panel; see meantFor
   /** @type {number | null} */
   #selected = null; // UAV of the page
-  #whom = h("p", { class: "caption", id: "simulation-whom" }); // it keeps its place, as what is below it does
+  #whom = h("p", { class: "caption", id: "simulation-whom" }); // keeps its place, so that the elements below it do
   /** @type {HTMLButtonElement[]} */
-  #ofSome = []; // buttons that need to know for whom
+  #ofSome = []; // buttons that need a vehicle
   #seconds = number("simulation-seconds", LASTS_S, 1, 3600);
   #lasts = h("p", { class: "caption", id: "simulation-lasts" });
 

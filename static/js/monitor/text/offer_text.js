@@ -31,7 +31,7 @@ const OUTCOMES = {
   impossible: t("No re-plan possible."),
 };
 
-/** What another plan changes; empty while it is computed. @param {Pick<LiveOffer, "difference">} offer */
+/** The changes of another plan; empty while it is computed. @param {Pick<LiveOffer, "difference">} offer */
 export const differenceOf = ({ difference }) => /** @type {OfferDifference} */ (difference ?? {});
 
 /** @param {Pick<LiveOffer, "cause">} offer */

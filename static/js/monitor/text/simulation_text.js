@@ -32,7 +32,7 @@ const BEHIND_S = 2; // of real time that was lost, from which on it is shown
  * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} the request for a vehicle, for a duration in its own seconds
  */
 
-/** Faults by the name of their button: what is sent for a vehicle, for so many of its seconds. */
+/** Faults by the name of their button, with the request for a vehicle and a duration in its own seconds. */
 export const FAULTS = /** @type {Fault[]} */ ([
   {
     name: "link",
@@ -56,7 +56,7 @@ export const FAULTS = /** @type {Fault[]} */ ([
   },
   { name: "motor", image: "octagon-alert", words: t("Motor failure"), of: () => ({ motor_failed: 0 }) },
 ]);
-/** What can be mended; a battery stays as it is. */
+/** Repair of all faults that can be repaired; a battery stays as it is. */
 export const WELL = /** @type {Fault} */ ({
   name: "well",
   image: "circle-check",
@@ -92,7 +92,7 @@ export function meantFor(wished, selected, vehicles) {
 }
 
 /**
- * How much of the flight so many seconds of the clock are; "" in real time.
+ * Duration of `seconds` of the clock in the flight's own time; "" in real time.
  *
  * @param {number} seconds
  * @param {number} speed

@@ -137,7 +137,7 @@ function heldKeys(rig, onChange) {
   document.addEventListener("keyup", release);
   window.addEventListener("blur", releaseAll);
   return {
-    /** Whether it is such a key. @param {KeyboardEvent} event */
+    /** Handle a key; returns whether it is one of the camera's. @param {KeyboardEvent} event */
     press(event) {
       const key = event.key.toLowerCase();
       if (!(key in HELD) || event.ctrlKey || event.metaKey || event.altKey) return false;

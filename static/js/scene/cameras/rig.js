@@ -101,7 +101,7 @@ export function createRig({ isCalm = () => false } = {}) {
       rig.mode = mode;
       rig.glide();
     },
-    /** Towards what is followed now, another UAV or target. */
+    /** Move to the present target, another UAV or target. */
     glide() {
       rig.offset = [0, 0, 0];
       rig.isGliding = eyes.shown() !== null;

@@ -12,7 +12,7 @@ const FIELD_DEG = 40; // of the camera from above: the same place and width in b
 /** @import { FlownRoute, PlannedLine } from "../flight/drawn_flight.js" */
 /** @import { Picture, PictureOptions, Size, Vector } from "../types.d.ts" */
 
-/** @typedef {{ centre: Vector, metresPerPixel: number, turn: number }} FlatView what stands in the middle, how large, turned by how much */
+/** @typedef {{ centre: Vector, metresPerPixel: number, turn: number }} FlatView centre of the picture, scale, rotation */
 
 /** @param {Vector} place @param {FlatView} view @param {Size} size @returns {[x: number, y: number]} */
 function placeOnScreen([x, , z], { centre, metresPerPixel, turn }, size) {

@@ -55,7 +55,7 @@ export function drawFlight(source, { frame, groundAt, groundKind }) {
   };
 
   /**
-   * The planned way, from the ground up and down to it again where it takes off, changes batteries and lands.
+   * The planned path, with climbs from the ground and descents to it at take-off, battery changes and landing.
    *
    * @param {FlightRoute} route
    */

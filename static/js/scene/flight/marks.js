@@ -1,4 +1,4 @@
-/** Lines and arrows round the UAVs of a moment: the pole to the ground, the way since the last report, the wind. */
+/** Lines and arrows round the UAVs of a moment: the pole to the ground, the path since the last report, the wind. */
 
 import { between, towards } from "../cameras/vectors.js";
 import {

@@ -58,7 +58,7 @@ const RIM_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-/** See-through with a clear edge: what is hollow. @param {number} inner @param {number} rim */
+/** A transparent material with a clear edge, for hollow UAVs. @param {number} inner @param {number} rim */
 const hollow = (inner, rim) =>
   new ShaderMaterial({
     vertexShader: RIM_VERTEX,

@@ -33,7 +33,7 @@ export function sagAt(share, length_m, sag_m, constant = catenaryConstant(length
 }
 
 /**
- * So many straight pieces that none is farther than this from the curve.
+ * The number of straight pieces that keep each within `within_m` of the curve.
  *
  * @param {number} sag_m
  * @param {number} [within_m]

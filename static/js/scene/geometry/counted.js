@@ -9,7 +9,7 @@ const CAP_M = 1.6; // half of the cross on top of a mark
 /** @import { Frame, Polylines } from "../types.d.ts" */
 
 /**
- * How much more planners count of a support than is drawn; 0 where what is drawn is counted.
+ * How much higher planners take a support than it is drawn; 0 where they are equal.
  *
  * @param {Pick<Support, "height_m" | "likely_m">} support
  */

@@ -1,4 +1,4 @@
-/** The ground's folds: what follows the ground is cut along them, so that it is nowhere off. Values in, values out. */
+/** The terrain's folds: surfaces that follow the terrain are cut along them, so that they fit exactly. Values in, values out. */
 
 import { area2 } from "./triangulate.js";
 

@@ -5,7 +5,7 @@
 
 /** @typedef {ReturnType<typeof makeGround>} Ground */
 
-const SKIRT_M = 100_000; // the ground goes on so far beyond the grid, and comes to the mean height of its edge
+const SKIRT_M = 100_000; // the terrain continues so far beyond the grid, at the mean height of its edge
 
 /**
  * heights: y, row by row from the north-west; edge: mean y of the edge; heightAt is exact on the mesh's triangles. See docs/scene.md.

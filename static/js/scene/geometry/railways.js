@@ -49,7 +49,7 @@ export function railwayTracks(railways, { frame, ground, deckAt = () => null, wi
 }
 
 /**
- * Before and behind what is lifted, no steeper than a ramp; again until ends that lie together agree.
+ * Ramps before and behind raised parts, with limited slope; repeated until ends that meet agree.
  *
  * @param {Way[]} ways
  */
@@ -172,7 +172,7 @@ function overhead({ railway, points, heights }, wire_agl_m) {
   return { masts: masts.take(), wires: Float32Array.from(wires) };
 }
 
-/** Every so many metres along the way, at its points; the first and the last among them. @param {Ring} points */
+/** Places of masts at a regular spacing along the way, at its points; the first and the last among them. @param {Ring} points */
 function mastPlaces(points) {
   const places = [0];
   let since_m = 0;

@@ -1,4 +1,4 @@
-/** A flown or planned way as a flat band with poles to the ground. Arrays in, arrays out. */
+/** A flown or planned path as a flat band with poles to the ground. Arrays in, arrays out. */
 
 /** @import { HeightAt } from "../types.d.ts" */
 
@@ -80,7 +80,7 @@ function directionsAcross(positions) {
 }
 
 /**
- * Poles from the way down to the ground, one at each `spacing_m` of the way over the ground and at both ends.
+ * Poles from the path down to the ground, one at each `spacing_m` of the path over the ground and at both ends.
  *
  * groundAt(x, z) -> y. Gives { segments: Float32Array [x, top, z, x, ground, z, …], heights_m: Float32Array }.
  *

@@ -1,4 +1,4 @@
-/** Supports as members: what is seen from afar, and what is added near by. Values in, arrays out. */
+/** Supports as members: those seen from afar, and those added near by. Values in, arrays out. */
 
 import { lattice } from "./lattice.js";
 import { memberList } from "./struts.js";

@@ -15,7 +15,7 @@ import { area2, triangulate } from "./triangulate.js";
 /** @typedef {{ area: number, middle: [x: number, z: number] }} Largest */
 /** @typedef {ReturnType<typeof zoneVolume>} ZoneVolume */
 
-export const WITHIN_M = 0.15; // a floor, ceiling or wall strays no farther from what it follows
+export const WITHIN_M = 0.15; // largest deviation of a floor, ceiling or wall from the surface that it follows
 const MAX_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
 const ON_CLIP_DEG = 1e-6;
 const LIFT_M = 0.25; // a floor on the ground lies so far above it

@@ -14,7 +14,7 @@ import { countedAir } from "../geometry/counted.js";
 /** @typedef {{ away_m: number, zone: NearbyZone, isInside: boolean }} NearZone */
 
 const FOOT_SHARE = 0.1; // of a tower's height: half its feet's width
-const CLEAR_OF_ALL_M = 250; // so far over the ground nothing stands
+const CLEAR_OF_ALL_M = 250; // nothing is taller than this above the ground
 
 /**
  * Everything that can be near, in the frame: prepared once for a scene.
@@ -166,7 +166,7 @@ export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
 }
 
 /**
- * How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is.
+ * The distances from a place to the nearest ground, tower with its arms, wire and point of `others`.
  *
  * @param {Surroundings} surroundings
  * @param {Vector} place

@@ -39,7 +39,7 @@ function rendererOn(canvas) {
   }
 }
 
-/** What was drawn, since the last asking. */
+/** Create the figures of drawn frames since the last reading: count, total and longest time of scripts. */
 function createFigures() {
   const figures = { frames: 0, script_ms: 0, longest_ms: 0 };
   return {

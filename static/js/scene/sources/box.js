@@ -1,4 +1,4 @@
-/** How much of the ground a flight needs round it. Values in, values out. */
+/** The area of terrain that a flight needs around it. Values in, values out. */
 
 /** @import { FlightSource } from "../types.d.ts" */
 

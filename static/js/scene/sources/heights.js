@@ -6,7 +6,7 @@
 /** @typedef {"amsl" | "relative"} Trust which height is used */
 /** @typedef {GroundGrid["kind"]} GroundKind */
 
-const ON_GROUND_M = 0.12; // of a UAV's middle above what it stands on
+const ON_GROUND_M = 0.12; // height of a UAV's middle above the surface on which it stands
 
 /**
  * Return the height above sea level to draw at. Where there is a terrain model, AMSL heights of a plan or a simulation refer to the drawn

@@ -18,7 +18,7 @@ const SILENT_MS = 45_000; // no ribbon over a longer silence
 const MAX_SAMPLES = 4_000; // of a UAV's ribbon; the oldest half is thinned out then
 
 /**
- * What is known of a UAV at the server's time; null while it was never seen.
+ * The state of a UAV at the server's time; null before it was first seen.
  *
  * @param {LiveUav} uav
  * @param {number} now_ms
@@ -131,7 +131,7 @@ export function liveSource({ detail, features = [] }) {
   }
 
   /**
-   * Puts the last word of a route's UAV in; returns whether it is another than before.
+   * Store the last message of a route's UAV; returns whether it is new.
    *
    * @param {FlightRoute} route
    * @param {Moment} sample

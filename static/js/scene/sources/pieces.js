@@ -1,4 +1,4 @@
-/** Where a UAV was at any moment, between what is known of it. Values in, values out. */
+/** Position of a UAV at any moment, interpolated between samples. Values in, values out. */
 
 import { turn_deg } from "../cameras/vectors.js";
 

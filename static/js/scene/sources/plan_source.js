@@ -6,7 +6,7 @@ import { completed, firstOf, lastOf, PLANNED } from "./pieces.js";
 /** @import { Mission, Route, WindLayerOutput } from "../../api_types.d.ts" */
 /** @import { FlightRoute, FlightSample, FlightSource, Piece, PlannedPlace, SourceTarget, Wind } from "../types.d.ts" */
 
-/** The first moment where a mission has no departure: what is shown then is the time since departure. */
+/** The first moment where a mission has no departure: times are then shown since departure. */
 export const NO_DATE_MS = 0;
 
 /**

@@ -77,7 +77,7 @@ async function readLive(mission) {
 
 /**
  * @param {Mission} mission
- * @param {WantedSource | null} [wanted] null: what is usual
+ * @param {WantedSource | null} [wanted] null: the default
  * @returns {Promise<{ source: FlightSource, choices: SourceKind[] }>}
  * @throws {ApiError}
  */

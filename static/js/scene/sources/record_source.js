@@ -1,4 +1,4 @@
-/** A mission's record as the view shows it: what was measured, and in the silence what was estimated. */
+/** A mission's record as a source of the view: measurements, and estimates in silences. */
 
 import { isOver, isUnderWay } from "../../record/sentence.js";
 import { eventsOf, spanOf } from "../../record/timeline.js";

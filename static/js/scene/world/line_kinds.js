@@ -1,4 +1,6 @@
-/** What is drawn as lines, with colours and widths: wires by voltage, rails, edges of zones. Each as [segments, tints, sizes] of lines.js. */
+/**
+ * Things drawn as lines, with colours and widths: wires by voltage, rails, edges of zones. Each as [segments, tints, sizes] of lines.js.
+ */
 
 import { voltageColour } from "../../map/look/voltages.js";
 import { Color } from "../three.js";

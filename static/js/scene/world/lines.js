@@ -105,7 +105,7 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   };
   return {
     mesh,
-    /** So many times farther than usual lines become faint; never nearer. @param {number} times */
+    /** Set the factor of the usual distance at which lines become faint; at least 1. @param {number} times */
     reach(times) {
       material.uniforms.fade.value = [fade[0] * Math.max(times, 1), fade[1]];
     },

@@ -59,7 +59,7 @@ function colourValues(pairs, colours) {
   return values;
 }
 
-/** @typedef {{ supports: readonly Support[], frame: Frame, groundAt: HeightAt }} Standing what stands where */
+/** @typedef {{ supports: readonly Support[], frame: Frame, groundAt: HeightAt }} Standing supports with their frame and terrain */
 
 /**
  * The fine members of the supports near the camera, worked out a few a frame.
@@ -79,7 +79,7 @@ function nearMembers({ near_m, most }) {
   let lookedFrom = null;
 
   /**
-   * The nearest supports within reach become wanted; what is already worked out stays, what is far is let go.
+   * Request the nearest supports within reach; computed ones are kept, far ones are released.
    *
    * @param {Vector3} eye
    */

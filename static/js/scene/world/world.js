@@ -48,7 +48,7 @@ const NO_WIRES = {
 /** @typedef {"high" | "low"} Quality low: without shadows and with little bracing */
 /** @typedef {ReturnType<typeof makeWorld>} World */
 /**
- * What is drawn of a scene.
+ * Drawn parts of a scene.
  *
  * @typedef {object} Shown
  * @property {Scene | null} scene
@@ -109,7 +109,7 @@ function paintHour({ fog, sky, terrain, lights }, palette, now, sun) {
 }
 
 /**
- * What stands on the ground.
+ * Paint the things on the ground.
  *
  * @param {Parts} parts
  * @param {Shown} shown
@@ -146,7 +146,7 @@ function paintThings(parts, shown, palette, night, { isNew = false } = {}) {
 }
 
 /**
- * Notes of each zone whether it is in force; returns whether one is otherwise than before.
+ * Store for each zone whether it is in force; returns whether any has changed.
  *
  * @param {Shown} shown
  * @param {Date} moment

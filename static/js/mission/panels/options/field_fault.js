@@ -1,12 +1,12 @@
-/** What is wrong with a field, beside it. */
+/** The fault of a field, shown beside it. */
 
 import { h, icon } from "../../../dom.js";
 
-/** A place for what is wrong with a field. @param {string} id */
+/** An element for the fault of a field. @param {string} id */
 export const faultPlace = (id) => h("p", { class: "field-error", id, hidden: true });
 
 /**
- * Shows what is wrong with a field; empty words take that away.
+ * Show the fault of a field; empty words remove it.
  *
  * @param {HTMLInputElement} input
  * @param {HTMLElement} place

@@ -97,7 +97,7 @@ export function createAssessment(store, rehearsing, { canRehearse, seeInSpace })
   };
 }
 
-/** Whether it is of another plan, or on another ground. @param {RehearsalDetail} detail */
+/** A notice where it belongs to another plan, or to other map data. @param {RehearsalDetail} detail */
 function ageNotice({ is_outdated, ground_changed }) {
   if (is_outdated)
     return h(

@@ -24,7 +24,7 @@ import { mainOf, stripRoom } from "./room.js";
  * @property {ReturnType<typeof drawProfile>} chart
  * @property {number} width_px
  * @property {number} longest_m
- * @property {string} fault why the ground could not be read
+ * @property {string} fault why terrain could not be read
  */
 
 const MAX_WAITS = 3;

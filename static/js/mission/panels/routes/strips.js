@@ -25,7 +25,7 @@ import { passedZones } from "../../zones_passed.js";
 const MAX_LOOKED_AT = 12; // count of routes whose zones are requested at once
 
 /**
- * Keys by the place of each route; what is locked to a UAV without a route is not drawn.
+ * Locked keys by the place of each route; locks to a UAV without a route are not drawn.
  *
  * @param {MissionPageState} state
  * @param {ShownPlan} plan
@@ -58,7 +58,7 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
   /** @type {WeakMap<Waypoint[], ReturnType<typeof passedZones>>} */
   const zonesOf = new WeakMap(); // stretches beside zones
   /** @type {string[][]} */
-  let wishes = []; // the order of each route as it would be with what is locked
+  let wishes = []; // the order of each route with its locks
   const grab = createPillDrag(list, {
     strips,
     drop(keys, { sequence, index }) {

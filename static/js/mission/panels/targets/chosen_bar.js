@@ -1,4 +1,4 @@
-/** What can be done with several chosen targets: their task, the stretch between two, removing them. */
+/** Acts on several chosen targets: their task, the stretch between two, removing them. */
 
 import { byId, h, icon } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";

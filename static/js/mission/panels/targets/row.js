@@ -1,4 +1,4 @@
-/** The row of a target: check box, pill, kind, name, second fact, what is not as usual, when it is reached, task, remove. */
+/** The row of a target: check box, pill, kind, name, second fact, deviations from the defaults, arrival, task, remove. */
 
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
@@ -115,7 +115,7 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
 }
 
 /**
- * What is not as usual, without a word where everything is.
+ * Show deviations from the defaults; empty without any.
  *
  * @param {HTMLElement} place
  * @param {PickedTarget} target

@@ -1,4 +1,4 @@
-/** The list of targets, and what is done with several of them at once. */
+/** The list of targets, and acts on several of them at once. */
 
 import { byId, keyedList } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";
@@ -151,7 +151,7 @@ function mountChoosing(list, store, actions, { choosing, refresh }) {
   };
 }
 
-/** What can be picked besides a whole line or railway. @param {PickedTarget} target @param {MissionActions} actions */
+/** Parts of a line or railway that can be picked instead of the whole. @param {PickedTarget} target @param {MissionActions} actions */
 function more(target, actions) {
   const { asset } = target;
   if (!isWhole(target) || asset === null) return [];
@@ -203,7 +203,7 @@ function pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt
 }
 
 /**
- * What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen.
+ * A target chosen elsewhere, such as by a pill on the map, is chosen alone; removed targets are not chosen.
  *
  * @param {MissionStore} store
  */

@@ -1,4 +1,4 @@
-/** The fields of a UAV in a mission: what it is called, where it starts, how far and how fast it flies, with which battery, how it ends. */
+/** The fields of a UAV in a mission: name, start, range and speed, battery, end. */
 
 import { find, h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
@@ -14,7 +14,7 @@ import { MAX_TARGETS } from "../../selection.js";
 /** @typedef {ReturnType<typeof createFields>} Fields */
 /** @typedef {HTMLInputElement | HTMLSelectElement} Input */
 /**
- * What is typed, in SI units.
+ * The typed values in SI units.
  *
  * @typedef {object} TypedUav
  * @property {string} name
@@ -59,7 +59,7 @@ export function field(label, input, unit = "") {
 }
 
 /**
- * Shows beside a field what is wrong with it; empty words take that away.
+ * Show the fault of a field beside it; empty words remove it.
  *
  * @param {Input} input
  * @param {string} words
@@ -82,7 +82,7 @@ const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
 const shownIn = (value, unit) => (value === null || value === undefined ? "" : inUnits(value, unit));
 
 /**
- * A value of its own, in units of so many of the stored ones; empty it is what stands in grey.
+ * A value of its own, in a unit of `unit` stored ones; an empty field has the value of its placeholder.
  *
  * @param {OwnFigure} name
  * @param {number | null | undefined} value

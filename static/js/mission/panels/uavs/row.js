@@ -1,4 +1,4 @@
-/** The row of a UAV of the fleet: whether it flies in this mission, with which letter, what it can do and what is left of its battery. */
+/** The row of a UAV of the fleet: whether it flies in this mission, its letter, its abilities and its battery level. */
 
 import { find, h, icon } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
@@ -9,7 +9,7 @@ import { canFly, factsOfUav } from "../../fleet.js";
 
 /** @import { StandingUav } from "../../types.d.ts" */
 
-/** @typedef {StandingUav & { grounded: string }} ShownUav `grounded`: why the plan leaves it on the ground */
+/** @typedef {StandingUav & { grounded: string }} ShownUav `grounded`: why the plan does not use it */
 /**
  * @typedef {object} RowActs
  * @property {() => void} look
@@ -84,7 +84,7 @@ function showBattery(place, percent) {
   place.classList.toggle("low", percent !== null && percent < LOW_BATTERY_PERCENT);
 }
 
-/** What keeps a UAV on the ground whatever is planned. @param {StandingUav} uav */
+/** Why a UAV cannot take off with any plan. @param {StandingUav} uav */
 function troubleOf({ state, isGone }) {
   if (isGone) return t("No longer in the fleet, or retired");
   return state === "maintenance" ? t("In maintenance") : "";

@@ -113,7 +113,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   };
 }
 
-/** Why the plan leaves a UAV on the ground. @param {MissionPageState} state @param {StandingUav} uav */
+/** Why the plan does not use a UAV. @param {MissionPageState} state @param {StandingUav} uav */
 function groundedWords(state, { sequence }) {
   const warnings = (isPlanCurrent(state) && state.plan?.result.warnings) || [];
   const warning = warnings.find(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);

@@ -35,7 +35,7 @@ const COLUMNS = [
 ];
 
 /**
- * Of all UAVs together, without what they stand at a base between two flights or on a tower to charge.
+ * Flying time of all UAVs together [s], without stops at a base between two flights or on a tower to charge.
  *
  * @param {PlanResult} result
  */

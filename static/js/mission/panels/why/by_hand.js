@@ -42,7 +42,7 @@ function faultsOf({ faults: { legs, points: ofPoints, other }, points, unknown }
 }
 
 /**
- * What is changed, and whether it can be flown.
+ * The number of changes, and whether the route can be flown.
  *
  * @param {HandEdit} hand
  * @param {number} changes
@@ -59,7 +59,7 @@ function sentenceOf(hand, changes, faults) {
   return parts.join(" ");
 }
 
-/** What was kept before and can be taken back. @param {MissionActions} actions */
+/** Create the undo of a change that was stored before. @param {MissionActions} actions */
 function createTakeBack(actions) {
   const button = h(
     "button",

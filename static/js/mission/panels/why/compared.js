@@ -1,4 +1,4 @@
-/** What differs from the last plan: the sentence, then each UAV, then the targets that changed hands. */
+/** Differences from the last plan: the sentence, then each UAV, then the targets that moved to another UAV. */
 
 import { h } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";

@@ -1,4 +1,4 @@
-/** What it would cost to give a target to another UAV, in the unit of the plan's objective. Values in, values out. */
+/** The cost of giving a target to another UAV, in the unit of the plan's objective. Values in, values out. */
 
 import { t } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
@@ -9,7 +9,10 @@ import { longestDuration_s } from "../../plan_view.js";
 
 const MIN_S = 30; // less is no other time
 
-/** Seconds for so many metres more on a route, at its own mean speed. @param {{ length_m: number, duration_s: number }} route @param {number} more_m */
+/**
+ * Seconds for `more_m` additional metres on a route, at its own mean speed.
+ * @param {{ length_m: number, duration_s: number }} route @param {number} more_m
+ */
 const timeFor_s = ({ length_m, duration_s }, more_m) => (length_m > 0 ? (more_m * duration_s) / length_m : 0);
 
 /**

@@ -1,4 +1,4 @@
-/** Where a route's kilometres come from, what another UAV would fly, what limits the plan, and what is worth trying. */
+/** Shares of a route's length, the alternatives with another UAV, limits of the plan, and suggestions. */
 
 import { h } from "../../../dom.js";
 import { scheduleText } from "../../../domain/schedule_words.js";
@@ -183,7 +183,7 @@ function heaviest({ heaviest: found }, route, { plan, actions, canPlan }) {
   );
 }
 
-/** The other objective, where it is planned: what it wins and what it costs. @param {Explaining} explaining */
+/** The plan by the other objective, where there is one: its gains and costs. @param {Explaining} explaining */
 function otherWay({ plan, store, actions, canPlan }) {
   /** @type {ObjectiveEnum} */
   const objective = otherObjective(plan.result.objective);
